@@ -1,0 +1,28 @@
+//! What the scenes share. A scene is a folder beside this one: a declaration, its flags, what it claims and its figure.
+//!
+//! ```text
+//! cargo run --release --example toutatis -- --help
+//! ```
+//!
+//! | module | its job |
+//! |---|---|
+//! | [`flags`] | what every scene takes on the command line, and number parsers with clear errors |
+//! | [`integrate`] | step after step, with progress and with errors that name the step |
+//! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
+//! | [`claims`] | what a scene asserts: each with its measured number and its bound |
+//! | [`round_off`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
+//! | [`elliptic`], [`rotation`] | mathematics that more than one file needs |
+//! | [`scene`] | the frame of a `main`: failures, exit codes, output |
+
+pub mod claims;
+pub mod csv;
+pub mod elliptic;
+pub mod energy_band;
+pub mod figure;
+pub mod flags;
+pub mod integrate;
+mod progress;
+pub mod rotation;
+pub mod round_off;
+pub mod scene;
+pub mod table;

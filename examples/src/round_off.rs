@@ -1,0 +1,19 @@
+//! How far rounding can carry a quantity that is conserved exactly.
+
+/// Roundings in sequence that one step puts on one number, at most: the group element (some 20 operations from the solved
+/// chart vector, itself known to a few units in the last place), its product with the configuration or the momentum (5), the
+/// kick (10), and the evaluation of what is measured (20); rounded up to a power of two.
+const ROUNDINGS_PER_STEP: f64 = 64.0;
+
+/// The worst case after `steps` steps: every rounding is by at most ε/2 of `scale`, and all of them have the same sign.
+///
+/// The growth is then *linear*. That happens: a body in steady rotation repeats one group element and with it one rounding.
+/// Roundings of random sign grow like √steps and stay far below; [`in_random_walks`] tells by how much.
+pub fn worst_case(steps: u64, scale: f64) -> f64 {
+    ROUNDINGS_PER_STEP * f64::EPSILON / 2.0 * (steps as f64 + 1.0) * scale
+}
+
+/// `defect` in units of ε √steps `scale`: of the order of 1 where roundings of random sign add up.
+pub fn in_random_walks(defect: f64, steps: u64, scale: f64) -> f64 {
+    defect / (f64::EPSILON * (steps as f64).sqrt() * scale)
+}

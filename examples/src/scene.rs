@@ -1,0 +1,79 @@
+//! The frame of a scene: what can go wrong, what is printed, with which code it exits.
+
+use crate::claims::Claims;
+use std::fmt::{self, Display, Formatter};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Why a scene could not be run to its end.
+#[derive(Debug)]
+pub enum Failure {
+    /// The parameters or the start are refused.
+    Start(clebsch::Error),
+    /// A step could not be made.
+    Step {
+        /// The number of the state that was asked for.
+        step: u64,
+        /// Why it was not reached.
+        error: clebsch::Error,
+    },
+    /// A file could not be written.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// Two flags do not fit together.
+    Flags(String),
+}
+
+impl Failure {
+    /// For `map_err` on what is written to `path`.
+    pub fn file(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
+        |error| Self::File { path: path.to_owned(), error }
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Start(error) => write!(f, "{error}"),
+            Self::Step { step, error } => write!(f, "step {step} was not reached: {error}"),
+            Self::File { path, error } => write!(f, "cannot write {}: {error}", path.display()),
+            Self::Flags(text) => f.write_str(text),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<clebsch::Error> for Failure {
+    fn from(error: clebsch::Error) -> Self {
+        Self::Start(error)
+    }
+}
+
+/// Prints to standard output. A reader that has gone away, as in `| head`, is no reason to stop.
+pub fn say(text: impl Display) {
+    let _ = writeln!(io::stdout().lock(), "{text}");
+}
+
+/// Prints the claims and ends the scene: success only where none of them failed.
+pub fn conclude(outcome: Result<Claims, Failure>) -> ExitCode {
+    let mut errors = io::stderr().lock();
+    match outcome {
+        Ok(claims) => {
+            say(&claims);
+            for claim in claims.failed() {
+                let _ = writeln!(errors, "error: claim failed: {claim}");
+            }
+            if claims.failed().next().is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        }
+        Err(failure) => {
+            let _ = writeln!(errors, "error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Errors that help: what is wrong, what to type instead, and why; collected, so that a stage reports all of its errors.
+
+use std::fmt;
+
+use proc_macro2::{Span, TokenStream, TokenTree};
+use quote::{ToTokens, quote_spanned};
+
+/// A stretch of the user's source, from the first to the last token.
+#[derive(Copy, Clone, Debug)]
+pub struct Place {
+    start: Span,
+    end: Span,
+}
+
+impl Place {
+    /// The place of everything that a syntax tree was made from.
+    pub fn of(tokens: &impl ToTokens) -> Place {
+        let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
+            TokenTree::Group(group) => (group.span_open(), group.span_close()),
+            other => (other.span(), other.span()),
+        });
+        let first = spans.next().unwrap_or_else(|| (Span::call_site(), Span::call_site()));
+        Place { start: first.0, end: spans.last().unwrap_or(first).1 }
+    }
+
+    /// The place's first token.
+    pub fn start(self) -> Span {
+        self.start
+    }
+}
+
+impl From<Span> for Place {
+    fn from(span: Span) -> Place {
+        Place { start: span, end: span }
+    }
+}
+
+/// One error: a first line, then lines of help and notes in the order in which they were added.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    place: Place,
+    message: String,
+    lines: Vec<String>,
+}
+
+impl Diagnostic {
+    /// What is wrong: lower case, no full stop, the user's names in backticks.
+    pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { place: place.into(), message: message.into(), lines: Vec::new() }
+    }
+
+    /// The text to type instead.
+    pub fn help(self, text: impl fmt::Display) -> Diagnostic {
+        self.line(format!("help: {text}"))
+    }
+
+    /// The mathematical reason.
+    pub fn note(self, text: impl fmt::Display) -> Diagnostic {
+        self.line(format!("note: {text}"))
+    }
+
+    /// Help, if there is any.
+    pub fn maybe_help(self, text: Option<impl fmt::Display>) -> Diagnostic {
+        match text {
+            Some(text) => self.help(text),
+            None => self,
+        }
+    }
+
+    /// Says that something is part of the language, but not of this version.
+    pub fn later(place: impl Into<Place>, what: impl fmt::Display) -> Diagnostic {
+        Diagnostic::new(place, format!("{what} is not supported yet"))
+            .note("it belongs to the language and comes with a later version of clebsch")
+    }
+
+    fn line(mut self, text: String) -> Diagnostic {
+        self.lines.push(text);
+        self
+    }
+
+    fn to_compile_error(&self) -> TokenStream {
+        let Place { start, end } = self.place;
+        let text = self.to_string();
+        let arguments = quote_spanned!(end=> { #text });
+        quote_spanned!(start=> ::core::compile_error! #arguments)
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        if !self.lines.is_empty() {
+            f.write_str("\n")?;
+        }
+        self.lines.iter().try_for_each(|line| write!(f, "\n{line}"))
+    }
+}
+
+impl From<syn::Error> for Diagnostic {
+    fn from(error: syn::Error) -> Diagnostic {
+        Diagnostic::new(error.span(), error.to_string())
+    }
+}
+
+/// The errors of a stage, in the order in which they were found.
+#[derive(Clone, Default, Debug)]
+pub struct Diagnostics {
+    found: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// No errors yet.
+    pub fn new() -> Diagnostics {
+        Diagnostics::default()
+    }
+
+    /// Adds an error.
+    pub fn push(&mut self, diagnostic: impl Into<Diagnostic>) {
+        self.found.push(diagnostic.into());
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    /// The number of errors.
+    pub fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// The value, unless there were errors.
+    pub fn propagate<T>(self, value: T) -> Result<T, Diagnostics> {
+        match self.is_empty() {
+            true => Ok(value),
+            false => Err(self),
+        }
+    }
+
+    /// One `compile_error!` for each error, at its place.
+    pub fn to_compile_errors(&self) -> TokenStream {
+        self.found.iter().map(Diagnostic::to_compile_error).collect()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(diagnostic: Diagnostic) -> Diagnostics {
+        Diagnostics { found: vec![diagnostic] }
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (position, diagnostic) in self.found.iter().enumerate() {
+            let separator = if position == 0 { "" } else { "\n\n" };
+            let text = diagnostic.to_string().replace("\n\n", "\n").replace('\n', "\n       ");
+            write!(f, "{separator}error: {text}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The candidate that a misspelt name most likely means.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let allowed = (name.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .map(|candidate| (edit_distance(&name.to_lowercase(), &candidate.to_lowercase()), candidate))
+        .filter(|&(distance, candidate)| distance <= allowed && distance < candidate.chars().count())
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+fn edit_distance(left: &str, right: &str) -> usize {
+    let (left, right): (Vec<char>, Vec<char>) = (left.chars().take(64).collect(), right.chars().take(64).collect());
+    let mut rows = vec![(0..=right.len()).collect::<Vec<usize>>()];
+    for i in 1..=left.len() {
+        let mut row = vec![i];
+        for j in 1..=right.len() {
+            let replaced = rows[i - 1][j - 1] + usize::from(left[i - 1] != right[j - 1]);
+            let mut best = replaced.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && left[i - 1] == right[j - 2] && left[i - 2] == right[j - 1] {
+                best = best.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(best);
+        }
+        rows.push(row);
+    }
+    rows[left.len()][right.len()]
+}

@@ -1,0 +1,41 @@
+//! How the leaves of a product nest: a leaf, a tuple or an array of such.
+
+/// The nesting of leaves, which are numbered from left to right.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Structure {
+    /// The leaf with this number.
+    Leaf(usize),
+    /// A tuple `(A, B)`.
+    Tuple(Vec<Structure>),
+    /// An array `[A; 2]`.
+    Array(Vec<Structure>),
+}
+
+impl Structure {
+    /// The number of leaves.
+    pub fn leaves(&self) -> usize {
+        match self {
+            Structure::Leaf(_) => 1,
+            Structure::Tuple(parts) | Structure::Array(parts) => parts.iter().map(Structure::leaves).sum(),
+        }
+    }
+
+    /// How each leaf is reached, in order: `.0`, `[1]`, `.0[1]`; empty for a single leaf.
+    pub fn accessors(&self) -> Vec<String> {
+        let mut accessors = Vec::new();
+        self.collect(String::new(), &mut accessors);
+        accessors
+    }
+
+    fn collect(&self, prefix: String, accessors: &mut Vec<String>) {
+        match self {
+            Structure::Leaf(_) => accessors.push(prefix),
+            Structure::Tuple(parts) => {
+                parts.iter().enumerate().for_each(|(i, part)| part.collect(format!("{prefix}.{i}"), accessors));
+            }
+            Structure::Array(parts) => {
+                parts.iter().enumerate().for_each(|(i, part)| part.collect(format!("{prefix}[{i}]"), accessors));
+            }
+        }
+    }
+}

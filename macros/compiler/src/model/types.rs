@@ -1,0 +1,228 @@
+//! The value of the stage `model`: typed matrix expressions with names, shapes, groups and sides.
+
+use clebsch_symbolic::{Expr, Graph, Group, Shape};
+use proc_macro2::Span;
+
+use super::Structure;
+
+/// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
+pub struct Model<'g> {
+    /// The owner of all expressions.
+    pub graph: &'g Graph,
+    /// What generated code needs of the user's struct.
+    pub item: Item,
+    /// Every field that a closure reads, in order of declaration.
+    pub parameters: Vec<Parameter<'g>>,
+    /// Scalar constants of the user's crate, in order of their first use.
+    pub constants: Vec<Constant<'g>>,
+    /// The symbol h.
+    pub step_size: Expr<'g>,
+    /// The factors of the group, in order of their leaves.
+    pub factors: Vec<Factor<'g>>,
+    /// How the factors nest.
+    pub element: Structure,
+    /// The leaves of the configuration.
+    pub configurations: Vec<Configuration<'g>>,
+    /// How the leaves of the configuration nest.
+    pub configuration: Structure,
+    /// Φ_F(q), one expression for each leaf of the configuration.
+    pub action: Vec<Expr<'g>>,
+    /// The kinetic part of the discrete Lagrangian, or the Lagrangian that it is to be made of.
+    pub kinetic: Kinetic<'g>,
+    /// V(q); a free body has none.
+    pub potential: Option<Expr<'g>>,
+    /// Where the potential is placed.
+    pub order: Order,
+    /// What is emitted beside the integrator.
+    pub emit: Emit,
+    /// The closures' bodies as written, for the errors of later stages.
+    pub spans: Spans,
+}
+
+/// The user's struct, as generated code has to name it.
+pub struct Item {
+    /// Its name.
+    pub ident: syn::Ident,
+    /// Its visibility.
+    pub vis: syn::Visibility,
+    /// Its generics.
+    pub generics: syn::Generics,
+    /// The scalar of its fields.
+    pub scalar: ScalarType,
+    /// The path of the runtime, `::clebsch` unless `crate = path` says otherwise.
+    pub krate: syn::Path,
+}
+
+/// The scalar that a system is computed with.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum ScalarType {
+    /// `f32`.
+    F32,
+    /// `f64`.
+    F64,
+    /// A type parameter of the struct.
+    Parameter(syn::Ident),
+}
+
+/// A field that a closure reads.
+pub struct Parameter<'g> {
+    /// The field, with the span of its declaration.
+    pub field: syn::Member,
+    /// The field's name, for symbols and messages.
+    pub name: String,
+    /// Where a closure first reads it.
+    pub first_use: Span,
+    /// What the user promises about its values.
+    pub promise: Option<Promise>,
+    /// How arrays nest.
+    pub structure: Structure,
+    /// One entry for each scalar, vector or matrix in it.
+    pub leaves: Vec<Leaf<'g>>,
+}
+
+/// A scalar, vector or matrix of a parameter.
+#[derive(Clone, Debug)]
+pub struct Leaf<'g> {
+    /// Its symbol.
+    pub symbol: Expr<'g>,
+    /// How it is reached from the field, `[0]`; empty for a field that is no array.
+    pub accessor: String,
+    /// Its shape.
+    pub shape: Shape,
+    /// Whether the Rust type is the scalar itself, not a 1×1 matrix.
+    pub is_scalar: bool,
+}
+
+/// A promise about the values of a field, which the stepper checks and simplification uses.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Promise {
+    /// Aᵀ = A.
+    Symmetric,
+    /// Zero off the diagonal.
+    Diagonal,
+    /// |v| = 1.
+    Unit,
+}
+
+/// A scalar constant of the user's crate.
+pub struct Constant<'g> {
+    /// Its path, with the spans of its first use.
+    pub path: syn::Path,
+    /// Its symbol.
+    pub symbol: Expr<'g>,
+}
+
+/// A factor of the group.
+#[derive(Clone)]
+pub struct Factor<'g> {
+    /// The group.
+    pub group: Group,
+    /// The symbol of its element, F.
+    pub symbol: Expr<'g>,
+    /// The user's name for the element, `F`, `F[0]`.
+    pub name: String,
+    /// The side from which it acts.
+    pub side: Side,
+    /// How it is reached in the element, `.0[1]`; empty for a single factor.
+    pub accessor: String,
+    /// Where its type is written.
+    pub span: Span,
+}
+
+/// The side of an action.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Side {
+    /// Φ_{F1 F2} = Φ_{F1} Φ_{F2}.
+    Left,
+    /// Φ_{F1 F2} = Φ_{F2} Φ_{F1}.
+    Right,
+}
+
+/// A leaf of the configuration.
+#[derive(Clone)]
+pub struct Configuration<'g> {
+    /// Its symbol, q.
+    pub symbol: Expr<'g>,
+    /// The user's name for it, `q`, `q[0]`.
+    pub name: String,
+    /// The space that it lies in.
+    pub space: Space,
+    /// Its shape.
+    pub shape: Shape,
+    /// How it is reached in the configuration, `.0[1]`; empty for a single leaf.
+    pub accessor: String,
+}
+
+/// What a leaf of the configuration is promised to be.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Space {
+    /// Any vector or matrix.
+    Vectors,
+    /// A vector of length one.
+    Unit,
+    /// An element of a group.
+    Group(Group),
+}
+
+/// The kinetic part of a step's discrete Lagrangian.
+pub enum Kinetic<'g> {
+    /// K(h, q, F) as declared.
+    Cost(Expr<'g>),
+    /// To be made from a Lagrangian.
+    Lagrangian {
+        /// ℓ(ξ).
+        energy: Expr<'g>,
+        /// The symbol of ξ, in the components of the group's basis.
+        velocity: Expr<'g>,
+        /// The user's name for ξ.
+        name: String,
+        /// How ξ is made from F and h.
+        discretization: Discretization,
+    },
+}
+
+/// How the velocity of a step is made from its group element.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Discretization {
+    /// ξ = 2(F − I)(F + I)⁻¹/h.
+    Cayley,
+    /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
+    MoserVeselov,
+}
+
+/// Where the potential is placed in a step.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Order {
+    /// −h V(Φ_F q).
+    First,
+    /// −h/2 (V(q) + V(Φ_F q)).
+    Second,
+}
+
+/// What is emitted beside the integrator.
+#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+pub struct Emit {
+    /// The constant `GENERATED`, the generated code as text.
+    pub generated: bool,
+}
+
+/// The bodies of the closures as they were written.
+pub struct Spans {
+    /// The action's.
+    pub action: Written,
+    /// The cost's or the Lagrangian's.
+    pub kinetic: Written,
+    /// The potential's.
+    pub potential: Option<Written>,
+}
+
+/// An expression as the user wrote it.
+#[derive(Clone)]
+pub struct Written {
+    /// Where it is.
+    pub place: crate::diagnostic::Place,
+    /// Its text.
+    pub text: String,
+    /// The closure's arguments, `|h, F|`.
+    pub arguments: String,
+}

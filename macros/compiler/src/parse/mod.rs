@@ -1,0 +1,46 @@
+//! The first stage: from tokens to a [`Declaration`], closures and types as they were written.
+
+mod attribute;
+mod bounds;
+mod closure;
+mod declaration;
+mod field;
+mod keys;
+mod print;
+mod spelling;
+
+pub use closure::{Argument, Closure, Pattern};
+pub use declaration::{Declaration, Kinetic};
+pub use field::Field;
+pub use keys::{Dials, Located};
+pub use spelling::{spell, spell_type};
+
+use proc_macro2::TokenStream;
+use syn::{Data, DeriveInput, Fields};
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+
+/// Reads the item that carries `#[derive(Clebsch)]`.
+pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
+    bounds::check(&item)?;
+    let input: DeriveInput = syn::parse2(item).map_err(Diagnostic::from)?;
+    let fields = match &input.data {
+        Data::Struct(data) => &data.fields,
+        Data::Enum(data) => return Err(no_struct(Place::from(data.enum_token.span), "an enum")),
+        Data::Union(data) => return Err(no_struct(Place::from(data.union_token.span), "a union")),
+    };
+    let mut diagnostics = Diagnostics::new();
+    let keys = attribute::read(&input, &mut diagnostics);
+    let fields = read_fields(fields, &mut diagnostics);
+    declaration::assemble(&input, keys, fields, diagnostics)
+}
+
+fn no_struct(place: Place, what: &str) -> Diagnostics {
+    Diagnostic::new(place, format!("`Clebsch` can only be derived for a struct, and this is {what}"))
+        .note("the fields of the struct are the parameters of the system")
+        .into()
+}
+
+fn read_fields(fields: &Fields, diagnostics: &mut Diagnostics) -> Vec<Field> {
+    fields.iter().enumerate().map(|(position, field)| field::read(position, field, diagnostics)).collect()
+}

@@ -1,0 +1,253 @@
+//! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
+
+use std::collections::HashMap;
+
+use num_traits::ToPrimitive;
+
+use crate::node::{Exponent, Function, Id, Node};
+use crate::{Expr, Graph, Rational, Shape};
+
+/// A field of numbers with elementary functions.
+pub trait Number: Copy + PartialEq {
+    /// The image of a rational number.
+    fn from_rational(value: &Rational) -> Self;
+    /// The sum.
+    fn add(self, other: Self) -> Self;
+    /// The product.
+    fn multiply(self, other: Self) -> Self;
+    /// The reciprocal.
+    fn reciprocal(self) -> Self;
+    /// A power whose exponent lies between zero and one.
+    fn fractional_power(self, exponent: (i64, i64)) -> Self;
+    /// An elementary function.
+    fn function(self, function: Function) -> Self;
+    /// π.
+    fn pi() -> Self;
+}
+
+impl Number for f64 {
+    fn from_rational(value: &Rational) -> f64 {
+        value.to_f64().unwrap_or(f64::NAN)
+    }
+    fn add(self, other: f64) -> f64 {
+        self + other
+    }
+    fn multiply(self, other: f64) -> f64 {
+        self * other
+    }
+    fn reciprocal(self) -> f64 {
+        1.0 / self
+    }
+    fn fractional_power(self, (numerator, denominator): (i64, i64)) -> f64 {
+        if (numerator, denominator) == (1, 2) { self.sqrt() } else { self.powf(numerator as f64 / denominator as f64) }
+    }
+    fn function(self, function: Function) -> f64 {
+        match function {
+            Function::Sin => self.sin(),
+            Function::Cos => self.cos(),
+            Function::Tan => self.tan(),
+            Function::Asin => self.asin(),
+            Function::Acos => self.acos(),
+            Function::Atan => self.atan(),
+            Function::Sinh => self.sinh(),
+            Function::Cosh => self.cosh(),
+            Function::Tanh => self.tanh(),
+            Function::Exp => self.exp(),
+            Function::Ln => self.ln(),
+        }
+    }
+    fn pi() -> f64 {
+        std::f64::consts::PI
+    }
+}
+
+/// A matrix of numbers, row by row.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Matrix<K> {
+    /// Rows and columns.
+    pub shape: Shape,
+    /// The entries, row by row.
+    pub entries: Vec<K>,
+}
+
+impl<K: Number> Matrix<K> {
+    /// The matrix with these entries, row by row.
+    pub fn new(shape: Shape, entries: Vec<K>) -> Matrix<K> {
+        assert_eq!(shape.len(), entries.len(), "one number for each entry");
+        Matrix { shape, entries }
+    }
+
+    /// The matrix whose entries a function gives.
+    pub fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> K) -> Matrix<K> {
+        Matrix::new(shape, shape.positions().map(entry).collect())
+    }
+
+    /// `scale` times the identity.
+    pub fn scaled_identity(n: usize, scale: K) -> Matrix<K> {
+        Matrix::from_fn(Shape::square(n), |(i, j)| if i == j { scale } else { zero() })
+    }
+
+    /// The entry in row i and column j.
+    pub fn at(&self, i: usize, j: usize) -> K {
+        self.entries[i * self.shape.columns + j]
+    }
+
+    fn add(&self, other: &Matrix<K>) -> Matrix<K> {
+        Matrix::new(self.shape, self.entries.iter().zip(&other.entries).map(|(a, b)| a.add(*b)).collect())
+    }
+
+    fn scale(&self, factor: K) -> Matrix<K> {
+        Matrix::new(self.shape, self.entries.iter().map(|entry| entry.multiply(factor)).collect())
+    }
+
+    /// The matrix product; a 1×1 factor scales.
+    pub fn multiply(&self, other: &Matrix<K>) -> Matrix<K> {
+        if self.shape.is_scalar() {
+            return other.scale(self.entries[0]);
+        }
+        if other.shape.is_scalar() {
+            return self.scale(other.entries[0]);
+        }
+        let product = |(i, j)| (0..self.shape.columns).fold(zero(), |sum: K, k| sum.add(self.at(i, k).multiply(other.at(k, j))));
+        Matrix::from_fn(Shape::new(self.shape.rows, other.shape.columns), product)
+    }
+
+    /// The transpose.
+    pub fn transpose(&self) -> Matrix<K> {
+        Matrix::from_fn(self.shape.transposed(), |(i, j)| self.at(j, i))
+    }
+
+    fn trace(&self) -> K {
+        (0..self.shape.rows).fold(zero(), |sum: K, i| sum.add(self.at(i, i)))
+    }
+
+    /// The inverse and the determinant, by elimination; the inverse of a singular matrix is made of reciprocals of zero.
+    pub fn inverse(&self) -> (Matrix<K>, K) {
+        let n = self.shape.rows;
+        let (mut left, mut right) = (self.clone(), Matrix::scaled_identity(n, one::<K>()));
+        let mut determinant: K = one();
+        for column in 0..n {
+            let pivot = (column..n).find(|&row| left.at(row, column) != zero()).unwrap_or(column);
+            if pivot != column {
+                determinant = negative(determinant);
+                for k in 0..n {
+                    left.entries.swap(column * n + k, pivot * n + k);
+                    right.entries.swap(column * n + k, pivot * n + k);
+                }
+            }
+            determinant = determinant.multiply(left.at(column, column));
+            let reciprocal = left.at(column, column).reciprocal();
+            for k in 0..n {
+                left.entries[column * n + k] = left.at(column, k).multiply(reciprocal);
+                right.entries[column * n + k] = right.at(column, k).multiply(reciprocal);
+            }
+            for row in (0..n).filter(|&row| row != column) {
+                let factor = negative(left.at(row, column));
+                for k in 0..n {
+                    left.entries[row * n + k] = left.at(row, k).add(left.at(column, k).multiply(factor));
+                    right.entries[row * n + k] = right.at(row, k).add(right.at(column, k).multiply(factor));
+                }
+            }
+        }
+        (right, determinant)
+    }
+}
+
+pub(crate) fn zero<K: Number>() -> K {
+    K::from_rational(&crate::integer(0))
+}
+
+pub(crate) fn one<K: Number>() -> K {
+    K::from_rational(&crate::integer(1))
+}
+
+pub(crate) fn negative<K: Number>(value: K) -> K {
+    value.multiply(K::from_rational(&crate::integer(-1)))
+}
+
+impl<'g> Expr<'g> {
+    /// The value where each symbol has the value that `values` gives it.
+    pub fn evaluate<K: Number>(self, values: &mut impl FnMut(Expr<'g>) -> Matrix<K>) -> Matrix<K> {
+        let mut known: HashMap<Id, Matrix<K>> = HashMap::new();
+        for id in self.reachable() {
+            let expr = self.graph.expr(id);
+            let value = match &*expr.node() {
+                Node::Symbol(_) => values(expr),
+                _ => expr.evaluate_node(&known),
+            };
+            known.insert(id, value);
+        }
+        // by construction: an expression is reachable from itself
+        known.remove(&self.id).expect("the value of the root")
+    }
+
+    fn evaluate_node<K: Number>(self, known: &HashMap<Id, Matrix<K>>) -> Matrix<K> {
+        let shape = self.shape();
+        let scalar = |value: K| Matrix::new(Shape::scalar(), vec![value]);
+        let product = |word: &[Id]| word.iter().map(|id| known[id].clone()).reduce(|a, b| a.multiply(&b));
+        match &*self.node() {
+            Node::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
+            Node::Pi => scalar(K::pi()),
+            Node::Literal(entries) => Matrix::new(shape, entries.iter().map(K::from_rational).collect()),
+            Node::Sum(terms) => terms.iter().fold(Matrix::from_fn(shape, |_| zero()), |sum, term| {
+                let powers = term.scalars.iter().map(|(base, exponent)| power(known[base].entries[0], *exponent));
+                let scale = powers.fold(K::from_rational(&term.coefficient), K::multiply);
+                let word = product(&term.word).unwrap_or_else(|| Matrix::scaled_identity(shape.rows, one()));
+                sum.add(&word.scale(scale))
+            }),
+            Node::Stack(entries) => Matrix::new(shape, entries.iter().map(|entry| known[entry].entries[0]).collect()),
+            Node::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
+            Node::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
+            Node::Transpose(a) => known[a].transpose(),
+            Node::Inverse(a) => known[a].inverse().0,
+            Node::Determinant(a) => scalar(known[a].inverse().1),
+            Node::Function(function, a) => scalar(known[a].entries[0].function(*function)),
+            Node::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
+            Node::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
+                let inner = &known[a];
+                let inside = i >= *row && j >= *column && i < row + inner.shape.rows && j < column + inner.shape.columns;
+                if inside { inner.at(i - row, j - column) } else { zero() }
+            }),
+            Node::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
+            Node::DiagonalMatrix(a) => Matrix::from_fn(shape, |(i, j)| if i == j { known[a].at(i, 0) } else { zero() }),
+            Node::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
+            Node::Wedge(algebra, a) => {
+                let mut matrix = Matrix::from_fn(shape, |_| zero::<K>());
+                for (k, entries) in algebra.sparse_basis().into_iter().enumerate() {
+                    for (i, j, value) in entries {
+                        let entry = known[a].at(k, 0).multiply(K::from_rational(&crate::integer(value)));
+                        matrix.entries[i * shape.columns + j] = matrix.at(i, j).add(entry);
+                    }
+                }
+                matrix
+            }
+            Node::Components(algebra, a) => {
+                let component = |entries: Vec<(usize, usize, i64)>| {
+                    let products = entries.into_iter().map(|(i, j, value)| known[a].at(i, j).multiply(K::from_rational(&crate::integer(value))));
+                    products.fold(zero(), K::add)
+                };
+                Matrix::new(shape, algebra.sparse_basis().into_iter().map(component).collect())
+            }
+        }
+    }
+}
+
+/// base^exponent: the integer part by multiplication, the fraction by the field's own root.
+fn power<K: Number>(base: K, exponent: Exponent) -> K {
+    let whole = exponent.floor().to_integer();
+    let fraction = exponent - exponent.floor();
+    let factor = if whole < 0 { base.reciprocal() } else { base };
+    let mut result = (0..whole.unsigned_abs()).fold(one(), |product: K, _| product.multiply(factor));
+    if fraction != Exponent::from_integer(0) {
+        result = result.multiply(base.fractional_power((*fraction.numer(), *fraction.denom())));
+    }
+    result
+}
+
+impl Graph {
+    /// A symbol-free expression as a floating-point matrix.
+    pub fn constant_value(&self, expr: Expr<'_>) -> Matrix<f64> {
+        expr.evaluate(&mut |symbol| Matrix::from_fn(symbol.shape(), |_| f64::NAN))
+    }
+}
+

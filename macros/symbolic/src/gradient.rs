@@ -1,0 +1,180 @@
+//! Derivatives: gradients by reverse accumulation, directional derivatives by the product rule.
+
+use std::collections::HashMap;
+
+use num_traits::One;
+
+use crate::node::{Exponent, Function, Id, Node, Term};
+use crate::{Expr, Rational, Shape};
+
+impl<'g> Expr<'g> {
+    /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
+    pub fn gradient(self, symbol: Expr<'g>) -> Expr<'g> {
+        assert!(self.shape().is_scalar(), "the gradient of `{self}`, which is not a scalar");
+        let mut adjoints: HashMap<Id, Expr<'g>> = HashMap::from([(self.id, self.graph.integer(1))]);
+        for id in self.reachable().into_iter().rev() {
+            if id != symbol.id
+                && let Some(adjoint) = adjoints.remove(&id)
+            {
+                self.graph.expr(id).pull_back(adjoint, &mut |child, contribution| {
+                    let entry = adjoints.entry(child).or_insert_with(|| contribution.graph.zero(contribution.shape()));
+                    *entry = *entry + contribution;
+                });
+            }
+        }
+        adjoints.get(&symbol.id).copied().unwrap_or_else(|| self.graph.zero(symbol.shape()))
+    }
+
+    /// Hands the adjoint of this node on to its children: `add(child, Ā)` with ⟨Ā_node, d node⟩ = Σ ⟨Ā, d child⟩.
+    fn pull_back(self, adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
+        let graph = self.graph;
+        let expr = |id: &Id| graph.expr(*id);
+        match &*self.node() {
+            Node::Symbol(_) | Node::Pi | Node::Literal(_) => {}
+            Node::Sum(terms) => terms.iter().for_each(|term| self.pull_back_term(term, adjoint, add)),
+            Node::Word(word) => self.pull_back_word(word, adjoint, add),
+            Node::Trace(word) => {
+                let n = graph.shape(word[0]).rows;
+                self.pull_back_word(word, adjoint * graph.identity(n), add);
+            }
+            Node::Stack(entries) => {
+                for ((i, j), entry) in self.shape().positions().zip(entries) {
+                    add(*entry, adjoint.entry(i, j));
+                }
+            }
+            Node::Transpose(a) => add(*a, adjoint.transpose()),
+            Node::Inverse(a) => add(*a, -(self.transpose() * adjoint * self.transpose())),
+            Node::Determinant(a) => add(*a, adjoint * self * expr(a).inverse().transpose()),
+            Node::Function(function, a) => add(*a, adjoint * function.derivative(expr(a), self)),
+            Node::Block(a, row, column) => add(*a, adjoint.embed(graph.shape(*a), *row, *column)),
+            Node::Embed(a, row, column) => add(*a, adjoint.block(*row, *column, graph.shape(*a))),
+            Node::Hadamard(a, b) => {
+                add(*a, adjoint.hadamard(expr(b)));
+                add(*b, adjoint.hadamard(expr(a)));
+            }
+            Node::DiagonalMatrix(a) => add(*a, adjoint.diagonal()),
+            Node::Diagonal(a) => add(*a, adjoint.diagonal_matrix()),
+            Node::Wedge(algebra, a) => add(*a, adjoint.components(*algebra)),
+            Node::Components(algebra, a) => add(*a, adjoint.wedge(*algebra)),
+        }
+    }
+
+    fn pull_back_term(self, term: &Term, adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
+        let graph = self.graph;
+        let scalars_only = Term { word: Vec::new(), ..term.clone() };
+        let scale = graph.collect(Shape::scalar(), [scalars_only]);
+        if !term.word.is_empty() {
+            self.pull_back_word(&term.word, scale * adjoint, add);
+        }
+        for (base, exponent) in &term.scalars {
+            let mut rest = Term { word: term.word.clone(), ..term.clone() };
+            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
+            rest.multiply_scalars(&[(*base, -Exponent::one())]);
+            let rest = graph.collect(self.shape(), [rest]);
+            add(*base, adjoint.dot_any(rest));
+        }
+    }
+
+    fn pull_back_word(self, word: &[Id], adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
+        let graph = self.graph;
+        let transposed: Vec<Expr<'g>> = word.iter().map(|&letter| graph.expr(letter).transpose()).collect();
+        for position in 0..word.len() {
+            let left = transposed[..position].iter().fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| t * p)));
+            let right = transposed[position + 1..].iter().rev().fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| p * t)));
+            let with_left = left.map_or(adjoint, |l| l * adjoint);
+            add(word[position], right.map_or(with_left, |r| with_left * r));
+        }
+    }
+
+    /// ⟨A, B⟩ for any shape.
+    fn dot_any(self, other: Expr<'g>) -> Expr<'g> {
+        if self.shape().is_scalar() { self * other } else { self.dot(other) }
+    }
+
+    /// The derivative in the direction in which the symbols move: d/dε of the expression at x + ε dx.
+    pub fn differential(self, directions: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+        let mut tangents: HashMap<Id, Expr<'g>> = HashMap::new();
+        for id in self.reachable() {
+            let tangent = match directions.iter().find(|(symbol, _)| symbol.id == id) {
+                Some((_, direction)) => *direction,
+                None => self.graph.expr(id).push_forward(&tangents),
+            };
+            tangents.insert(id, tangent);
+        }
+        tangents[&self.id]
+    }
+
+    fn push_forward(self, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+        let graph = self.graph;
+        let expr = |id: &Id| graph.expr(*id);
+        let zero = graph.zero(self.shape());
+        if self.node().children().iter().all(|child| tangents[child].is_zero()) {
+            return zero;
+        }
+        match &*self.node() {
+            Node::Symbol(_) | Node::Pi | Node::Literal(_) => zero,
+            Node::Sum(terms) => terms.iter().fold(zero, |sum, term| sum + self.push_forward_term(term, tangents)),
+            Node::Word(word) => self.push_forward_word(word, tangents),
+            Node::Trace(word) => self.push_forward_word(word, tangents).trace(),
+            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(|entry| tangents[entry]).collect()),
+            Node::Transpose(a) => tangents[a].transpose(),
+            Node::Inverse(a) => -(self * tangents[a] * self),
+            Node::Determinant(a) => self * (expr(a).inverse() * tangents[a]).trace(),
+            Node::Function(function, a) => function.derivative(expr(a), self) * tangents[a],
+            Node::Block(a, row, column) => tangents[a].block(*row, *column, self.shape()),
+            Node::Embed(a, row, column) => tangents[a].embed(self.shape(), *row, *column),
+            Node::Hadamard(a, b) => tangents[a].hadamard(expr(b)) + expr(a).hadamard(tangents[b]),
+            Node::DiagonalMatrix(a) => tangents[a].diagonal_matrix(),
+            Node::Diagonal(a) => tangents[a].diagonal(),
+            Node::Wedge(algebra, a) => tangents[a].wedge(*algebra),
+            Node::Components(algebra, a) => tangents[a].components(*algebra),
+        }
+    }
+
+    fn push_forward_term(self, term: &Term, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+        let graph = self.graph;
+        let mut sum = graph.zero(self.shape());
+        for (base, exponent) in &term.scalars {
+            let mut rest = term.clone();
+            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
+            rest.multiply_scalars(&[(*base, -Exponent::one())]);
+            sum = sum + tangents[base] * graph.collect(self.shape(), [rest]);
+        }
+        if !term.word.is_empty() {
+            let scale = graph.collect(Shape::scalar(), [Term { word: Vec::new(), ..term.clone() }]);
+            sum = sum + scale * self.push_forward_word(&term.word, tangents);
+        }
+        sum
+    }
+
+    fn push_forward_word(self, word: &[Id], tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+        let graph = self.graph;
+        let moved = |position: usize| {
+            let letters = word.iter().enumerate().map(|(k, letter)| if k == position { tangents[letter] } else { graph.expr(*letter) });
+            letters.reduce(|a, b| a * b)
+        };
+        // by construction: a word has at least one letter
+        (0..word.len()).filter_map(moved).reduce(|a, b| a + b).expect("a word has letters")
+    }
+}
+
+impl Function {
+    /// f′(x), given x and f(x).
+    fn derivative<'g>(self, x: Expr<'g>, value: Expr<'g>) -> Expr<'g> {
+        let one = x.graph.integer(1);
+        match self {
+            Function::Sin => x.function(Function::Cos),
+            Function::Cos => -x.function(Function::Sin),
+            Function::Tan => one + value * value,
+            Function::Asin => (one - x * x).sqrt().powi(-1),
+            Function::Acos => -(one - x * x).sqrt().powi(-1),
+            Function::Atan => (one + x * x).powi(-1),
+            Function::Sinh => x.function(Function::Cosh),
+            Function::Cosh => x.function(Function::Sinh),
+            Function::Tanh => one - value * value,
+            Function::Exp => value,
+            Function::Ln => x.powi(-1),
+        }
+    }
+}
+

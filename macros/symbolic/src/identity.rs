@@ -1,0 +1,191 @@
+//! Deciding identities: evaluation at random points of a prime field.
+//!
+//! Two rational expressions that agree at random points of a field with 2⁶¹ − 1 elements are equal but for a probability below
+//! degree/2⁶¹ (Schwartz and Zippel). Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
+//! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
+//! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
+
+use std::collections::HashMap;
+
+use num_bigint::BigInt;
+use num_traits::ToPrimitive;
+
+use crate::evaluate::{Matrix, Number, negative, one, zero};
+use crate::node::Function;
+use crate::{Expr, Property, Rational, Shape};
+
+const PRIME: u64 = (1 << 61) - 1;
+const POINTS: u64 = 3;
+
+/// An element of the field of integers modulo the prime 2⁶¹ − 1.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Residue(u64);
+
+impl Residue {
+    fn new(value: u128) -> Residue {
+        Residue((value % PRIME as u128) as u64)
+    }
+
+    /// A number that depends on all bits of the seeds and on nothing else.
+    fn mixed(seeds: &[u64]) -> Residue {
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        for seed in seeds {
+            state = (state ^ seed).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            state = (state ^ (state >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            state ^= state >> 32;
+        }
+        Residue::new(state as u128)
+    }
+}
+
+impl Number for Residue {
+    fn from_rational(value: &Rational) -> Residue {
+        let reduce = |part: &BigInt| {
+            let prime = BigInt::from(PRIME);
+            let residue: BigInt = ((part % &prime) + &prime) % &prime;
+            Residue(residue.to_u64().unwrap_or(0))
+        };
+        reduce(value.numer()).multiply(reduce(value.denom()).reciprocal())
+    }
+    fn add(self, other: Residue) -> Residue {
+        Residue::new(self.0 as u128 + other.0 as u128)
+    }
+    fn multiply(self, other: Residue) -> Residue {
+        Residue::new(self.0 as u128 * other.0 as u128)
+    }
+    fn reciprocal(self) -> Residue {
+        let (mut power, mut base, mut exponent) = (Residue(1), self, PRIME - 2);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                power = power.multiply(base);
+            }
+            base = base.multiply(base);
+            exponent >>= 1;
+        }
+        power
+    }
+    fn fractional_power(self, (numerator, denominator): (i64, i64)) -> Residue {
+        match self.0 {
+            0 | 1 => self,
+            value => Residue::mixed(&[1, value, numerator as u64, denominator as u64]),
+        }
+    }
+    fn function(self, function: Function) -> Residue {
+        Residue::mixed(&[2, self.0, function as u64])
+    }
+    fn pi() -> Residue {
+        Residue::mixed(&[3])
+    }
+}
+
+/// A random point: each symbol has a value that its property allows.
+pub struct Point<'g> {
+    seed: u64,
+    known: HashMap<Expr<'g>, Matrix<Residue>>,
+}
+
+impl<'g> Point<'g> {
+    /// The point number `seed`.
+    pub fn new(seed: u64) -> Point<'g> {
+        Point { seed, known: HashMap::new() }
+    }
+
+    /// Sets the value of one symbol.
+    pub fn set(&mut self, symbol: Expr<'g>, value: Matrix<Residue>) {
+        self.known.insert(symbol, value);
+    }
+
+    /// The value of an expression here.
+    pub fn evaluate(&mut self, expr: Expr<'g>) -> Matrix<Residue> {
+        expr.evaluate(&mut |symbol| self.value(symbol))
+    }
+
+    fn value(&mut self, symbol: Expr<'g>) -> Matrix<Residue> {
+        if !self.known.contains_key(&symbol) {
+            let value = self.sample(symbol);
+            self.known.insert(symbol, value);
+        }
+        self.known[&symbol].clone()
+    }
+
+    fn sample(&self, symbol: Expr<'g>) -> Matrix<Residue> {
+        let shape = symbol.shape();
+        let random = |i: usize, j: usize| Residue::mixed(&[4, self.seed, symbol.id.0 as u64, i as u64, j as u64]);
+        // by construction: only symbols are sampled
+        match symbol.as_symbol().map_or(Property::General, |data| data.property) {
+            Property::General => Matrix::from_fn(shape, |(i, j)| random(i, j)),
+            Property::Symmetric => Matrix::from_fn(shape, |(i, j)| random(i.min(j), i.max(j))),
+            Property::Diagonal => Matrix::from_fn(shape, |(i, j)| if i == j { random(i, i) } else { zero() }),
+            Property::Skew => Matrix::from_fn(shape, |position| skew(position, random)),
+            Property::Orthogonal => cayley(shape.rows, random),
+            Property::Unit => stereographic(shape, random),
+        }
+    }
+}
+
+fn skew((i, j): (usize, usize), random: impl Fn(usize, usize) -> Residue) -> Residue {
+    match i.cmp(&j) {
+        std::cmp::Ordering::Less => random(i, j),
+        std::cmp::Ordering::Equal => zero(),
+        std::cmp::Ordering::Greater => negative(random(j, i)),
+    }
+}
+
+/// (I − Z)⁻¹(I + Z) of a skew matrix Z.
+fn cayley(n: usize, random: impl Fn(usize, usize) -> Residue) -> Matrix<Residue> {
+    let unit = |i, j| if i == j { one() } else { zero::<Residue>() };
+    let shifted = |sign: i64| {
+        let sign = Residue::from_rational(&crate::integer(sign));
+        Matrix::from_fn(Shape::square(n), |(i, j)| unit(i, j).add(sign.multiply(skew((i, j), &random))))
+    };
+    shifted(-1).inverse().0.multiply(&shifted(1))
+}
+
+/// (2u, |u|² − 1)/(|u|² + 1).
+fn stereographic(shape: Shape, random: impl Fn(usize, usize) -> Residue) -> Matrix<Residue> {
+    let last = shape.len() - 1;
+    let square = (0..last).fold(zero(), |sum: Residue, i| sum.add(random(i, 0).multiply(random(i, 0))));
+    let scale = square.add(one()).reciprocal();
+    let numerator = |k: usize| match k == last {
+        true => square.add(negative(one())),
+        false => random(k, 0).add(random(k, 0)),
+    };
+    Matrix::new(shape, (0..=last).map(|k| numerator(k).multiply(scale)).collect())
+}
+
+/// Whether the expressions are equal, pair by pair, for all values of their symbols that the properties allow.
+pub fn equal<'g>(left: &[Expr<'g>], right: &[Expr<'g>]) -> bool {
+    let differs = |point: &mut Point<'g>, a: Expr<'g>, b: Expr<'g>| a != b && point.evaluate(a) != point.evaluate(b);
+    let agrees = |seed| {
+        let mut point = Point::new(seed);
+        !left.iter().zip(right).any(|(&a, &b)| differs(&mut point, a, b))
+    };
+    left.len() == right.len() && (0..POINTS).all(agrees)
+}
+
+/// Whether the expression is zero for all values of its symbols that the properties allow.
+pub fn vanishes(expr: Expr<'_>) -> bool {
+    equal(&[expr], &[expr.graph.zero(expr.shape())])
+}
+
+/// The rank of a matrix for general values of its symbols.
+pub fn rank(expr: Expr<'_>) -> usize {
+    let mut matrix = Point::new(0).evaluate(expr);
+    let Shape { rows, columns } = matrix.shape;
+    let mut rank = 0;
+    for column in 0..columns {
+        let Some(pivot) = (rank..rows).find(|&row| matrix.at(row, column) != zero()) else { continue };
+        for k in 0..columns {
+            matrix.entries.swap(pivot * columns + k, rank * columns + k);
+        }
+        let reciprocal = matrix.at(rank, column).reciprocal();
+        for row in rank + 1..rows {
+            let factor = negative(matrix.at(row, column).multiply(reciprocal));
+            for k in 0..columns {
+                matrix.entries[row * columns + k] = matrix.at(row, k).add(matrix.at(rank, k).multiply(factor));
+            }
+        }
+        rank += 1;
+    }
+    rank
+}

@@ -1,0 +1,39 @@
+//! Matrix expressions and their calculus: the mathematics of the compiler of `clebsch`, free of tokens and spans.
+//!
+//! | symbol | role | meaning |
+//! |---|---|---|
+//! | F | [`Role::Element`] | group element that a step finds |
+//! | q | [`Role::Configuration`] | configuration, q⁺ = Φ_F(q) |
+//! | p | [`Role::Covector`] | covector at q, paired by ⟨A, B⟩ = tr(AᵀB) |
+//! | ξ | [`Role::Algebra`] | element of the Lie algebra in the basis E_1 … E_m |
+//! | μ | [`Role::Momentum`] | momentum, components μ_i = ⟨M, E_i⟩ |
+//! | x | [`Role::Chart`] | coordinates of F in a [`Chart`] |
+//! | h | [`Role::StepSize`] | step |
+//!
+//! x^ y = x × y. Left actions have Φ_gh = Φ_g Φ_h, right actions Φ_gh = Φ_h Φ_g. T*L_F pairs with F·η, T*R_F with η·F.
+
+mod algebra;
+mod construct;
+mod evaluate;
+mod expr;
+mod gradient;
+mod graph;
+mod group;
+pub mod identity;
+mod node;
+mod print;
+mod rational;
+mod rebuild;
+mod shape;
+mod symbol;
+mod terms;
+
+pub use algebra::Algebra;
+pub use evaluate::{Matrix, Number};
+pub use expr::Expr;
+pub use graph::Graph;
+pub use group::{Chart, Group};
+pub use node::Function;
+pub use rational::{Rational, integer, rational};
+pub use shape::Shape;
+pub use symbol::{Property, Role, Symbol};

@@ -1,0 +1,96 @@
+//! The nodes of the expression graph.
+//!
+//! Every expression is a *sum of terms*; a term is a rational coefficient times commuting scalar powers times a word of
+//! matrix letters. Whatever is not a sum is an atom: a letter of a word when it is a matrix, a scalar factor when it is 1×1.
+
+use num_rational::Ratio;
+
+use crate::{Algebra, Rational};
+
+/// The identity of a node in its graph.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub(crate) struct Id(pub(crate) u32);
+
+/// The index of a symbol in its graph.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub(crate) struct SymbolId(pub(crate) u32);
+
+/// The exponent of a scalar factor.
+pub(crate) type Exponent = Ratio<i64>;
+
+/// A coefficient times scalar powers times a word; the empty word is the identity (the number one, if scalar).
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(crate) struct Term {
+    pub(crate) coefficient: Rational,
+    /// Sorted by identity, exponents not zero.
+    pub(crate) scalars: Vec<(Id, Exponent)>,
+    pub(crate) word: Vec<Id>,
+}
+
+/// An elementary function of one scalar.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+#[allow(missing_docs)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+}
+
+/// An expression without its shape, which the graph keeps beside it.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Node {
+    Symbol(SymbolId),
+    Pi,
+    Sum(Vec<Term>),
+    Literal(Vec<Rational>),
+    Stack(Vec<Id>),
+    /// A product of at least two letters that is 1×1.
+    Word(Vec<Id>),
+    /// The trace of a product of letters.
+    Trace(Vec<Id>),
+    Transpose(Id),
+    Inverse(Id),
+    Determinant(Id),
+    Function(Function, Id),
+    /// The block that starts at (row, column).
+    Block(Id, usize, usize),
+    /// A matrix placed at (row, column) of a zero matrix.
+    Embed(Id, usize, usize),
+    Hadamard(Id, Id),
+    DiagonalMatrix(Id),
+    Diagonal(Id),
+    /// Σ v_i E_i.
+    Wedge(Algebra, Id),
+    /// The vector of ⟨A, E_i⟩.
+    Components(Algebra, Id),
+}
+
+impl Function {
+    /// All functions with their names in Rust.
+    pub const ALL: [(&'static str, Function); 11] = [
+        ("sin", Function::Sin),
+        ("cos", Function::Cos),
+        ("tan", Function::Tan),
+        ("asin", Function::Asin),
+        ("acos", Function::Acos),
+        ("atan", Function::Atan),
+        ("sinh", Function::Sinh),
+        ("cosh", Function::Cosh),
+        ("tanh", Function::Tanh),
+        ("exp", Function::Exp),
+        ("ln", Function::Ln),
+    ];
+
+    /// The name in Rust, `sin`.
+    pub fn name(self) -> &'static str {
+        Function::ALL[self as usize].0
+    }
+}

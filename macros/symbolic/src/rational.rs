@@ -1,0 +1,15 @@
+//! Exact rational numbers: the coefficients of every expression.
+
+pub use num_rational::BigRational as Rational;
+
+use num_bigint::BigInt;
+
+/// The rational `numerator / denominator`; the denominator is not zero.
+pub fn rational(numerator: i64, denominator: i64) -> Rational {
+    Rational::new(BigInt::from(numerator), BigInt::from(denominator))
+}
+
+/// The rational that equals an integer.
+pub fn integer(value: i64) -> Rational {
+    Rational::from_integer(BigInt::from(value))
+}

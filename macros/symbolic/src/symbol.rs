@@ -1,0 +1,64 @@
+//! Symbols: named unknowns with a shape, a role and a promise about their values.
+
+use crate::Shape;
+
+/// What a symbol stands for. The role decides how often its value changes and how generated code spells it.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Role {
+    /// The step h.
+    StepSize,
+    /// The time t.
+    Time,
+    /// A parameter of the system, by its leaf index.
+    Parameter(usize),
+    /// A constant of the user's crate, by its index.
+    Constant(usize),
+    /// A leaf of the configuration q.
+    Configuration(usize),
+    /// A leaf of the covector p.
+    Covector(usize),
+    /// A factor of the group element F.
+    Element(usize),
+    /// A factor of the increment F − I that a step has found.
+    Increment(usize),
+    /// The coordinates of an algebra element ξ of a factor.
+    Algebra(usize),
+    /// The momentum μ of a factor.
+    Momentum(usize),
+    /// The representing matrix of the momentum of a factor.
+    MomentumMatrix(usize),
+    /// The chart coordinates of a factor's group element.
+    Chart(usize),
+    /// Any other symbol, by an index of the user's.
+    Auxiliary(usize),
+}
+
+/// What is promised about the values of a symbol.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Property {
+    /// Nothing.
+    General,
+    /// Aᵀ = A.
+    Symmetric,
+    /// Aᵀ = −A.
+    Skew,
+    /// Zero off the diagonal.
+    Diagonal,
+    /// AᵀA = I and det A = 1.
+    Orthogonal,
+    /// |v| = 1.
+    Unit,
+}
+
+/// A symbol as it was declared.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Symbol {
+    /// The name, as the user spells it.
+    pub name: String,
+    /// The shape of the value.
+    pub shape: Shape,
+    /// What it stands for.
+    pub role: Role,
+    /// What is promised about its values.
+    pub property: Property,
+}

@@ -1,0 +1,281 @@
+//! The algebra of terms: sums collect like terms, products merge scalar powers and reduce words of letters.
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, ToPrimitive, Zero};
+
+use crate::node::{Exponent, Id, Node, Term};
+use crate::{Expr, Graph, Property, Rational, Shape, integer};
+
+impl Term {
+    pub(crate) fn number(coefficient: Rational) -> Term {
+        Term { coefficient, scalars: Vec::new(), word: Vec::new() }
+    }
+
+    /// Multiplies by scalar powers, keeping them sorted and without zero exponents.
+    pub(crate) fn multiply_scalars(&mut self, scalars: &[(Id, Exponent)]) {
+        for &(base, exponent) in scalars {
+            match self.scalars.binary_search_by_key(&base, |&(id, _)| id) {
+                Err(position) => self.scalars.insert(position, (base, exponent)),
+                Ok(position) => {
+                    self.scalars[position].1 += exponent;
+                    if self.scalars[position].1.is_zero() {
+                        self.scalars.remove(position);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Graph {
+    /// The sum of terms of one shape, like terms collected; a single plain letter is that letter.
+    pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
+        let mut collected: BTreeMap<(Vec<(Id, Exponent)>, Vec<Id>), Rational> = BTreeMap::new();
+        for term in terms {
+            *collected.entry((term.scalars, term.word)).or_insert_with(Rational::zero) += term.coefficient;
+        }
+        let terms: Vec<Term> = collected
+            .into_iter()
+            .filter(|(_, coefficient)| !coefficient.is_zero())
+            .map(|((scalars, word), coefficient)| Term { coefficient, scalars, word })
+            .collect();
+        if let [Term { coefficient, scalars, word }] = terms.as_slice()
+            && coefficient.is_one()
+        {
+            match (scalars.as_slice(), word.as_slice()) {
+                ([], [letter]) => return self.expr(*letter),
+                ([(base, exponent)], []) if exponent.is_one() && shape.is_scalar() => return self.expr(*base),
+                _ => {}
+            }
+        }
+        self.intern(Node::Sum(terms), shape)
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The terms whose sum this is; an atom is one term.
+    pub(crate) fn terms(self) -> Vec<Term> {
+        match &*self.node() {
+            Node::Sum(terms) => terms.clone(),
+            _ => vec![self.atom()],
+        }
+    }
+
+    /// This expression as a single factor.
+    fn atom(self) -> Term {
+        let mut term = Term::number(Rational::one());
+        match self.shape().is_scalar() {
+            true => term.scalars.push((self.id, Exponent::one())),
+            false => term.word.push(self.id),
+        }
+        term
+    }
+
+    /// A single term: the only one of the sum, or the whole expression as a factor.
+    pub(crate) fn factor(self) -> Term {
+        match &*self.node() {
+            Node::Sum(terms) if terms.len() == 1 => terms[0].clone(),
+            _ => self.atom(),
+        }
+    }
+
+    /// self + coefficient · other.
+    pub(crate) fn sum(self, other: Expr<'g>, coefficient: Rational) -> Expr<'g> {
+        assert_eq!(self.shape(), other.shape(), "a sum of `{self}` and `{other}`");
+        let scaled = other.terms().into_iter().map(|mut term| {
+            term.coefficient *= &coefficient;
+            term
+        });
+        self.graph.collect(self.shape(), self.terms().into_iter().chain(scaled))
+    }
+
+    /// coefficient · self, distributed over a sum.
+    pub(crate) fn times(self, coefficient: &Rational) -> Expr<'g> {
+        let terms = self.terms().into_iter().map(|mut term| {
+            term.coefficient *= coefficient;
+            term
+        });
+        self.graph.collect(self.shape(), terms)
+    }
+
+    /// The product of matrices, or of a scalar and anything.
+    pub(crate) fn product(self, other: Expr<'g>) -> Expr<'g> {
+        let (left, right) = (self.shape(), other.shape());
+        let scalar = left.is_scalar() || right.is_scalar();
+        assert!(scalar || left.columns == right.rows, "a product of `{self}` and `{other}`");
+        let shape = match (left.is_scalar(), right.is_scalar()) {
+            (true, _) => right,
+            (_, true) => left,
+            _ => Shape::new(left.rows, right.columns),
+        };
+        if self.is_zero() || other.is_zero() {
+            return self.graph.zero(shape);
+        }
+        if let Some(number) = self.as_number() {
+            return other.times(&number);
+        }
+        if let Some(number) = other.as_number() {
+            return self.times(&number);
+        }
+        self.graph.multiply(&self.factor(), &other.factor(), shape)
+    }
+}
+
+impl Graph {
+    /// The product of two terms as an expression of the given shape.
+    pub(crate) fn multiply(&self, left: &Term, right: &Term, shape: Shape) -> Expr<'_> {
+        let mut term = left.clone();
+        term.coefficient *= &right.coefficient;
+        term.multiply_scalars(&right.scalars);
+        let letters: Vec<Id> = std::mem::take(&mut term.word).into_iter().chain(right.word.iter().copied()).collect();
+        self.with_word(term, letters, shape)
+    }
+
+    /// `term · word`, the word reduced.
+    pub(crate) fn with_word(&self, mut term: Term, letters: Vec<Id>, shape: Shape) -> Expr<'_> {
+        let mut word = Vec::new();
+        for letter in letters {
+            self.push_letter(&mut term, &mut word, letter);
+        }
+        if word.iter().any(|&letter| self.expr(letter).is_zero()) || term.coefficient.is_zero() {
+            return self.zero(shape);
+        }
+        let segments = self.split_at_scalars(word);
+        let scalar = shape.is_scalar();
+        let last = segments.len().saturating_sub(1);
+        for (position, segment) in segments.into_iter().enumerate() {
+            let inner = !segment.is_empty() && (scalar || (position > 0 && position < last));
+            match inner {
+                true => self.multiply_scalar(&mut term, self.scalar_word(segment)),
+                false => term.word.extend(segment),
+            }
+        }
+        let single = term.word.len() == 1 && term.scalars.is_empty();
+        if single && let Node::Sum(terms) = &*self.node(term.word[0]) {
+            let scaled = terms.iter().map(|inner| Term { coefficient: &inner.coefficient * &term.coefficient, ..inner.clone() });
+            return self.collect(shape, scaled);
+        }
+        self.collect(shape, [term])
+    }
+
+    /// Multiplies a term by a scalar expression.
+    pub(crate) fn multiply_scalar(&self, term: &mut Term, scalar: Expr<'_>) {
+        let factor = scalar.factor();
+        term.coefficient *= factor.coefficient;
+        match scalar.is_zero() {
+            true => term.coefficient = Rational::zero(),
+            false => term.multiply_scalars(&factor.scalars),
+        }
+    }
+
+    /// Appends a letter: a letter that is a single term is merged, neighbours that cancel are dropped, literals are multiplied.
+    fn push_letter(&self, term: &mut Term, word: &mut Vec<Id>, letter: Id) {
+        if let Node::Sum(terms) = &*self.node(letter)
+            && let [inner] = terms.as_slice()
+        {
+            term.coefficient *= &inner.coefficient;
+            term.multiply_scalars(&inner.scalars);
+            inner.word.iter().for_each(|&letter| self.push_letter(term, word, letter));
+            return;
+        }
+        match word.last().and_then(|&last| self.merge(last, letter)) {
+            None => word.push(letter),
+            Some(merged) => {
+                word.pop();
+                self.push_letter(term, word, merged.id);
+            }
+        }
+    }
+
+    /// The product of two neighbouring letters, where it is simpler than the pair.
+    fn merge(&self, left: Id, right: Id) -> Option<Expr<'_>> {
+        let inverse = |a: Id, b: Id| match &*self.node(a) {
+            Node::Transpose(inner) => *inner == b && self.has_property(b, Property::Orthogonal),
+            Node::Inverse(inner) => *inner == b,
+            _ => false,
+        };
+        if inverse(left, right) || inverse(right, left) {
+            return Some(self.identity(self.shape(left).rows));
+        }
+        match (&*self.node(left), &*self.node(right)) {
+            (Node::Literal(a), Node::Literal(b)) => Some(self.multiply_literals(a, self.shape(left), b, self.shape(right))),
+            (Node::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => Some(self.integer(1)),
+            _ => None,
+        }
+        .filter(|product| !product.shape().is_scalar() || product.as_number().is_none())
+    }
+
+    fn multiply_literals(&self, a: &[Rational], left: Shape, b: &[Rational], right: Shape) -> Expr<'_> {
+        let shape = Shape::new(left.rows, right.columns);
+        let entry = |(i, j): (usize, usize)| {
+            (0..left.columns).map(|k| &a[i * left.columns + k] * &b[k * right.columns + j]).sum::<Rational>()
+        };
+        self.literal(shape, shape.positions().map(entry).collect())
+    }
+
+    pub(crate) fn has_property(&self, id: Id, property: Property) -> bool {
+        self.expr(id).as_symbol().is_some_and(|symbol| symbol.property == property)
+    }
+
+    /// Cuts a word where an inner dimension is one; all segments but the first and the last are scalars.
+    fn split_at_scalars(&self, word: Vec<Id>) -> Vec<Vec<Id>> {
+        let mut segments = vec![Vec::new()];
+        for letter in word {
+            let starts_with_one = self.shape(letter).rows == 1;
+            if starts_with_one && segments.last().is_some_and(|segment| !segment.is_empty()) || starts_with_one && segments.len() == 1 {
+                segments.push(Vec::new());
+            }
+            let ends_with_one = self.shape(letter).columns == 1;
+            // by construction: there is always a last segment
+            segments.last_mut().expect("segments are never empty").push(letter);
+            if ends_with_one {
+                segments.push(Vec::new());
+            }
+        }
+        segments
+    }
+
+    /// The 1×1 product of a word, written in the one of its two readings that comes first.
+    pub(crate) fn scalar_word(&self, word: Vec<Id>) -> Expr<'_> {
+        match word.as_slice() {
+            [] => return self.integer(1),
+            [only] => return self.expr(*only),
+            [a, b] if self.is_unit_square(*a, *b) => return self.integer(1),
+            _ => {}
+        }
+        let (sign, reversed) = match self.transposed_word(&word) {
+            Some(transposed) => transposed,
+            None => (Rational::one(), word.clone()),
+        };
+        match reversed < word {
+            true => self.intern(Node::Word(reversed), Shape::scalar()).times(&sign),
+            false if reversed == word && sign == integer(-1) => self.integer(0),
+            false => self.intern(Node::Word(word), Shape::scalar()),
+        }
+    }
+
+    fn is_unit_square(&self, left: Id, right: Id) -> bool {
+        matches!(&*self.node(left), Node::Transpose(inner) if *inner == right) && self.has_property(right, Property::Unit)
+    }
+
+    /// The transposed letters in reverse order, with a sign; `None` if a letter's transpose is not plus or minus a letter.
+    pub(crate) fn transposed_word(&self, word: &[Id]) -> Option<(Rational, Vec<Id>)> {
+        let mut sign = Rational::one();
+        let mut reversed = Vec::with_capacity(word.len());
+        for &letter in word.iter().rev() {
+            let factor = self.expr(letter).transpose().factor();
+            match (factor.scalars.as_slice(), factor.word.as_slice()) {
+                ([], [transposed]) => reversed.push(*transposed),
+                _ => return None,
+            }
+            sign *= factor.coefficient;
+        }
+        Some((sign, reversed))
+    }
+
+    /// An exponent as a small integer, if it is one.
+    pub(crate) fn small_integer(exponent: &Exponent) -> Option<i32> {
+        exponent.is_integer().then(|| exponent.to_integer().to_i32()).flatten()
+    }
+}

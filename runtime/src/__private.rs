@@ -1,0 +1,37 @@
+//! What generated code names, and nothing else. Not part of the public interface: it changes without notice.
+//!
+//! What is the same for every problem is here and compiled once; what depends on the problem is generated. The other side of
+//! this file is the module of paths in the compiler's `emit` stage.
+
+pub use crate::implicit::{Equation, orientation, solve};
+pub use crate::linear::Orientation;
+pub use crate::parameters::{annihilator_defect, check_finite, check_symmetric, invert};
+pub use crate::{Clebsch, Error, Scalar, Space};
+pub use core;
+pub use nalgebra::{SMatrix, SVector};
+pub use num_traits::{One, Zero};
+
+use nalgebra::ArrayStorage;
+
+/// A matrix from its rows.
+#[inline]
+pub fn matrix<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
+    SMatrix::from_array_storage(ArrayStorage(core::array::from_fn(|j| core::array::from_fn(|i| rows[i][j]))))
+}
+
+/// A column vector from its entries.
+#[inline]
+pub fn vector<T: Scalar, const N: usize>(entries: [T; N]) -> SVector<T, N> {
+    SVector::from_array_storage(ArrayStorage([entries]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{matrix, vector};
+
+    #[test]
+    fn matrices_are_given_by_rows() {
+        assert_eq!(matrix([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])[(0, 2)], 3.0);
+        assert_eq!(vector([1.0, 2.0])[1], 2.0);
+    }
+}

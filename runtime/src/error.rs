@@ -1,0 +1,129 @@
+//! Everything that can go wrong, with the numbers that a person needs.
+
+use core::fmt::{self, Display, Formatter};
+
+/// Why a stepper could not be made, a state not be taken or a step not be done. The state that was passed in is unchanged.
+///
+/// Numbers are given as `f64` whatever the scalar of the system is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The step size is zero, NaN or infinite. Negative ones are allowed and run back in time.
+    StepSize {
+        /// The step size that was given.
+        value: f64,
+    },
+    /// An input or a result is NaN or infinite.
+    NotFinite {
+        /// What is not finite: a field of the declared struct, or a part of the state.
+        name: &'static str,
+    },
+    /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
+    NotSymmetric {
+        /// The field.
+        field: &'static str,
+        /// The largest |A_ij − A_ji|, in the units of the field.
+        defect: f64,
+        /// The largest defect that is taken for round-off.
+        tolerance: f64,
+    },
+    /// The kinetic energy is degenerate for these parameters: momenta do not determine velocities.
+    SingularKineticEnergy {
+        /// Condition number of the inertia, infinite where it is exactly singular.
+        condition: f64,
+    },
+    /// The configuration is not on the space that the declaration promises, for example no rotation matrix.
+    OffOrbit {
+        /// By how much its equations are violated, as in the largest entry of |RᵀR − I|; infinite on the wrong component.
+        defect: f64,
+        /// The largest defect that is accepted.
+        tolerance: f64,
+    },
+    /// The momentum has a component along the motions that leave the configuration unchanged.
+    OutsideMomentumSpace {
+        /// The size of that component, in the units of the momentum.
+        violation: f64,
+        /// The largest violation that is accepted.
+        tolerance: f64,
+    },
+    /// The implicit equation of the step has no solution that is connected to the identity: the step is too long.
+    Unsolvable {
+        /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
+        solvable_fraction: f64,
+        /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
+        step_size: Option<f64>,
+    },
+    /// The work allowed for one implicit equation was used up without a decision.
+    NotConverged {
+        /// Size of the residual that was left, relative to the terms of the equation.
+        residual: f64,
+        /// Number of linearisations that were made.
+        iterations: u32,
+    },
+}
+
+impl Error {
+    /// The same error, telling the step size in which it happened.
+    pub(crate) fn with_step_size(self, h: f64) -> Self {
+        match self {
+            Self::Unsolvable { solvable_fraction, .. } => Self::Unsolvable { solvable_fraction, step_size: Some(h) },
+            other => other,
+        }
+    }
+}
+
+impl Display for Error {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::StepSize { value } => {
+                write!(f, "the step size is {value}: it must be a finite number other than zero (negative runs back in time)")
+            }
+            Self::NotFinite { name } => {
+                write!(f, "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from")
+            }
+            Self::NotSymmetric { field, defect, tolerance } => write!(
+                f,
+                "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more than the \
+                 round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove `#[clebsch(symmetric)]`"
+            ),
+            Self::SingularKineticEnergy { condition } => write!(
+                f,
+                "the kinetic energy is singular for these parameters (condition number {condition:.2e}), so that momenta do not \
+                 determine velocities: check masses and moments of inertia for zeros and for units that differ by many orders"
+            ),
+            Self::OffOrbit { defect, .. } if defect == f64::INFINITY => write!(
+                f,
+                "the configuration is on another component of its space, such as a reflection instead of a rotation: \
+                 check the sign of its determinant, for example the order or the signs of its columns"
+            ),
+            Self::OffOrbit { defect, tolerance } => write!(
+                f,
+                "the configuration is off its space by {defect:.3e} where {tolerance:.1e} is accepted: normalise it, for example \
+                 give unit length to a vector or orthonormal columns to a rotation"
+            ),
+            Self::OutsideMomentumSpace { violation, tolerance } => write!(
+                f,
+                "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, where \
+                 {tolerance:.1e} is accepted: compute it by `momentum_map`, or subtract that component"
+            ),
+            Self::Unsolvable { solvable_fraction, step_size: None } => write!(
+                f,
+                "the step is too long for this momentum: the implicit equation is solvable up to {solvable_fraction:.3} of it; \
+                 reduce the step size by at least that factor"
+            ),
+            Self::Unsolvable { solvable_fraction, step_size: Some(h) } => write!(
+                f,
+                "the step of {h:.3e} is too long for this momentum: the implicit equation is solvable up to {solvable_fraction:.3} \
+                 of it; reduce the step size below about {:.3e}",
+                solvable_fraction * h
+            ),
+            Self::NotConverged { residual, iterations } => write!(
+                f,
+                "the implicit equation was not solved in {iterations} linearisations (relative residual {residual:.1e}): \
+                 reduce the step size"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,138 @@
+//! What a stepper checks and computes from the fields of a struct, once.
+
+use crate::linear::eliminate;
+use crate::space::larger;
+use crate::{Error, Scalar, Space};
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
+
+/// Fails with the name of the field if a number in it is NaN or infinite.
+///
+/// # Errors
+/// [`Error::NotFinite`].
+pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
+    if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
+}
+
+/// Fails if `matrix` differs from its transpose by more than the round-off of computing it, 1024 ε of its largest entry.
+///
+/// # Errors
+/// [`Error::NotSymmetric`].
+pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
+    let defect = (matrix - matrix.transpose()).max_abs();
+    let tolerance = T::from_f64(1024.0) * T::EPSILON * matrix.max_abs();
+    if defect > tolerance {
+        return Err(Error::NotSymmetric { field: name, defect: defect.to_f64(), tolerance: tolerance.to_f64() });
+    }
+    Ok(())
+}
+
+/// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
+///
+/// Refused is a matrix whose condition number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for
+/// every diagonal matrix) reaches 1/(N ε): its inverse would have no correct digit.
+///
+/// # Errors
+/// [`Error::SingularKineticEnergy`].
+pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
+    let mut inverse: [[T; N]; N] = from_fn(|i| from_fn(|j| if i == j { T::one() } else { T::zero() }));
+    let rows: [[T; N]; N] = from_fn(|i| from_fn(|j| matrix[(i, j)]));
+    if eliminate(rows, &mut inverse).is_none() {
+        return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
+    }
+    let mut condition = T::zero();
+    for row in &inverse {
+        let mut sum = T::zero();
+        for (factor, entries) in row.iter().zip(&rows) {
+            for entry in entries {
+                sum += (*factor * *entry).abs();
+            }
+        }
+        // Written so that NaN is infinite.
+        condition = larger(condition, if sum.is_finite() { sum } else { T::one() / T::zero() });
+    }
+    if condition * T::EPSILON * T::from_f64(N as f64) >= T::one() {
+        return Err(Error::SingularKineticEnergy { condition: condition.to_f64() });
+    }
+    Ok(SMatrix::from_fn(|i, j| inverse[i][j]))
+}
+
+/// The distance of `mu` from the span of `rows`, the momenta that motions of a configuration can have.
+///
+/// Modified Gram–Schmidt on the rows, each made orthogonal twice (once more than round-off needs); a row of which less than
+/// √ε is left depends on those before it and is passed over.
+pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> T {
+    let mut basis = *rows;
+    let mut rest: [T; M] = from_fn(|i| mu[i]);
+    for k in 0..D {
+        let (before, others) = basis.split_at_mut(k);
+        let Some(row) = others.first_mut() else { break };
+        let given = length(row);
+        for _ in 0..2 {
+            for unit in before.iter() {
+                remove(row, unit);
+            }
+        }
+        let left = length(row);
+        if left > T::EPSILON.sqrt() * given {
+            row.iter_mut().for_each(|entry| *entry /= left);
+            remove(&mut rest, row);
+        } else {
+            *row = [T::zero(); M];
+        }
+    }
+    length(&rest)
+}
+
+/// `vector` −= its component along `unit`.
+fn remove<T: Scalar, const M: usize>(vector: &mut [T; M], unit: &[T; M]) {
+    let component = vector.iter().zip(unit).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+    vector.iter_mut().zip(unit).for_each(|(a, &b)| *a -= component * b);
+}
+
+/// The Euclidean length, scaled so that squares neither overflow nor vanish.
+fn length<T: Scalar, const M: usize>(vector: &[T; M]) -> T {
+    let scale = vector.iter().fold(T::zero(), |max, x| larger(max, x.abs()));
+    if scale == T::zero() || !scale.is_finite() {
+        return scale;
+    }
+    scale * vector.iter().fold(T::zero(), |sum, &x| sum + (x / scale) * (x / scale)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{annihilator_defect, check_symmetric, invert};
+    use crate::Error;
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn inertia_ratios_do_not_matter_but_degeneracy_does() {
+        let principal = Matrix3::from_diagonal(&Vector3::new(1e-6, 1.0, 1e6));
+        assert_eq!(invert(&principal), Ok(Matrix3::from_diagonal(&Vector3::new(1e6, 1.0, 1e-6))));
+        let flat = Matrix3::new(1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        assert!(matches!(invert(&flat), Err(Error::SingularKineticEnergy { .. })));
+        let nearly = Matrix3::new(1.0, 1.0, 0.0, 1.0, 1.0 + f64::EPSILON, 0.0, 0.0, 0.0, 1.0);
+        assert!(matches!(invert(&nearly), Err(Error::SingularKineticEnergy { condition }) if condition > 1e15));
+        assert!(matches!(invert(&(f64::NAN * principal)), Err(Error::SingularKineticEnergy { .. })));
+    }
+
+    #[test]
+    fn symmetry_is_relative() {
+        let mut matrix = Matrix3::from_element(1e200);
+        matrix[(0, 1)] *= 1.0 + 1e-15;
+        assert_eq!(check_symmetric("inertia", &matrix), Ok(()));
+        matrix[(0, 1)] *= 1.0 + 1e-9;
+        assert!(matches!(check_symmetric("inertia", &matrix), Err(Error::NotSymmetric { field: "inertia", .. })));
+        assert_eq!(check_symmetric("inertia", &Matrix3::<f32>::zeros()), Ok(()));
+    }
+
+    #[test]
+    fn momenta_of_a_point_on_the_sphere_are_orthogonal_to_it() {
+        // 𝔤_q^⊥ for rotations of q = e3 is spanned by q × e1, q × e2; the third row depends on them.
+        let rows = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [-3.0, 2.0, 0.0]];
+        assert_eq!(annihilator_defect(&rows, &Vector3::new(1.0, -2.0, 0.0)), 0.0);
+        assert_eq!(annihilator_defect(&rows, &Vector3::new(1.0, -2.0, 0.25)), 0.25);
+        assert_eq!(annihilator_defect(&rows.map(|row| row.map(|x| x * 1e-200)), &Vector3::new(1e200, 0.0, 1e200)), 1e200);
+        assert_eq!(annihilator_defect(&[[0.0; 3]; 0], &Vector3::new(3.0, 4.0, 0.0)), 5.0);
+    }
+}

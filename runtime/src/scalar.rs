@@ -1,0 +1,185 @@
+//! The numbers that an integrator computes with.
+
+use core::fmt::{Debug, Display};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
+
+/// A real number that declarations can be integrated in: `f32` and `f64` here.
+///
+/// Everything that the language of declarations can write about a scalar is a method of this trait, so that generated
+/// code works for any implementation. Angles are in radians. Functions outside their domain give NaN, as for `f64`; the
+/// stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Display
+    + Debug
+    + PartialOrd
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// Half of the circumference of the unit circle.
+    const PI: Self;
+
+    /// `numerator / denominator`, rounded once where both are exact in `Self`.
+    fn from_ratio(numerator: i64, denominator: i64) -> Self;
+    /// The number of this type next to `value`.
+    fn from_f64(value: f64) -> Self;
+    /// The `f64` next to this number, for messages and tables.
+    fn to_f64(self) -> f64;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> bool;
+
+    /// |x|
+    fn abs(self) -> Self;
+    /// √x, NaN for x < 0
+    fn sqrt(self) -> Self;
+    /// 1 / x
+    fn recip(self) -> Self;
+    /// sin x
+    fn sin(self) -> Self;
+    /// cos x
+    fn cos(self) -> Self;
+    /// tan x
+    fn tan(self) -> Self;
+    /// arcsin x, NaN for |x| > 1
+    fn asin(self) -> Self;
+    /// arccos x, NaN for |x| > 1
+    fn acos(self) -> Self;
+    /// arctan x
+    fn atan(self) -> Self;
+    /// sinh x
+    fn sinh(self) -> Self;
+    /// cosh x
+    fn cosh(self) -> Self;
+    /// tanh x
+    fn tanh(self) -> Self;
+    /// eˣ
+    fn exp(self) -> Self;
+    /// Natural logarithm, NaN for x < 0
+    fn ln(self) -> Self;
+    /// xⁿ by repeated multiplication
+    fn powi(self, exponent: i32) -> Self;
+    /// xʸ, NaN for x < 0 and y no integer
+    fn powf(self, exponent: Self) -> Self;
+}
+
+/// xⁿ by squaring; negative exponents through the reciprocal.
+#[inline]
+fn power<T: Scalar>(base: T, exponent: i32) -> T {
+    let mut square = if exponent < 0 { base.recip() } else { base };
+    let mut rest = exponent.unsigned_abs();
+    let mut power = T::one();
+    while rest > 0 {
+        if rest & 1 == 1 {
+            power *= square;
+        }
+        square *= square;
+        rest >>= 1;
+    }
+    power
+}
+
+/// One function per line: the method, its name in `std`, its name in `libm`.
+macro_rules! elementary {
+    ($scalar:ident; $($method:ident $libm:ident),* $(,)?) => {$(
+        #[inline]
+        fn $method(self) -> Self {
+            #[cfg(feature = "std")]
+            { <$scalar>::$method(self) }
+            #[cfg(not(feature = "std"))]
+            { libm::$libm(self) }
+        }
+    )*};
+}
+
+/// What is the same for every floating point type.
+macro_rules! floating_point {
+    ($scalar:ident, $pow:ident) => {
+        const EPSILON: Self = $scalar::EPSILON;
+        const PI: Self = core::$scalar::consts::PI;
+
+        #[inline]
+        fn from_ratio(numerator: i64, denominator: i64) -> Self {
+            numerator as $scalar / denominator as $scalar
+        }
+        #[inline]
+        fn from_f64(value: f64) -> Self {
+            value as $scalar
+        }
+        #[inline]
+        fn to_f64(self) -> f64 {
+            f64::from(self)
+        }
+        #[inline]
+        fn is_finite(self) -> bool {
+            $scalar::is_finite(self)
+        }
+        #[inline]
+        fn abs(self) -> Self {
+            $scalar::abs(self)
+        }
+        #[inline]
+        fn recip(self) -> Self {
+            1.0 / self
+        }
+        #[inline]
+        fn powi(self, exponent: i32) -> Self {
+            power(self, exponent)
+        }
+        #[inline]
+        fn powf(self, exponent: Self) -> Self {
+            #[cfg(feature = "std")]
+            {
+                $scalar::powf(self, exponent)
+            }
+            #[cfg(not(feature = "std"))]
+            {
+                libm::$pow(self, exponent)
+            }
+        }
+    };
+}
+
+impl Scalar for f64 {
+    floating_point!(f64, pow);
+    elementary!(f64; sqrt sqrt, sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
+                sinh sinh, cosh cosh, tanh tanh, exp exp, ln log);
+}
+
+impl Scalar for f32 {
+    floating_point!(f32, powf);
+    elementary!(f32; sqrt sqrtf, sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
+                sinh sinhf, cosh coshf, tanh tanhf, exp expf, ln logf);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Scalar;
+
+    #[test]
+    fn powers_by_squaring() {
+        assert_eq!(Scalar::powi(3.0_f64, 5), 243.0);
+        assert_eq!(Scalar::powi(2.0_f64, -3), 0.125);
+        assert_eq!(Scalar::powi(0.0_f64, 0), 1.0);
+        assert_eq!(Scalar::powi(-1.0_f64, i32::MIN), 1.0);
+        assert_eq!(Scalar::powi(-2.0_f32, 3), -8.0);
+    }
+
+    #[test]
+    fn ratios_are_rounded_once() {
+        assert_eq!(<f64 as Scalar>::from_ratio(1, 3), 1.0 / 3.0);
+        assert_eq!(<f32 as Scalar>::from_ratio(-1, 10), -0.1_f32);
+    }
+}

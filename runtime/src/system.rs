@@ -1,0 +1,139 @@
+//! The trait that the derive macro implements.
+
+use crate::{Error, Scalar, Space, Stepper};
+use core::fmt::Debug;
+
+/// A mechanical or control system with everything that is derived from its declaration.
+///
+/// Implemented by `#[derive(Clebsch)]`; the documentation of each generated method carries its formula as derived for that
+/// struct. Notation: configuration q in Q, group element F in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step
+/// size h, discrete Lagrangian ℓd(h, q, F). Momenta are components with respect to the basis E_i of 𝔤 that
+/// [`group`](crate::group) documents, m_i = ⟨M, E_i⟩ = tr(MᵀE_i), all factors of a product one after the other.
+///
+/// People use it through a [`Stepper`], which holds h and the [`Constants`](Self::Constants).
+///
+/// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
+pub trait Clebsch {
+    /// The number type.
+    type Scalar: Scalar;
+    /// q, nested as in the declared action.
+    type Configuration: Space<Self::Scalar>;
+    /// F, nested as in the declared action.
+    type Element: Space<Self::Scalar>;
+    /// μ: all components in one vector.
+    type Momentum: Space<Self::Scalar>;
+    /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
+    type MomentumMatrix: Space<Self::Scalar>;
+    /// The kick that the end of one step and the start of the next share; `()` where there is none.
+    type Impulse: Space<Self::Scalar>;
+    /// What is computed once per stepper.
+    type Constants: Clone + Debug;
+
+    /// The name of the struct.
+    const NAME: &'static str;
+    /// Order of accuracy of `step` and `step_symmetric`.
+    const ORDER: u32;
+    /// The derivation in words and formulas, with operation counts and what was left out and why.
+    const DERIVATION: &'static str;
+
+    /// Checks the parameters and computes what no step changes.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::NotSymmetric`] or [`Error::SingularKineticEnergy`].
+    fn constants(&self, h: Self::Scalar) -> Result<Self::Constants, Error>;
+
+    /// The action: Φ_F(q).
+    fn act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration;
+
+    /// The momentum map of the cotangent lift: J(q, p)_i = ⟨p, (E_i)_Q(q)⟩.
+    fn momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum;
+
+    /// The coadjoint action Ad*_F μ = (Ad_F)* μ, without an inverse inside.
+    fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum;
+
+    /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
+    fn legendre(&self, h: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
+
+    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
+    fn legendre_next(&self, h: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
+
+    /// The group element F with `legendre(h, q, F)` = μ that is connected to the identity.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::Unsolvable`] or [`Error::NotConverged`].
+    fn inverse_legendre(
+        &self,
+        constants: &Self::Constants,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Result<Self::Element, Error>;
+
+    /// The kick at q, shared by the end of one step and the start of the next.
+    fn impulse(&self, constants: &Self::Constants, q: &Self::Configuration) -> Self::Impulse;
+
+    /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), given the impulse at q; returns that at q⁺ too.
+    ///
+    /// # Errors
+    /// As [`inverse_legendre`](Self::inverse_legendre).
+    #[allow(clippy::type_complexity)]
+    fn step(
+        &self,
+        constants: &Self::Constants,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+        impulse: &Self::Impulse,
+    ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error>;
+
+    /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺).
+    ///
+    /// # Errors
+    /// As [`inverse_legendre`](Self::inverse_legendre).
+    fn step_symmetric(
+        &self,
+        constants: &Self::Constants,
+        q: &Self::Configuration,
+        p: &Self::Configuration,
+    ) -> Result<(Self::Configuration, Self::Configuration), Error>;
+
+    /// The potential V(q), 0 for a free system.
+    fn potential(&self, q: &Self::Configuration) -> Self::Scalar;
+
+    /// The kinetic energy ½ μ·Σ⁻¹μ, with Σ the Hessian of the Lagrangian ℓ(ξ).
+    fn kinetic_energy(&self, constants: &Self::Constants, mu: &Self::Momentum) -> Self::Scalar;
+
+    /// The representing matrices of μ.
+    fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix;
+
+    /// The components of a momentum given by its representing matrices; the inverse of [`momentum_matrix`](Self::momentum_matrix).
+    fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum;
+
+    /// By how much q violates what the declaration promises, as the largest entry of |RᵀR − I| or ||q|² − 1|.
+    ///
+    /// 0 for plain vectors and matrices, +∞ on the wrong component of a group (det < 0).
+    fn orbit_defect(q: &Self::Configuration) -> Self::Scalar;
+
+    /// The size of the component of μ outside of 𝔤_q^⊥, the momenta that motions of q can have. 0 where the action is free.
+    fn isotropy_defect(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Scalar;
+
+    /// A stepper of step size `h`, on a copy of this system.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], and those of [`constants`](Self::constants).
+    fn stepper(&self, h: Self::Scalar) -> Result<Stepper<Self>, Error>
+    where
+        Self: Clone,
+    {
+        self.clone().into_stepper(h)
+    }
+
+    /// A stepper of step size `h` that owns this system.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], and those of [`constants`](Self::constants).
+    fn into_stepper(self, h: Self::Scalar) -> Result<Stepper<Self>, Error>
+    where
+        Self: Sized,
+    {
+        Stepper::new(self, h)
+    }
+}
