@@ -2,6 +2,7 @@
 
 use crate::flags::Run;
 use crate::scene::{Failure, say};
+use nalgebra::SMatrix;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -54,6 +55,11 @@ impl Csv {
         say(format_args!("trajectory  {}", path.display()));
         Ok(())
     }
+}
+
+/// The entries of a matrix row by row; those of a vector in order.
+pub fn by_rows<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> impl Iterator<Item = f64> + '_ {
+    (0..R).flat_map(move |row| (0..C).map(move |column| matrix[(row, column)]))
 }
 
 fn write_row(to: &mut impl Write, step: u64, time: f64, values: impl IntoIterator<Item = f64>) -> io::Result<()> {

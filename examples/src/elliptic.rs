@@ -42,7 +42,8 @@ mod tests {
     fn by_quadrature(n: f64, m: f64) -> (f64, f64) {
         let points = 4000;
         let sum = |f: &dyn Fn(f64) -> f64| {
-            let total: f64 = (0..points).map(|i| f((f64::from(i) / f64::from(points) * 4.0 * FRAC_PI_2).sin().powi(2))).sum();
+            let total: f64 =
+                (0..points).map(|i| f((f64::from(i) / f64::from(points) * 4.0 * FRAC_PI_2).sin().powi(2))).sum();
             total * FRAC_PI_2 / f64::from(points)
         };
         let first = sum(&|s| 1.0 / (1.0 - m * s).sqrt());

@@ -1,6 +1,7 @@
 //! Flags that every scene takes, and parsers that say what is wrong with a number.
 
 use clap::{Args, Parser, ValueEnum};
+use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 
 /// What differs between the scenes in the flags that all of them take.
@@ -71,6 +72,12 @@ pub enum Order {
     /// Half of the potential at each end of a step: time-symmetric.
     #[value(name = "2", help = None)]
     Second,
+}
+
+impl Display for Order {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::First { "1" } else { "2" })
+    }
 }
 
 /// Reads the command line; on `--help` or on a mistake it prints and exits.

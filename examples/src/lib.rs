@@ -11,7 +11,7 @@
 //! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
 //! | [`claims`] | what a scene asserts: each with its measured number and its bound |
 //! | [`round_off`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
-//! | [`elliptic`], [`rotation`] | mathematics that more than one file needs |
+//! | [`elliptic`] | complete elliptic integrals, for closed forms to compare with |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
 
 pub mod claims;
@@ -22,7 +22,6 @@ pub mod figure;
 pub mod flags;
 pub mod integrate;
 mod progress;
-pub mod rotation;
 pub mod round_off;
 pub mod scene;
 pub mod table;

@@ -1,30 +1,169 @@
-//! The implicit equation of a step.
+//! The implicit equation of a step: ρ(ξ; μ) = 0 for the chart coordinates ξ of the group element F, given the momentum μ.
+//!
+//! [`solve`] first tries full Newton steps from the predictor, which ends after one to four linearisations for the step sizes
+//! that people use. Where these do not contract cleanly, [the path](path) from the identity is followed instead, with bounded
+//! work, until it arrives or is found to turn back: then no solution is connected to the identity.
+
+mod path;
 
 use crate::linear::{Orientation, eliminate};
 use crate::{Error, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// eq
+/// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given the target μ.
+///
+/// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
+/// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign.
 pub trait Equation<T: Scalar, const M: usize> {
-    /// terms
+    /// What does not change during the iteration.
     type Terms;
-    /// p
+
+    /// The terms for the target μ.
     fn prepare(&self, target: &SVector<T, M>) -> Self::Terms;
-    /// p
+
+    /// A first approximation of ξ, best Σ⁻¹μ in the units of the chart; it should be 0 for μ = 0.
     fn predict(&self, target: &SVector<T, M>) -> SVector<T, M>;
-    /// l
+
+    /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
-    /// o
+
+    /// The sign of det Dρ at ξ = 0 and μ = 0, which every solution on the branch has; `None` where it is singular.
+    ///
+    /// The provided method makes one linearisation. It is asked for in every solve: answer from a constant, made by
+    /// [`orientation`], where one is at hand.
+    #[inline]
     fn orientation(&self) -> Option<Orientation> {
-        None
+        at_identity(self)
     }
 }
-/// o
+
+/// The sign of det Dρ at ξ = 0 and μ = 0, from a linearisation.
+#[inline]
+fn at_identity<T: Scalar, const M: usize, E: Equation<T, M> + ?Sized>(equation: &E) -> Option<Orientation> {
+    let zero = SVector::from_element(T::zero());
+    let (_, jacobian) = equation.linearize(&equation.prepare(&zero), &zero);
+    Orientation::of(rows(&jacobian))
+}
+
+/// The sign of det Dρ at the identity, computed without asking [`Equation::orientation`]: for the constant that answers it.
+///
+/// # Errors
+/// [`Error::SingularKineticEnergy`] where Dρ is singular there.
 pub fn orientation<T: Scalar, const M: usize>(equation: &impl Equation<T, M>) -> Result<Orientation, Error> {
-    equation.orientation().ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
+    at_identity(equation).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
 }
-/// s
-pub fn solve<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SVector<T, M>) -> Result<SVector<T, M>, Error> {
-    let _ = eliminate::<T, M, 0>([[T::zero(); M]; M], &mut [[]; M]);
-    Ok(equation.predict(target))
+
+/// Newton steps that are tried before the path is followed. Each at least halves the correction and most square it.
+const QUICK: usize = 12;
+
+/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0.
+///
+/// Accuracy: the correction that Newton's method would make next is below a quarter of a unit in the last place of ξ, or the
+/// residual is round-off. Work: at most 12 linearisations, and where they do not decide at most
+/// [`path::LINEARIZATIONS`] more (about a hundred in practice).
+///
+/// # Errors
+/// [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
+/// one; [`Error::NotFinite`] where `target` or the equation is not; [`Error::NotConverged`] where the work was not enough.
+#[inline]
+pub fn solve<T: Scalar, const M: usize>(
+    equation: &impl Equation<T, M>,
+    target: &SVector<T, M>,
+) -> Result<SVector<T, M>, Error> {
+    match newton(equation, target) {
+        Some(xi) => Ok(xi),
+        None => path::follow(equation, target),
+    }
 }
+
+/// Newton's method from the predictor: `None` as soon as it does not contract cleanly, or leaves the branch.
+///
+/// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
+/// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0.
+#[inline]
+fn newton<T: Scalar, const M: usize>(
+    equation: &impl Equation<T, M>,
+    target: &SVector<T, M>,
+) -> Option<SVector<T, M>> {
+    let branch = equation.orientation()?;
+    let terms = equation.prepare(target);
+    let start = equation.predict(target);
+    let mut xi = start;
+    let half = T::from_ratio(1, 2);
+    let negligible = T::EPSILON * T::from_ratio(1, 4);
+    let predicted = size(&start);
+    let (mut before, mut residual_before) = (predicted, xi);
+    for iteration in 0..QUICK {
+        let (residual, jacobian) = equation.linearize(&terms, &xi);
+        let (correction, orientation) = correct(&residual, &jacobian)?;
+        if orientation != branch {
+            return None;
+        }
+        let old = xi;
+        xi -= correction;
+        let (now, scale) = (size(&correction), size(&xi));
+        // All comparisons are written so that NaN leads to `None`.
+        if now <= T::EPSILON * scale {
+            return Some(xi);
+        }
+        let ratio = now / before;
+        if ratio <= half {
+            if now * ratio * ratio <= negligible * scale {
+                return Some(xi);
+            }
+        } else if iteration > 0 {
+            if is_round_off(&residual, &jacobian, &old) {
+                return Some(xi);
+            }
+            if size(&(xi - start)) > predicted || !is_much_smaller(&residual, &residual_before) {
+                return None;
+            }
+        }
+        (before, residual_before) = (now, residual);
+    }
+    None
+}
+
+/// The Newton correction Δ of ρ + Dρ·(−Δ) = 0 and the sign of det Dρ, `None` where it is singular.
+#[inline]
+fn correct<T: Scalar, const M: usize>(
+    residual: &SVector<T, M>,
+    jacobian: &SMatrix<T, M, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    let mut columns: [[T; 1]; M] = core::array::from_fn(|i| [residual[i]]);
+    let orientation = eliminate(rows(jacobian), &mut columns)?;
+    Some((SVector::from_fn(|i, _| columns[i][0]), orientation))
+}
+
+/// Whether the residual is no more than the rounding of the terms that it is made of, of size |Dρ||ξ|.
+#[cold]
+fn is_round_off<T: Scalar, const M: usize>(
+    residual: &SVector<T, M>,
+    jacobian: &SMatrix<T, M, M>,
+    xi: &SVector<T, M>,
+) -> bool {
+    let terms = (0..M).fold(T::zero(), |sum, j| sum + size(&jacobian.column(j).into_owned()) * xi[j].abs());
+    size(residual) <= T::from_f64(8.0) * T::EPSILON * terms
+}
+
+/// Whether the residual shrank to less than a quarter: progress too where stiff directions are settled before soft ones, while
+/// corrections grow.
+#[cold]
+fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: &SVector<T, M>) -> bool {
+    size(residual) <= T::from_ratio(1, 4) * size(before)
+}
+
+/// The sum of all |x_i|: NaN where one of them is.
+#[inline]
+fn size<T: Scalar, const M: usize>(vector: &SVector<T, M>) -> T {
+    vector.iter().fold(T::zero(), |sum, x| sum + x.abs())
+}
+
+/// A matrix by rows.
+#[inline]
+fn rows<T: Scalar, const M: usize>(matrix: &SMatrix<T, M, M>) -> [[T; M]; M] {
+    core::array::from_fn(|i| core::array::from_fn(|j| matrix[(i, j)]))
+}
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", test))]
 extern crate std;
 
 #[doc(hidden)]
@@ -12,6 +12,7 @@ mod error;
 pub mod group;
 pub mod implicit;
 mod linear;
+mod orbit;
 mod parameters;
 mod scalar;
 mod space;

@@ -14,13 +14,18 @@ pub struct Place {
 
 impl Place {
     /// The place of everything that a syntax tree was made from.
-    pub fn of(tokens: &impl ToTokens) -> Place {
+    pub fn of(tokens: &(impl ToTokens + ?Sized)) -> Place {
         let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
             TokenTree::Group(group) => (group.span_open(), group.span_close()),
             other => (other.span(), other.span()),
         });
         let first = spans.next().unwrap_or_else(|| (Span::call_site(), Span::call_site()));
         Place { start: first.0, end: spans.last().unwrap_or(first).1 }
+    }
+
+    /// The place from one token to another.
+    pub fn between(start: Span, end: Span) -> Place {
+        Place { start, end }
     }
 
     /// The place's first token.
@@ -41,12 +46,13 @@ pub struct Diagnostic {
     place: Place,
     message: String,
     lines: Vec<String>,
+    comes_later: bool,
 }
 
 impl Diagnostic {
     /// What is wrong: lower case, no full stop, the user's names in backticks.
     pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { place: place.into(), message: message.into(), lines: Vec::new() }
+        Diagnostic { place: place.into(), message: message.into(), lines: Vec::new(), comes_later: false }
     }
 
     /// The text to type instead.
@@ -69,8 +75,8 @@ impl Diagnostic {
 
     /// Says that something is part of the language, but not of this version.
     pub fn later(place: impl Into<Place>, what: impl fmt::Display) -> Diagnostic {
-        Diagnostic::new(place, format!("{what} is not supported yet"))
-            .note("it belongs to the language and comes with a later version of clebsch")
+        let error = Diagnostic::new(place, format!("{what} is not supported yet"));
+        Diagnostic { comes_later: true, ..error }
     }
 
     fn line(mut self, text: String) -> Diagnostic {
@@ -89,10 +95,12 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
-        if !self.lines.is_empty() {
+        let later = self.comes_later.then_some("note: it belongs to the language and comes with a later version of clebsch");
+        let mut lines = self.lines.iter().map(String::as_str).chain(later).peekable();
+        if lines.peek().is_some() {
             f.write_str("\n")?;
         }
-        self.lines.iter().try_for_each(|line| write!(f, "\n{line}"))
+        lines.try_for_each(|line| write!(f, "\n{line}"))
     }
 }
 

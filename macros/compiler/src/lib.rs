@@ -1,22 +1,46 @@
 //! The compiler of `clebsch`: an ordinary library on proc-macro2 that turns a declaration into an integrator.
+//!
+//! ```text
+//! tokens ─▶ Declaration ─▶ Model ─▶ Formulas ─▶ Program ─▶ Expansion
+//!         parse          model    derive      lower      emit
+//! ```
+//!
+//! Each stage is a function from one value to the next, each value prints, and each print is a snapshot test.
 
+pub mod derive;
 pub mod diagnostic;
+pub mod emit;
+pub mod lower;
 pub mod model;
 pub mod parse;
 
-use clebsch_symbolic::Graph;
 use proc_macro2::TokenStream;
 
+pub use clebsch_symbolic::Graph;
+
 use crate::diagnostic::Diagnostics;
+use crate::lower::Program;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
 pub fn expand(item: TokenStream) -> TokenStream {
-    compile(item).unwrap_or_else(|errors| errors.to_compile_errors())
+    let graph = Graph::new();
+    match compile(&graph, item.clone()) {
+        Ok(program) => emit::emit(&program),
+        Err(errors) => {
+            let errors = errors.to_compile_errors();
+            let stub = emit::stub(item);
+            quote::quote!(#errors #stub)
+        }
+    }
 }
 
-fn compile(item: TokenStream) -> Result<TokenStream, Diagnostics> {
-    let graph = Graph::new();
+/// The first four stages.
+///
+/// # Errors
+/// Everything that is wrong with the declaration, each error at its place.
+pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnostics> {
     let declaration = parse::parse(item)?;
-    let _model = model::model(&graph, &declaration)?;
-    Ok(TokenStream::new())
+    let model = model::model(graph, &declaration)?;
+    let formulas = derive::derive(model)?;
+    lower::lower(formulas)
 }

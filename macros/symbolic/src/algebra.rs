@@ -62,8 +62,11 @@ impl Algebra {
         self.sparse_basis().iter().map(dense).collect()
     }
 
-    /// The square ⟨E_i, E_i⟩ of each basis element, which are orthogonal to each other here.
-    pub fn gram(self) -> Vec<i64> {
-        self.sparse_basis().iter().map(|entries| entries.iter().map(|(_, _, value)| value * value).sum()).collect()
+    /// The square ⟨E_i, E_i⟩ of the basis elements, if they are orthogonal to each other and equally long.
+    pub fn uniform_gram(self) -> Option<i64> {
+        match self {
+            Algebra::SpecialOrthogonal(_) => Some(2),
+            Algebra::Translation(_) => Some(1),
+        }
     }
 }

@@ -198,16 +198,22 @@ impl<'g> Expr<'g> {
             return self;
         }
         self.linear(shape, |plain| {
+            if let Node::Wedge(other, inner) = &*plain.node()
+                && *other == algebra
+                && let Some(square) = algebra.uniform_gram()
+            {
+                return square * plain.graph.expr(*inner);
+            }
             if !algebra.is_skew() {
                 return plain.atom_of(Node::Components(algebra, plain.id), shape);
             }
-            let transpose = plain.transpose();
-            match transpose.factor() {
-                // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both
-                _ if transpose == plain => plain.graph.zero(shape),
-                term if term.scalars.is_empty() && transpose.id < plain.id => {
-                    plain.atom_of(Node::Components(algebra, transpose.id), shape).times(&integer(-1))
-                }
+            // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both
+            let Term { coefficient, scalars, word } = plain.transpose().factor();
+            let sign = coefficient.clone();
+            let word = plain.graph.collect(plain.shape(), [Term { coefficient: Rational::one(), scalars, word }]);
+            match sign == integer(1) || sign == integer(-1) {
+                true if word == plain && sign == integer(1) => plain.graph.zero(shape),
+                true if word.id < plain.id => plain.atom_of(Node::Components(algebra, word.id), shape).times(&-sign),
                 _ => plain.atom_of(Node::Components(algebra, plain.id), shape),
             }
         })

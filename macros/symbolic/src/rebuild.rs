@@ -47,6 +47,11 @@ impl<'g> Expr<'g> {
         self.reachable().contains(&symbol.id)
     }
 
+    /// Whether the inverse of a matrix occurs.
+    pub fn has_inverse(self) -> bool {
+        self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), Node::Inverse(_)))
+    }
+
     /// The expression with symbols replaced by expressions of the same shape.
     pub fn substitute(self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let mut images: HashMap<Id, Expr<'g>> = replacements.iter().map(|(from, to)| (from.id, *to)).collect();

@@ -38,4 +38,14 @@ impl Structure {
             }
         }
     }
+
+    /// The same nesting with its leaves numbered from `offset` on.
+    pub(super) fn shifted(&self, offset: usize) -> Structure {
+        let shift = |parts: &[Structure]| parts.iter().map(|part| part.shifted(offset)).collect();
+        match self {
+            Structure::Leaf(leaf) => Structure::Leaf(leaf + offset),
+            Structure::Tuple(parts) => Structure::Tuple(shift(parts)),
+            Structure::Array(parts) => Structure::Array(shift(parts)),
+        }
+    }
 }

@@ -1,13 +1,13 @@
 //! Limits on the size of a declaration, checked before anything recurses: for any tokens at all the compiler must come to an end.
 
-use proc_macro2::{Delimiter, Group, Spacing, Span, TokenStream, TokenTree};
+use proc_macro2::{Spacing, Span, TokenStream, TokenTree};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// Brackets inside brackets.
 const DEPTH: usize = 64;
 /// Tokens between two separators at one level, which bounds the length of chains of operators and methods.
-const RUN: usize = 3000;
+const RUN: usize = 2000;
 /// Tokens of one kind in such a run that open a new level of the grammar without a bracket.
 const OPENERS: usize = 100;
 /// Tokens of the whole item.
@@ -27,21 +27,14 @@ pub fn check(item: &TokenStream) -> Result<(), Diagnostics> {
             }
             run.add(&token)?;
             if let TokenTree::Group(group) = token {
-                let depth = inner_depth(&group, depth);
-                if depth > DEPTH {
+                if depth == DEPTH {
                     return Err(too("deep", span, format!("more than {DEPTH} brackets inside each other")));
                 }
-                pending.push((group.stream(), depth));
+                pending.push((group.stream(), depth + 1));
             }
         }
     }
     Ok(())
-}
-
-fn inner_depth(group: &Group, depth: usize) -> usize {
-    // macros wrap fragments in invisible brackets; they recurse like any others
-    let _: Delimiter = group.delimiter();
-    depth + 1
 }
 
 fn too(what: &str, span: Span, how: String) -> Diagnostics {
@@ -60,7 +53,7 @@ struct Run {
 
 impl Run {
     fn add(&mut self, token: &TokenTree) -> Result<(), Diagnostics> {
-        let separator = matches!(token, TokenTree::Punct(punct) if matches!(punct.as_char(), ',' | ';'));
+        let separator = matches!(token, TokenTree::Punct(punct) if matches!(punct.as_char(), ',' | ';' | '#'));
         if separator {
             *self = Run::default();
             return Ok(());
@@ -83,7 +76,7 @@ impl Run {
         ];
         match token {
             TokenTree::Punct(punct) => match punct.as_char() {
-                '|' | '<' | '=' | ':' | '@' | '?' | '\'' => true,
+                '|' | '<' | '=' | '@' => true,
                 '.' => punct.spacing() == Spacing::Joint,
                 _ => self.after_operator,
             },

@@ -14,6 +14,7 @@ pub use declaration::{Declaration, Kinetic};
 pub use field::Field;
 pub use keys::{Dials, Located};
 pub use spelling::{spell, spell_type};
+pub(crate) use spelling::tokens as spell_tokens;
 
 use proc_macro2::TokenStream;
 use syn::{Data, DeriveInput, Fields};

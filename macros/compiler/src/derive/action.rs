@@ -1,0 +1,81 @@
+//! What follows from the action alone: generator, momentum map, Ad*, cotangent lift.
+
+use clebsch_symbolic::{Expr, Shape, identity};
+
+use super::Symbols;
+use crate::model::Model;
+
+/// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
+pub(super) fn generator<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+    let factors = || model.factors.iter().zip(&symbols.algebra);
+    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, xi.wedge(factor.group.algebra()))).collect();
+    let at_identity = identities(model);
+    model.action.iter().map(|image| image.differential(&directions).substitute(&at_identity).expand()).collect()
+}
+
+/// The replacement of every group element by the identity.
+pub(super) fn identities<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph))).collect()
+}
+
+/// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
+pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let pairing = generator.iter().zip(&symbols.covectors).map(|(velocity, p)| p.dot(*velocity)).reduce(|a, b| a + b);
+    // by construction: a configuration has at least one leaf
+    let pairing = pairing.expect("a leaf of the configuration");
+    symbols.algebra.iter().map(|xi| pairing.gradient(*xi)).collect()
+}
+
+/// Ad*_F μ.
+pub(super) fn coadjoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+    model.factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).collect()
+}
+
+/// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
+pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+    let inverses: Vec<_> = model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
+    let images = model.action.iter().map(|image| image.substitute(&inverses));
+    let pairing = images.zip(&symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
+    // by construction: a configuration has at least one leaf
+    let pairing = pairing.expect("a leaf of the configuration");
+    model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
+}
+
+/// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
+pub(super) fn impulse<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    momentum_map: &[Expr<'g>],
+    potential: Expr<'g>,
+) -> Option<Vec<Expr<'g>>> {
+    let leaves = model.configurations.iter().zip(&symbols.covectors);
+    let gradients: Vec<_> = leaves.map(|(leaf, p)| (*p, potential.gradient(leaf.symbol))).collect();
+    let impulse: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&gradients)).collect();
+    impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
+}
+
+/// Whether ξ ↦ ξ_Q(q) is injective for a general q.
+pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
+    let columns = generator_columns(symbols, generator);
+    let dimension: usize = model.factors.iter().map(|factor| factor.group.dimension()).sum();
+    let rows: usize = generator.iter().map(|velocity| velocity.shape().len()).sum();
+    let entries = (0..rows).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    identity::rank(model.graph.stack(Shape::new(rows, dimension), entries)) == dimension
+}
+
+/// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
+pub(crate) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+    let mut columns = Vec::new();
+    for xi in &symbols.algebra {
+        for i in 0..xi.shape().rows {
+            let direction = |other: &Expr<'g>| match other == xi {
+                true => xi.graph().unit(xi.shape(), i, 0),
+                false => xi.graph().zero(other.shape()),
+            };
+            let element: Vec<_> = symbols.algebra.iter().map(|other| (*other, direction(other))).collect();
+            let images = generator.iter().map(|velocity| velocity.substitute(&element));
+            columns.push(images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect());
+        }
+    }
+    columns
+}

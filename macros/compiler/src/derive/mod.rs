@@ -1,0 +1,146 @@
+//! The third stage: from the model to its formulas, by calculus on matrices and groups.
+//!
+//! Everything is derived from one discrete Lagrangian ℓd(q, F) = K(F) + U₀(q) + U₁(Φ_F q), the cost with the potential placed by
+//! the order, in the form of the discrete Clebsch problem that holds for every group: solve T* ∂_F K = N + J(q, ∂U₀) for F, move,
+//! and let N⁺ = Ad* of the left side plus J(q⁺, ∂U₁).
+
+mod action;
+mod discrete_lagrangian;
+mod energy;
+mod equation;
+mod print;
+mod symbols;
+
+use clebsch_symbolic::Expr;
+
+use crate::diagnostic::Diagnostics;
+use crate::model::Model;
+
+pub(crate) use action::generator_columns;
+pub use discrete_lagrangian::DiscreteLagrangian;
+pub use equation::{Equation, Solution};
+pub use print::Formula;
+pub use symbols::Symbols;
+
+/// What is derived, as matrix expressions.
+pub struct Formulas<'g> {
+    /// The model that all of it is derived from.
+    pub model: Model<'g>,
+    /// The symbols that the derivation adds to those of the model.
+    pub symbols: Symbols<'g>,
+    /// The infinitesimal generator ξ_Q(q), for each leaf of the configuration.
+    pub generator: Vec<Expr<'g>>,
+    /// Whether only the identity fixes a general configuration.
+    pub is_free: bool,
+    /// J(q, p), for each factor.
+    pub momentum_map: Vec<Expr<'g>>,
+    /// Ad*_F μ, for each factor.
+    pub coadjoint: Vec<Expr<'g>>,
+    /// (TΦ_F)^{-*} p as a function of F, q⁺ and p, for each leaf of the configuration.
+    pub cotangent_lift: Vec<Expr<'g>>,
+    /// Σ, the Hessian of ℓ(ξ) in the components of all factors.
+    pub inertia: Expr<'g>,
+    /// ½ ξ·Σξ.
+    pub kinetic_energy: Expr<'g>,
+    /// V(q), that of the cost included.
+    pub potential_energy: Expr<'g>,
+    /// The declared discrete Lagrangian.
+    pub lagrangian: DiscreteLagrangian<'g>,
+    /// The substeps of a step: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
+    pub substeps: Vec<Substep<'g>>,
+}
+
+/// One discrete Lagrangian with what a step of it needs.
+pub struct Substep<'g> {
+    /// Its part of the step: h is to be read as h divided by this.
+    pub parts: i64,
+    /// The discrete Lagrangian, in terms of the whole step h.
+    pub lagrangian: DiscreteLagrangian<'g>,
+    /// J(q, ∂U₀(q)) for each factor, before the solve; `None` if there is none.
+    pub start: Option<Vec<Expr<'g>>>,
+    /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
+    pub end: Option<Vec<Expr<'g>>>,
+    /// The momentum equations, each for the factors that depend on each other.
+    pub equations: Vec<Equation<'g>>,
+    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree.
+    pub unchanged: Vec<bool>,
+}
+
+/// Derives the formulas of a model.
+///
+/// # Errors
+/// A kinetic part that is degenerate, does not scale like an action, is not quadratic, or couples q and F.
+pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
+    let symbols = Symbols::new(&model);
+    let generator = action::generator(&model, &symbols);
+    let momentum_map = action::momentum_map(&symbols, &generator);
+    let cost = discrete_lagrangian::kinetic_cost(&model)?;
+    let kinetic_energy = energy::kinetic(&model, &symbols, cost)?;
+    let lagrangian = discrete_lagrangian::separate(&model, cost)?;
+    let potential_energy = energy::potential(&model, &lagrangian)?;
+    let substeps = discrete_lagrangian::substeps(&model, &lagrangian)
+        .into_iter()
+        .map(|(parts, lagrangian)| substep(&model, &symbols, &momentum_map, parts, lagrangian))
+        .collect();
+    Ok(Formulas {
+        is_free: action::is_free(&model, &symbols, &generator),
+        coadjoint: action::coadjoint(&model, &symbols),
+        cotangent_lift: action::cotangent_lift(&model, &symbols),
+        inertia: energy::inertia(&symbols, kinetic_energy),
+        model,
+        symbols,
+        generator,
+        momentum_map,
+        kinetic_energy,
+        potential_energy,
+        lagrangian,
+        substeps,
+    })
+}
+
+fn substep<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    momentum_map: &[Expr<'g>],
+    parts: i64,
+    lagrangian: DiscreteLagrangian<'g>,
+) -> Substep<'g> {
+    let impulse = |potential: Expr<'g>| action::impulse(model, symbols, momentum_map, potential);
+    let (before, after): (Vec<_>, Vec<_>) =
+        (0..model.factors.len()).map(|k| equation::trivialisations(model, lagrangian.kinetic, k)).unzip();
+    Substep {
+        parts,
+        start: impulse(lagrangian.start),
+        end: impulse(lagrangian.end),
+        equations: equation::equations(model, symbols, &before),
+        unchanged: equation::agreement(model, &before, &after),
+        lagrangian,
+    }
+}
+
+impl<'g> Formulas<'g> {
+    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂U₀).
+    pub fn legendre(&self) -> Vec<Expr<'g>> {
+        self.transform(&self.lagrangian, true)
+    }
+
+    /// F⁺ℓd for each factor: the other trivialisation of ∂_F K, plus J(q⁺, ∂U₁) where q stands for q⁺.
+    pub fn legendre_next(&self) -> (Vec<Expr<'g>>, Option<Vec<Expr<'g>>>) {
+        let end = action::impulse(&self.model, &self.symbols, &self.momentum_map, self.lagrangian.end);
+        (self.transform(&self.lagrangian, false), end)
+    }
+
+    fn transform(&self, lagrangian: &DiscreteLagrangian<'g>, before: bool) -> Vec<Expr<'g>> {
+        let start = action::impulse(&self.model, &self.symbols, &self.momentum_map, lagrangian.start);
+        let component = |k: usize| {
+            let (minus, plus) = equation::trivialisations(&self.model, lagrangian.kinetic, k);
+            let algebra = self.model.factors[k].group.algebra();
+            match (&start, before) {
+                (Some(start), true) => minus.components(algebra) - start[k],
+                (None, true) => minus.components(algebra),
+                (_, false) => plus.components(algebra),
+            }
+        };
+        (0..self.model.factors.len()).map(component).collect()
+    }
+}

@@ -1,0 +1,183 @@
+//! The formulas as text: what `DERIVATION`, the generated documentation and the snapshots show.
+
+use std::fmt;
+
+use clebsch_symbolic::{Expr, Shape};
+
+use super::{Equation, Formulas, Solution, Substep};
+use crate::model::Side;
+
+/// A derived formula, `symbol = expression`.
+#[derive(Clone)]
+pub struct Formula {
+    /// What it is, in words.
+    pub title: &'static str,
+    /// The left side, `J(q, p)`.
+    pub symbol: String,
+    /// The right side; one text for each factor or leaf, in Unicode.
+    pub text: Vec<String>,
+    /// The same in LaTeX.
+    pub latex: Vec<String>,
+    /// The shapes of the right sides.
+    pub shapes: Vec<Shape>,
+}
+
+impl Formula {
+    fn new(title: &'static str, symbol: impl Into<String>, expressions: &[Expr<'_>]) -> Formula {
+        Formula {
+            title,
+            symbol: symbol.into(),
+            text: expressions.iter().map(|expression| expression.to_string()).collect(),
+            latex: expressions.iter().map(|expression| expression.latex()).collect(),
+            shapes: expressions.iter().map(|expression| expression.shape()).collect(),
+        }
+    }
+
+    /// `symbol = expression`, tuples in parentheses.
+    pub fn equation(&self) -> String {
+        match self.text.as_slice() {
+            [only] => format!("{} = {only}", self.symbol),
+            several => format!("{} = ({})", self.symbol, several.join(", ")),
+        }
+    }
+}
+
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<22} {}", self.title, self.equation())
+    }
+}
+
+impl<'g> Formulas<'g> {
+    /// The user's name for the configuration: `q`, or `(p, q)`.
+    pub fn q(&self) -> String {
+        tuple(self.model.configurations.iter().map(|leaf| leaf.name.clone()))
+    }
+
+    /// The user's name for the group element.
+    pub fn f(&self) -> String {
+        tuple(self.model.factors.iter().map(|factor| factor.name.clone()))
+    }
+
+    /// All formulas, in the order of the derivation.
+    pub fn listing(&self) -> Vec<Formula> {
+        let (q, f) = (self.q(), self.f());
+        let mut formulas = vec![
+            Formula::new("action", format!("Φ_{f}({q})"), &self.model.action),
+            Formula::new("generator", format!("ξ_Q({q})"), &self.generator),
+            self.formula_of_momentum_map(),
+            self.formula_of_coadjoint(),
+            Formula::new("cotangent lift", format!("(TΦ_{f})^-* p at {q}⁺"), &self.cotangent_lift),
+            Formula::new("inertia", "Σξ", &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>()),
+            Formula::new("kinetic energy", "T(ξ)", &[self.kinetic_energy]),
+            self.formula_of_potential(),
+            self.formula_of_hamiltonian(),
+            Formula::new("discrete Lagrangian", format!("K(h, {f})"), &[self.lagrangian.kinetic]),
+            Formula::new("", format!("U₀(h, {q})"), &[self.lagrangian.start]),
+            Formula::new("", format!("U₁(h, {q}⁺)"), &[self.lagrangian.end]),
+            self.formula_of_legendre(),
+            self.formula_of_legendre_next(),
+        ];
+        for substep in &self.substeps {
+            formulas.extend(self.formulas_of_substep(substep));
+        }
+        formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
+        formulas
+    }
+
+    /// J(q, p).
+    pub fn formula_of_momentum_map(&self) -> Formula {
+        Formula::new("momentum map", format!("J({}, p)", self.q()), &self.momentum_map)
+    }
+
+    /// Ad*_F μ.
+    pub fn formula_of_coadjoint(&self) -> Formula {
+        Formula::new("coadjoint action", format!("Ad*_{} μ", self.f()), &self.coadjoint)
+    }
+
+    /// V(q).
+    pub fn formula_of_potential(&self) -> Formula {
+        Formula::new("potential energy", format!("V({})", self.q()), &[self.potential_energy])
+    }
+
+    /// H(q, μ).
+    pub fn formula_of_hamiltonian(&self) -> Formula {
+        let mut formula = self.formula_of_potential();
+        let potential = if self.potential_energy.is_zero() { String::new() } else { format!(" + {}", formula.text[0]) };
+        formula.title = "Hamiltonian";
+        formula.symbol = format!("H({}, μ)", self.q());
+        formula.text = vec![format!("½ μ·Σ⁻¹·μ{potential}")];
+        formula
+    }
+
+    /// F⁻ℓd(q, F).
+    pub fn formula_of_legendre(&self) -> Formula {
+        let legendre: Vec<_> = self.legendre().into_iter().map(|component| component.expand()).collect();
+        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &legendre)
+    }
+
+    /// F⁺ℓd(q, F).
+    pub fn formula_of_legendre_next(&self) -> Formula {
+        let (kinetic, end) = self.legendre_next();
+        let mut formula = Formula::new("", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
+        if let Some(end) = end {
+            formula.text.iter_mut().zip(end).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
+        }
+        formula
+    }
+
+    fn formulas_of_substep(&self, substep: &Substep<'g>) -> Vec<Formula> {
+        let mut formulas = Vec::new();
+        if let Some(start) = &substep.start {
+            formulas.push(Formula::new("kick", "M − N", start));
+        }
+        for equation in &substep.equations {
+            formulas.push(self.formula_of_equation(equation));
+            formulas.push(self.formula_of_jacobian(equation));
+        }
+        formulas.push(self.formula_of_update(substep));
+        if let Some(end) = &substep.end {
+            formulas.push(Formula::new("kick", format!("N⁺ − M⁺, at {}⁺", self.q()), end));
+        }
+        formulas
+    }
+
+    /// ρ(x) = 0.
+    pub fn formula_of_equation(&self, equation: &Equation<'g>) -> Formula {
+        let title = if equation.solution == Solution::Explicit { "equation (explicit)" } else { "equation" };
+        Formula::new(title, "0 = ρ(x)", &[equation.residual])
+    }
+
+    /// Dρ(x)·δ.
+    pub fn formula_of_jacobian(&self, equation: &Equation<'g>) -> Formula {
+        Formula::new("Jacobian", "Dρ(x)·δ", &[equation.directional])
+    }
+
+    fn formula_of_update(&self, substep: &Substep<'g>) -> Formula {
+        let update = |k: usize| {
+            let factor = &self.model.factors[k];
+            let mu = self.symbols.momenta[k];
+            match (substep.unchanged[k], factor.side) {
+                (true, _) => mu,
+                (false, Side::Left) => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
+                (false, Side::Right) => factor.group.coadjoint(factor.symbol, mu),
+            }
+        };
+        let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
+        Formula::new("momentum update", "M⁺", &updates)
+    }
+}
+
+fn tuple(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    if names.len() == 1 { names.concat() } else { format!("({})", names.join(", ")) }
+}
+
+impl fmt::Display for Formulas<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for formula in self.listing() {
+            writeln!(f, "{}", formula.to_string().trim_end())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,283 @@
+//! Tokens of straight-line code.
+
+use clebsch_symbolic::{Rational, Role, Shape, integer};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::path::Paths;
+use crate::lower::{Code, Input, Kernel};
+use crate::model::{Model, ScalarType, Structure};
+
+/// Where a function finds its inputs.
+pub struct Scope<'a, 'g> {
+    /// The model, for the fields and accessors.
+    pub model: &'a Model<'g>,
+    /// The paths of the runtime.
+    pub paths: &'a Paths,
+    /// The user's struct: `self` or `self.system`.
+    pub system: TokenStream,
+    /// The constants: `self.constants`, or nothing while they are being made.
+    pub constants: Option<TokenStream>,
+    /// The names of the constants.
+    pub constant_names: &'a [String],
+    /// Which of all momentum components the vectors `mu` and `x` hold, in order.
+    pub components: Vec<usize>,
+    /// The name of the momentum argument.
+    pub momentum: &'static str,
+}
+
+/// Tokens that reach a leaf: `.0[1]`.
+pub fn accessor(text: &str) -> TokenStream {
+    // by construction: accessors are made of tuple and array indices
+    text.parse().unwrap_or_default()
+}
+
+impl Scope<'_, '_> {
+    fn read(&self, input: &Input) -> TokenStream {
+        let (row, column) = (Literal::usize_unsuffixed(input.row), Literal::usize_unsuffixed(input.column));
+        let index = if input.is_vector { quote!([#row]) } else { quote!([(#row, #column)]) };
+        let leaf = |name: &str, access: &str| {
+            let (name, access) = (format_ident!("{name}"), accessor(access));
+            quote!(#name #access #index)
+        };
+        let factor = |k: usize| self.model.factors[k].accessor.as_str();
+        match input.role {
+            Role::StepSize => quote!(h),
+            Role::Time => quote!(t),
+            Role::Parameter(leaf) => self.parameter(leaf, index),
+            Role::Constant(index) => self.constant_of_crate(index),
+            Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
+            Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
+            Role::Element(k) => leaf("f", factor(k)),
+            Role::Increment(k) => leaf("d", factor(k)),
+            Role::MomentumMatrix(k) => leaf("m", factor(k)),
+            Role::Momentum(k) => self.component(self.momentum, k, input.row),
+            Role::Chart(k) | Role::Algebra(k) => self.component("x", k, input.row),
+            Role::Auxiliary(_) => match &self.constants {
+                Some(constants) => quote!(#constants.inertia_inverse #index),
+                None => quote!(inertia_inverse #index),
+            },
+        }
+    }
+
+    /// The entry of a flat vector that belongs to a component of a factor.
+    fn component(&self, vector: &str, factor: usize, row: usize) -> TokenStream {
+        let offset: usize = self.model.factors[..factor].iter().map(|factor| factor.group.dimension()).sum();
+        let position = self.components.iter().position(|&component| component == offset + row).unwrap_or(offset + row);
+        let (vector, position) = (format_ident!("{vector}"), Literal::usize_unsuffixed(position));
+        quote!(#vector[#position])
+    }
+
+    fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
+        let all = self.model.parameters.iter().flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
+        let is_leaf = |symbol: clebsch_symbolic::Expr<'_>| symbol.as_symbol().is_some_and(|data| data.role == Role::Parameter(leaf));
+        // by construction: the role of a parameter's symbol is that of one leaf
+        let Some((parameter, leaf)) = all.into_iter().find(|(_, leaf)| is_leaf(leaf.symbol)) else { return quote!() };
+        let mut field = parameter.field.clone();
+        if let syn::Member::Named(ident) = &mut field {
+            ident.set_span(parameter.first_use);
+        }
+        let (system, access) = (&self.system, accessor(&leaf.accessor));
+        let index = if leaf.is_scalar { quote!() } else { index };
+        quote!(#system.#field #access #index)
+    }
+
+    fn constant_of_crate(&self, index: usize) -> TokenStream {
+        let path = &self.model.constants[index].path;
+        match self.model.item.scalar {
+            ScalarType::Parameter(_) => {
+                let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+                quote!(<#scalar as #private::Scalar>::from_f64(#path))
+            }
+            _ => quote!(#path),
+        }
+    }
+
+    /// Tokens of a code; `tight` where it stands beside a multiplication.
+    pub fn code(&self, code: &Code, tight: bool) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        match code {
+            Code::Read(input) => self.read(input),
+            Code::Pi => quote!(<#scalar as #private::Scalar>::PI),
+            Code::Number(value) => self.number(value),
+            Code::Constant(index) => {
+                let (constants, name) = (&self.constants, format_ident!("{}", self.constant_names[*index]));
+                quote!(#constants.#name)
+            }
+            Code::Term(index) => {
+                let index = Literal::usize_unsuffixed(*index);
+                quote!(terms[#index])
+            }
+            Code::Local(index) => {
+                let name = format_ident!("t{index}");
+                quote!(#name)
+            }
+            Code::Sum(constant, terms) => self.sum(constant, terms, tight),
+            Code::Product(factors) => {
+                let factors = factors.iter().map(|factor| self.code(factor, true));
+                factors.reduce(|product, factor| quote!(#product * #factor)).unwrap_or_else(|| self.number(&integer(1)))
+            }
+            Code::Reciprocal(x) => {
+                let (one, x) = (self.number(&integer(1)), self.code(x, true));
+                if tight { quote!((#one / #x)) } else { quote!(#one / #x) }
+            }
+            Code::Root(x, (1, 2)) => {
+                let x = self.code(x, false);
+                quote!(#private::Scalar::sqrt(#x))
+            }
+            Code::Root(x, (numerator, denominator)) => {
+                let (x, exponent) = (self.code(x, false), self.number(&clebsch_symbolic::rational(*numerator, *denominator)));
+                quote!(#private::Scalar::powf(#x, #exponent))
+            }
+            Code::Function(function, x) => {
+                let (name, x) = (format_ident!("{}", function.name()), self.code(x, false));
+                quote!(#private::Scalar::#name(#x))
+            }
+        }
+    }
+
+    fn sum(&self, constant: &Rational, terms: &[(Rational, Code)], tight: bool) -> TokenStream {
+        let mut tokens = TokenStream::new();
+        // positive terms first, so that no sum begins with a sign
+        let mut ordered: Vec<&(Rational, Code)> = terms.iter().collect();
+        ordered.sort_by_key(|(coefficient, _)| *coefficient < integer(0));
+        if *constant != integer(0) {
+            tokens.extend(self.number(constant));
+        }
+        for (coefficient, term) in ordered {
+            let negative = *coefficient < integer(0);
+            let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
+            let factor = (magnitude != integer(1)).then(|| self.number(&magnitude)).map(|number| quote!(#number *));
+            let sign = match (tokens.is_empty(), negative) {
+                (true, false) => quote!(),
+                (_, true) => quote!(-),
+                (false, false) => quote!(+),
+            };
+            let term = self.code(term, true);
+            tokens.extend(quote!(#sign #factor #term));
+        }
+        let single = terms.len() + usize::from(*constant != integer(0)) == 1 && terms.first().is_none_or(|(c, _)| *c > integer(0));
+        if tight && !single { quote!((#tokens)) } else { tokens }
+    }
+
+    /// A number, rounded once to the scalar.
+    fn number(&self, value: &Rational) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let parts = (i64::try_from(value.numer()), i64::try_from(value.denom()));
+        match (&self.model.item.scalar, parts) {
+            (ScalarType::Parameter(_), (Ok(0), Ok(1))) => quote!(<#scalar as #private::Zero>::zero()),
+            (ScalarType::Parameter(_), (Ok(1), Ok(1))) => quote!(<#scalar as #private::One>::one()),
+            (ScalarType::Parameter(_), (Ok(numerator), Ok(denominator))) => {
+                let (numerator, denominator) = (Literal::i64_unsuffixed(numerator), Literal::i64_unsuffixed(denominator));
+                quote!(<#scalar as #private::Scalar>::from_ratio(#numerator, #denominator))
+            }
+            (ScalarType::Parameter(_), _) => {
+                let literal = float(value);
+                quote!(<#scalar as #private::Scalar>::from_f64(#literal))
+            }
+            _ => float(value),
+        }
+    }
+}
+
+/// A floating-point literal: the decimal fraction where it ends, a quotient where it does not.
+fn float(value: &Rational) -> TokenStream {
+    let negative = *value < integer(0);
+    let magnitude = if negative { -value.clone() } else { value.clone() };
+    let tokens = match decimal(&magnitude) {
+        Some(text) => text.parse().unwrap_or_default(),
+        None => {
+            let part = |text: String| -> TokenStream { format!("{text}.0").parse().unwrap_or_default() };
+            let (numerator, denominator) = (part(magnitude.numer().to_string()), part(magnitude.denom().to_string()));
+            quote!((#numerator / #denominator))
+        }
+    };
+    if negative { quote!((-#tokens)) } else { tokens }
+}
+
+/// The decimal fraction of a positive rational whose denominator divides a power of ten, in at most 40 digits.
+fn decimal(value: &Rational) -> Option<String> {
+    let mut scaled = value.clone();
+    for digits in 0..=40_usize {
+        if *scaled.denom() == *integer(1).numer() {
+            let text = scaled.numer().to_string();
+            if text.len() > 60 {
+                return None;
+            }
+            return Some(match digits {
+                0 => format!("{text}.0"),
+                7.. => format!("{text}e-{digits}"),
+                _ => {
+                    let padded = format!("{text:0>width$}", width = digits + 1);
+                    let point = padded.len() - digits;
+                    format!("{}.{}", &padded[..point], &padded[point..])
+                }
+            });
+        }
+        scaled *= integer(10);
+    }
+    None
+}
+
+/// The body of a kernel that returns its outputs nested as `structure`, or its only output.
+pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, structure: Option<&Structure>) -> TokenStream {
+    let locals = locals(scope, kernel);
+    let value = match structure {
+        Some(structure) => nested(structure, &mut |leaf| grid(scope, kernel.outputs[leaf].0, &kernel.outputs[leaf].1)),
+        None => grid(scope, kernel.outputs[0].0, &kernel.outputs[0].1),
+    };
+    quote!(#locals #value)
+}
+
+/// The shared terms of a kernel.
+pub fn locals(scope: &Scope<'_, '_>, kernel: &Kernel) -> TokenStream {
+    let locals = kernel.locals.iter().enumerate().map(|(index, code)| {
+        let (name, code) = (format_ident!("t{index}"), scope.code(code, false));
+        quote!(let #name = #code;)
+    });
+    quote!(#(#locals)*)
+}
+
+/// A matrix or vector of entries.
+pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStream {
+    let private = &scope.paths.private;
+    let entries: Vec<TokenStream> = entries.iter().map(|entry| scope.code(entry, false)).collect();
+    match shape.columns {
+        1 => quote!(#private::vector([#(#entries),*])),
+        columns => {
+            let rows = entries.chunks(columns).map(|row| quote!([#(#row),*]));
+            quote!(#private::matrix([#(#rows),*]))
+        }
+    }
+}
+
+/// Tuples and arrays of leaves.
+pub fn nested(structure: &Structure, leaf: &mut impl FnMut(usize) -> TokenStream) -> TokenStream {
+    match structure {
+        Structure::Leaf(index) => leaf(*index),
+        Structure::Tuple(parts) => {
+            let parts: Vec<_> = parts.iter().map(|part| nested(part, leaf)).collect();
+            quote!((#(#parts,)*))
+        }
+        Structure::Array(parts) => {
+            let parts: Vec<_> = parts.iter().map(|part| nested(part, leaf)).collect();
+            quote!([#(#parts),*])
+        }
+    }
+}
+
+/// The type of a nesting of leaves.
+pub fn nested_type(structure: &Structure, leaf: &impl Fn(usize) -> TokenStream) -> TokenStream {
+    match structure {
+        Structure::Leaf(index) => leaf(*index),
+        Structure::Tuple(parts) => {
+            let parts = parts.iter().map(|part| nested_type(part, leaf));
+            quote!((#(#parts,)*))
+        }
+        Structure::Array(parts) => {
+            let count = Literal::usize_unsuffixed(parts.len());
+            let part = parts.first().map(|part| nested_type(part, leaf));
+            quote!([#part; #count])
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! What a stepper computes once: its type, and the checks and code that make it.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::{Emitter, code, docs};
+use crate::derive::Solution;
+use crate::model::Promise;
+
+impl Emitter<'_, '_> {
+    /// The struct of the constants.
+    pub(super) fn constants_type(&self) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let names = self.program.constant_names.iter().map(|name| format_ident!("{name}"));
+        let orientations = self.implicit_solves().map(|(name, _)| name);
+        let inverse = self.paths.matrix(self.dimension(), self.dimension());
+        let (generics, _) = self.constants_generics();
+        let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
+        quote! {
+            #documentation
+            #[derive(::core::clone::Clone, ::core::fmt::Debug)]
+            pub struct Constants #generics {
+                #(#names: #scalar,)*
+                #(#orientations: #private::Orientation,)*
+                inertia_inverse: #inverse,
+            }
+        }
+    }
+
+    /// For each equation that Newton's method solves: the name of its orientation, and its components.
+    pub(super) fn implicit_solves(&self) -> impl Iterator<Item = (proc_macro2::Ident, Vec<usize>)> {
+        let solves = self.program.steps.iter().enumerate().flat_map(|(index, step)| {
+            let suffix = self.program.suffix(index);
+            step.solves.iter().enumerate().map(move |(number, solve)| (suffix, number, solve))
+        });
+        let implicit = solves.filter(|(_, _, solve)| solve.solution == Solution::Newton);
+        implicit.map(|(suffix, number, solve)| (format_ident!("orientation{suffix}_{}", number + 1), solve.components.clone()))
+    }
+
+    /// The method `constants`.
+    pub(super) fn constants(&self) -> TokenStream {
+        let (private, scalar, krate) = (&self.paths.private, &self.paths.scalar, &self.paths.krate);
+        let scope = self.scope_of_system();
+        let checks = self.checks();
+        let inertia = code::body(&scope, &self.program.inertia, None);
+        let locals = code::locals(&scope, &self.program.constants);
+        let fields = self.program.constant_names.iter().zip(&self.program.constants.outputs).map(|(name, (_, entries))| {
+            let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
+            quote!(#name: #value,)
+        });
+        let orientations = self.implicit_solves().map(|(name, components)| {
+            let entry = |i: &usize, j: &usize| {
+                let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
+                quote!(inertia[(#i, #j)] / h)
+            };
+            let rows = components.iter().map(|i| {
+                let row = components.iter().map(|j| entry(i, j));
+                quote!([#(#row),*])
+            });
+            quote! {
+                #name: #private::Orientation::of([#(#rows),*])
+                    .ok_or(#krate::Error::SingularKineticEnergy { condition: ::core::f64::INFINITY })?,
+            }
+        });
+        let documentation = docs::formulas("Checks the parameters and computes what no step changes.", &[], Some(&self.program.constants));
+        quote! {
+            #documentation
+            fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
+                #checks
+                let inertia = { #inertia };
+                let inertia_inverse = #private::invert(&inertia)?;
+                #locals
+                ::core::result::Result::Ok(Constants {
+                    #(#fields)*
+                    #(#orientations)*
+                    inertia_inverse,
+                })
+            }
+        }
+    }
+
+    /// Checks of every field that a closure reads: finite, and what the user promises.
+    fn checks(&self) -> TokenStream {
+        let private = &self.paths.private;
+        let checks = self.model.parameters.iter().map(|parameter| {
+            let (field, name) = (&parameter.field, &parameter.name);
+            let promises = parameter.promise.into_iter().flat_map(|promise| {
+                parameter.leaves.iter().map(move |leaf| (promise, code::accessor(&leaf.accessor)))
+            });
+            let promises = promises.map(|(promise, access)| match promise {
+                Promise::Symmetric => quote!(#private::check_symmetric(#name, &self.#field #access)?;),
+                Promise::Diagonal => quote!(#private::check_diagonal(#name, &self.#field #access)?;),
+                Promise::Unit => quote!(#private::check_unit(#name, &self.#field #access)?;),
+            });
+            quote! {
+                #private::check_finite(#name, &self.#field)?;
+                #(#promises)*
+            }
+        });
+        quote!(#(#checks)*)
+    }
+}

@@ -1,0 +1,196 @@
+//! The fifth stage: the program as Rust, documented with the formulas it computes.
+
+mod code;
+mod constants;
+mod derivation;
+mod docs;
+mod path;
+mod step;
+mod stub;
+mod system;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::lower::Program;
+use crate::model::Model;
+use code::{Scope, nested_type};
+use path::Paths;
+
+pub use derivation::derivation;
+pub use stub::stub;
+
+/// The integrator of a program.
+pub fn emit(program: &Program<'_>) -> TokenStream {
+    let emitter = Emitter::new(program);
+    let items = emitter.items();
+    let generated = program.formulas.model.emit.generated.then(|| emitter.generated(&items));
+    quote! {
+        const _: () = {
+            #items
+        };
+        #generated
+    }
+}
+
+/// The generated code of a program as text.
+pub fn generated(program: &Program<'_>) -> String {
+    pretty(&Emitter::new(program).items())
+}
+
+fn pretty(items: &TokenStream) -> String {
+    match syn::parse2(items.clone()) {
+        Ok(file) => prettyplease::unparse(&file),
+        // by construction: what is emitted parses; if not, the raw tokens show where
+        Err(_) => items.to_string(),
+    }
+}
+
+/// What every part of the expansion needs.
+struct Emitter<'a, 'g> {
+    program: &'a Program<'g>,
+    model: &'a Model<'g>,
+    paths: Paths,
+    generics: Generics,
+}
+
+/// The user's generics in the forms that impls need.
+struct Generics {
+    /// Parameters as an impl declares them, without angle brackets or defaults.
+    parameters: TokenStream,
+    /// Arguments, without angle brackets.
+    arguments: TokenStream,
+    /// The where clause, with the scalar's bound.
+    predicates: TokenStream,
+}
+
+impl Generics {
+    fn new(model: &Model<'_>, paths: &Paths) -> Generics {
+        let mut generics = model.item.generics.clone();
+        for parameter in generics.type_params_mut() {
+            parameter.default = None;
+        }
+        for parameter in generics.const_params_mut() {
+            parameter.default = None;
+        }
+        let parameters = &generics.params;
+        let arguments = generics.params.iter().map(|parameter| match parameter {
+            syn::GenericParam::Lifetime(lifetime) => {
+                let lifetime = &lifetime.lifetime;
+                quote!(#lifetime)
+            }
+            syn::GenericParam::Type(parameter) => {
+                let ident = &parameter.ident;
+                quote!(#ident)
+            }
+            syn::GenericParam::Const(parameter) => {
+                let ident = &parameter.ident;
+                quote!(#ident)
+            }
+        });
+        let arguments: Vec<TokenStream> = arguments.collect();
+        let predicates = generics.where_clause.as_ref().map(|clause| &clause.predicates).into_iter().flatten();
+        let predicates: Vec<_> = predicates.collect();
+        let (private, scalar) = (&paths.private, &paths.scalar);
+        let bound = matches!(model.item.scalar, crate::model::ScalarType::Parameter(_)).then(|| quote!(#scalar: #private::Scalar,));
+        Generics {
+            parameters: quote!(#parameters),
+            arguments: quote!(#(#arguments),*),
+            predicates: quote!(where #(#predicates,)* #bound),
+        }
+    }
+}
+
+impl<'a, 'g> Emitter<'a, 'g> {
+    fn new(program: &'a Program<'g>) -> Emitter<'a, 'g> {
+        let model = &program.formulas.model;
+        let paths = Paths::new(&model.item);
+        let generics = Generics::new(model, &paths);
+        Emitter { program, model, paths, generics }
+    }
+
+    fn items(&self) -> TokenStream {
+        let constants = self.constants_type();
+        let system = self.system();
+        let step = self.step_type();
+        let equations = self.equations();
+        quote!(#constants #system #step #equations)
+    }
+
+    fn generated(&self, items: &TokenStream) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, text) = (&self.model.item.ident, pretty(items));
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #ident<#arguments> #predicates {
+                /// The code that `derive(Clebsch)` has generated for this struct.
+                pub const GENERATED: &'static ::core::primitive::str = #text;
+            }
+        }
+    }
+
+    /// The scope of a method of the user's struct.
+    fn scope_of_system(&self) -> Scope<'_, 'g> {
+        self.scope(quote!(self), None)
+    }
+
+    /// The scope of a method of a step or an equation.
+    fn scope_of_step(&self) -> Scope<'_, 'g> {
+        self.scope(quote!(self.system), Some(quote!(self.constants)))
+    }
+
+    fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
+        let dimension = self.dimension();
+        Scope {
+            model: self.model,
+            paths: &self.paths,
+            system,
+            constants,
+            constant_names: &self.program.constant_names,
+            components: (0..dimension).collect(),
+            momentum: "mu",
+        }
+    }
+
+    /// The number of components of a momentum.
+    fn dimension(&self) -> usize {
+        self.model.factors.iter().map(|factor| factor.group.dimension()).sum()
+    }
+
+    fn configuration_type(&self) -> TokenStream {
+        nested_type(&self.model.configuration, &|leaf| {
+            let shape = self.model.configurations[leaf].shape;
+            self.paths.matrix(shape.rows, shape.columns)
+        })
+    }
+
+    fn element_type(&self) -> TokenStream {
+        nested_type(&self.model.element, &|factor| {
+            let shape = self.model.factors[factor].group.element_shape();
+            self.paths.matrix(shape.rows, shape.columns)
+        })
+    }
+
+    fn momentum_type(&self) -> TokenStream {
+        self.paths.matrix(self.dimension(), 1)
+    }
+
+    /// Whether the end kick of a step serves as the start kick of the next.
+    fn shares_impulse(&self) -> bool {
+        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.steps.len() - 1]);
+        let (start, end) = (&self.program.formulas.substeps[0].start, &self.program.formulas.substeps[self.program.steps.len() - 1].end);
+        start == end && first.start.is_some() && last.end.is_some()
+    }
+
+    fn impulse_type(&self) -> TokenStream {
+        if self.shares_impulse() { self.momentum_type() } else { quote!(()) }
+    }
+
+    fn constants_generics(&self) -> (TokenStream, TokenStream) {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        match self.model.item.scalar {
+            crate::model::ScalarType::Parameter(_) => (quote!(<#scalar: #private::Scalar>), quote!(<#scalar>)),
+            _ => (quote!(), quote!()),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What generated code names of the runtime; the other side of this file is the runtime's module `__private`.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::model::{Item, ScalarType};
+
+/// The paths of the runtime for one expansion.
+pub struct Paths {
+    /// The runtime crate.
+    pub krate: TokenStream,
+    /// Its module for generated code.
+    pub private: TokenStream,
+    /// The scalar type.
+    pub scalar: TokenStream,
+}
+
+impl Paths {
+    /// The paths for an item.
+    pub fn new(item: &Item) -> Paths {
+        let krate = &item.krate;
+        let scalar = match &item.scalar {
+            ScalarType::F32 => quote!(::core::primitive::f32),
+            ScalarType::F64 => quote!(::core::primitive::f64),
+            ScalarType::Parameter(ident) => quote!(#ident),
+        };
+        Paths { krate: quote!(#krate), private: quote!(#krate::__private), scalar }
+    }
+
+    /// `SMatrix<T, r, c>`, or `SVector<T, r>`.
+    pub fn matrix(&self, rows: usize, columns: usize) -> TokenStream {
+        let (private, scalar) = (&self.private, &self.scalar);
+        let literal = proc_macro2::Literal::usize_unsuffixed;
+        match (literal(rows), literal(columns), columns) {
+            (rows, _, 1) => quote!(#private::SVector<#scalar, #rows>),
+            (rows, columns, _) => quote!(#private::SMatrix<#scalar, #rows, #columns>),
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! The type `Step`, a method for each part of a step, and the equations that it solves.
+
+use clebsch_symbolic::{Chart, Shape};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::{Emitter, Generics, code, docs};
+use crate::derive::{Formula, Solution};
+use crate::lower::{Kernel, Solve, StepKernels};
+use crate::model::Structure;
+
+impl Emitter<'_, '_> {
+    /// The struct `Step` and its methods.
+    pub(super) fn step_type(&self) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let parts = self.program.steps.iter().enumerate().map(|(index, step)| self.parts(index, step));
+        let (shared, whole) = (self.shared_parts(), self.whole_steps());
+        let documentation = docs::lines(&["A system with the constants of a stepper: the parts of a step are its methods.".to_string()]);
+        quote! {
+            #documentation
+            struct Step<'clebsch, #parameters> #predicates {
+                system: &'clebsch #ident<#arguments>,
+                constants: &'clebsch Constants #constants,
+            }
+
+            #[allow(unused_variables)]
+            impl<'clebsch, #parameters> Step<'clebsch, #arguments> #predicates {
+                #whole
+                #(#parts)*
+                #shared
+            }
+        }
+    }
+
+    fn part(
+        &self,
+        title: &str,
+        formulas: &[Formula],
+        signature: TokenStream,
+        kernel: &Kernel,
+        structure: Option<&Structure>,
+    ) -> TokenStream {
+        let documentation = docs::formulas(title, formulas, Some(kernel));
+        let body = code::body(&self.scope_of_step(), kernel, structure);
+        quote! {
+            #documentation
+            #[inline]
+            fn #signature {
+                #body
+            }
+        }
+    }
+
+    /// The methods of one substep: kicks, solve, increment, update.
+    fn parts(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let suffix = self.program.suffix(index);
+        let name = |name: &str| format_ident!("{name}{suffix}");
+        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
+        let substep = &self.program.formulas.substeps[index];
+        let kick = |name: Ident, title: &str, kernel: &Kernel, parts: &Option<Vec<clebsch_symbolic::Expr<'_>>>| {
+            let mut formula = self.program.formulas.formula_of_momentum_map();
+            formula.symbol = "kick".into();
+            formula.text = parts.iter().flatten().map(|part| part.to_string()).collect();
+            self.part(title, &[formula], quote!(#name(&self, q: &#configuration) -> #momentum), kernel, None)
+        };
+        let start = step.start.as_ref().map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, &substep.start));
+        let end = step.end.as_ref().filter(|_| !step.end_is_start);
+        let end = end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, &substep.end));
+        let gradient = |name: Ident, title: &str, kernel: &Kernel| {
+            let signature = quote!(#name(&self, q: &#configuration) -> #configuration);
+            self.part(title, &[], signature, kernel, Some(&self.model.configuration))
+        };
+        let start_gradient = step.start_gradient.as_ref();
+        let start_gradient = start_gradient.map(|kernel| gradient(name("start_gradient"), "∂U₀(q), the kick of the covector at the start of a step.", kernel));
+        let end_gradient = step.end_gradient.as_ref();
+        let end_gradient = end_gradient.map(|kernel| gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel));
+        let element = self.element_type();
+        let update = step.update.as_ref().map(|kernel| {
+            let (signature, formulas) = (name("update"), self.titled("momentum update"));
+            let signature = quote!(#signature(&self, mu: &#momentum, d: &#element) -> #momentum);
+            self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
+        });
+        let solve = self.solve(name("solve"), suffix, step);
+        quote!(#start #end #start_gradient #end_gradient #solve #update)
+    }
+
+    fn titled(&self, title: &str) -> Vec<Formula> {
+        self.program.formulas.listing().into_iter().filter(|formula| formula.title == title).collect()
+    }
+
+    /// The chart coordinates of all factors, equation by equation.
+    fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
+        let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
+        let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
+            let (equation, solution) = (equation_name(suffix, number), format_ident!("x{}", number + 1));
+            let target = self.part_of("mu", &solve.components);
+            let equation = quote!(#equation { system: self.system, constants: self.constants });
+            match solve.solution {
+                Solution::Explicit => quote!(let #solution = #private::Equation::predict(&#equation, &#target);),
+                Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
+            }
+        });
+        let entries = (0..self.dimension()).map(|component| {
+            let position = |solve: &Solve| solve.components.iter().position(|&other| other == component);
+            let found = step.solves.iter().enumerate().find_map(|(number, solve)| Some((number, position(solve)?)));
+            // by construction: every component belongs to one equation
+            let (number, position) = found.unwrap_or((0, 0));
+            let (solution, position) = (format_ident!("x{}", number + 1), Literal::usize_unsuffixed(position));
+            quote!(#solution[#position])
+        });
+        let documentation = docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
+        let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
+        quote! {
+            #documentation
+            #[inline]
+            fn #name(&self, mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
+                #(#solutions)*
+                ::core::result::Result::Ok(#result)
+            }
+        }
+    }
+
+    /// Some components of a flat vector; all of them are the vector itself.
+    fn part_of(&self, vector: &str, components: &[usize]) -> TokenStream {
+        let (private, vector) = (&self.paths.private, format_ident!("{vector}"));
+        if components.len() == self.dimension() {
+            return quote!(*#vector);
+        }
+        let entries = components.iter().map(|&component| {
+            let component = Literal::usize_unsuffixed(component);
+            quote!(#vector[#component])
+        });
+        quote!(#private::vector([#(#entries),*]))
+    }
+
+    /// Increment, advance and lift, which all substeps share.
+    fn shared_parts(&self) -> TokenStream {
+        let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
+        let step = &self.program.steps[0];
+        let increment = self.part(
+            "The increment D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
+            &[],
+            quote!(increment(&self, x: &#momentum) -> #element),
+            &step.increment,
+            Some(&self.model.element),
+        );
+        let advance = self.part(
+            "The configuration that F = I + D moves q to.",
+            &self.titled("action"),
+            quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
+            &step.advance,
+            Some(&self.model.configuration),
+        );
+        let lift = self.part(
+            "The covector p carried along by F = I + D, at q⁺.",
+            &self.titled("cotangent lift"),
+            quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
+            &self.program.cotangent_lift,
+            Some(&self.model.configuration),
+        );
+        quote!(#increment #advance #lift)
+    }
+
+    /// The steps themselves, which only call their parts.
+    fn whole_steps(&self) -> TokenStream {
+        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let (configuration, element, momentum, impulse) =
+            (self.configuration_type(), self.element_type(), self.momentum_type(), self.impulse_type());
+        let euler_poincare = self.program.steps.iter().enumerate().map(|(index, step)| self.euler_poincare(index, step));
+        let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
+        let (inverse, first) = (self.inverse_legendre(), self.program.suffix(0));
+        let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(0, &self.program.steps[0], false));
+        quote! {
+            /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
+            #[inline]
+            fn euler_poincare(
+                &self,
+                q: &#configuration,
+                mu: &#momentum,
+                impulse: &#impulse,
+            ) -> ::core::result::Result<(#configuration, #momentum, #impulse), #krate::Error> {
+                let (q, mu) = (*q, *mu);
+                #(#euler_poincare)*
+                #next_impulse
+                if !(#private::Space::is_finite(&q) && #private::Space::is_finite(&mu)) {
+                    return ::core::result::Result::Err(#krate::Error::NotFinite { name: "the next state" });
+                }
+                ::core::result::Result::Ok((q, mu, impulse))
+            }
+            #symmetric
+            /// F with momentum μ at q.
+            fn inverse_legendre(&self, q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
+                let mu = *mu;
+                let q = *q;
+                #kicked
+                let x = self.#solve(&mu)?;
+                let d = self.increment(&x);
+                #inverse
+            }
+        }
+    }
+
+    /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
+    fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
+        let start = format_ident!("start_kick{}", self.program.suffix(index));
+        match (&step.start, with_impulse && index == 0 && self.shares_impulse()) {
+            (None, _) => quote!(),
+            (Some(_), true) => quote!(let mu = mu + *impulse;),
+            (Some(_), false) => quote!(let mu = mu + self.#start(&q);),
+        }
+    }
+
+    fn euler_poincare(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let suffix = self.program.suffix(index);
+        let (solve, update) = (format_ident!("solve{suffix}"), format_ident!("update{suffix}"));
+        let kicked = self.kicked(index, step, true);
+        let updated = step.update.as_ref().map(|_| quote!(let mu = self.#update(&mu, &d);));
+        let last = index + 1 == self.program.steps.len();
+        let end = match (&step.end, last && self.shares_impulse()) {
+            (None, _) | (Some(_), true) => quote!(),
+            (Some(_), false) => {
+                let end = format_ident!("{}{suffix}", if step.end_is_start { "start_kick" } else { "end_kick" });
+                quote!(let mu = mu + self.#end(&q);)
+            }
+        };
+        quote! {
+            #kicked
+            let x = self.#solve(&mu)?;
+            let d = self.increment(&x);
+            let q = self.advance(&q, &d);
+            #updated
+            #end
+        }
+    }
+
+    /// The last kick, kept for the next step where it is the same.
+    fn next_impulse(&self) -> TokenStream {
+        let start = format_ident!("start_kick{}", self.program.suffix(0));
+        match self.shares_impulse() {
+            true => quote! {
+                let impulse = self.#start(&q);
+                let mu = mu + impulse;
+            },
+            false => quote!(let impulse = ();),
+        }
+    }
+
+    fn symmetric(&self) -> TokenStream {
+        let (private, krate, configuration) = (&self.paths.private, &self.paths.krate, self.configuration_type());
+        let substeps = self.program.steps.iter().enumerate().map(|(index, step)| {
+            let suffix = self.program.suffix(index);
+            let solve = format_ident!("solve{suffix}");
+            let kick = |name: &str| {
+                let name = format_ident!("{name}{suffix}");
+                let sum = code::nested(&self.model.configuration, &mut |leaf| {
+                    let access = code::accessor(&self.model.configurations[leaf].accessor);
+                    quote!(p #access + gradient #access)
+                });
+                quote! {
+                    let gradient = self.#name(&q);
+                    let p = #sum;
+                }
+            };
+            let start = step.start_gradient.as_ref().map(|_| kick("start_gradient"));
+            let end = step.end_gradient.as_ref().map(|_| kick("end_gradient"));
+            quote! {
+                #start
+                let x = self.#solve(&#krate::Clebsch::momentum_map(self.system, &q, &p))?;
+                let d = self.increment(&x);
+                let q = self.advance(&q, &d);
+                let p = self.lift(&q, &p, &d);
+                #end
+            }
+        });
+        quote! {
+            /// (q, p) ↦ (q⁺, p⁺), with the momentum J(q, p).
+            fn symmetric(
+                &self,
+                q: &#configuration,
+                p: &#configuration,
+            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
+                let (q, p) = (*q, *p);
+                #(#substeps)*
+                if !(#private::Space::is_finite(&q) && #private::Space::is_finite(&p)) {
+                    return ::core::result::Result::Err(#krate::Error::NotFinite { name: "the next state" });
+                }
+                ::core::result::Result::Ok((q, p))
+            }
+        }
+    }
+
+    /// F = I + D for each factor.
+    fn inverse_legendre(&self) -> TokenStream {
+        let private = &self.paths.private;
+        let element = code::nested(&self.model.element, &mut |k| {
+            let access = code::accessor(&self.model.factors[k].accessor);
+            match self.model.factors[k].group.chart() {
+                Chart::Identity => quote!(d #access),
+                Chart::Cayley => quote!(#private::from_increment(&d #access)),
+            }
+        });
+        quote!(::core::result::Result::Ok(#element))
+    }
+
+    /// The types of the equations.
+    pub(super) fn equations(&self) -> TokenStream {
+        let mut types = TokenStream::new();
+        for (index, step) in self.program.steps.iter().enumerate() {
+            for (number, solve) in step.solves.iter().enumerate() {
+                types.extend(self.equation(index, number, solve));
+            }
+        }
+        types
+    }
+
+    fn equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let suffix = self.program.suffix(index);
+        let dimension = Literal::usize_unsuffixed(solve.dimension);
+        let name = equation_name(suffix, number);
+        let mut scope = self.scope_of_step();
+        scope.components = solve.components.clone();
+        scope.momentum = "target";
+        let (vector, jacobian) = (self.paths.matrix(solve.dimension, 1), quote!(#private::SMatrix<#scalar, #dimension, #dimension>));
+        let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
+        let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
+        let (prepare_locals, predict) = (code::locals(&scope, &solve.prepare), code::body(&scope, &solve.predict, None));
+        let locals = code::locals(&scope, &solve.linearize);
+        let square = Shape::square(solve.dimension);
+        let residual = code::grid(&scope, solve.linearize.outputs[0].0, &solve.linearize.outputs[0].1);
+        let rows = code::grid(&scope, square, &solve.linearize.outputs[1].1);
+        let derived = &self.program.formulas.substeps[index].equations[number];
+        let formulas = [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
+        let documentation = docs::formulas("The momentum equation in the chart.", &formulas[..1], None);
+        let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
+        let orientation = (solve.solution == Solution::Newton).then(|| {
+            let field = format_ident!("orientation{suffix}_{}", number + 1);
+            quote! {
+                #[inline]
+                fn orientation(&self) -> ::core::option::Option<#private::Orientation> {
+                    ::core::option::Option::Some(self.constants.#field)
+                }
+            }
+        });
+        quote! {
+            #documentation
+            struct #name<'clebsch, #parameters> #predicates {
+                #[allow(dead_code)]
+                system: &'clebsch #ident<#arguments>,
+                constants: &'clebsch Constants #constants,
+            }
+
+            #[allow(unused_variables)]
+            impl<'clebsch, #parameters> #private::Equation<#scalar, #dimension> for #name<'clebsch, #arguments> #predicates {
+                type Terms = [#scalar; #terms];
+
+                #[inline]
+                fn prepare(&self, target: &#vector) -> Self::Terms {
+                    #prepare_locals
+                    [#(#prepared),*]
+                }
+
+                /// The solution to first order in h.
+                #[inline]
+                fn predict(&self, target: &#vector) -> #vector {
+                    #predict
+                }
+
+                #linearized
+                #[inline]
+                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #jacobian) {
+                    #locals
+                    (#residual, #rows)
+                }
+
+                #orientation
+            }
+        }
+    }
+}
+
+fn equation_name(suffix: &str, number: usize) -> Ident {
+    let suffix = match suffix {
+        "_first" => "First",
+        "_adjoint" => "Adjoint",
+        _ => "",
+    };
+    format_ident!("Equation{suffix}{}", number + 1)
+}

@@ -1,0 +1,352 @@
+//! Lowering of matrix expressions: a grid of scalars for each.
+//!
+//! Factors that do not change during a step are gathered before they meet those that do: `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant
+//! matrix times `x^`, however the derivation has distributed it.
+
+use std::collections::{BTreeMap, HashMap};
+
+use clebsch_symbolic::{Algebra, Expr, Rational, Role, Shape, View, WordTerm, integer};
+
+use super::scalar::{Input, Scalar, Scalars};
+
+/// A matrix of scalars, row by row.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    /// Rows and columns.
+    pub shape: Shape,
+    /// The entries, row by row.
+    pub entries: Vec<Scalar>,
+}
+
+impl Grid {
+    fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
+        Grid { shape, entries: shape.positions().map(entry).collect() }
+    }
+
+    /// The entry in row i and column j.
+    pub fn at(&self, i: usize, j: usize) -> Scalar {
+        self.entries[i * self.shape.columns + j]
+    }
+}
+
+/// Lowers expressions to grids, remembering what it has lowered.
+pub struct Lowering<'a, 'g> {
+    /// The arena of the scalars.
+    pub scalars: &'a mut Scalars,
+    known: HashMap<Expr<'g>, Grid>,
+}
+
+impl<'a, 'g> Lowering<'a, 'g> {
+    /// A lowering into an arena.
+    pub fn new(scalars: &'a mut Scalars) -> Lowering<'a, 'g> {
+        Lowering { scalars, known: HashMap::new() }
+    }
+
+    /// Lets a symbol stand for a grid.
+    pub fn bind(&mut self, symbol: Expr<'g>, grid: Grid) {
+        self.known.insert(symbol, grid);
+    }
+
+    /// The scalars of an expression.
+    pub fn grid(&mut self, expr: Expr<'g>) -> Grid {
+        if let Some(grid) = self.known.get(&expr) {
+            return grid.clone();
+        }
+        let grid = self.lower(expr);
+        self.known.insert(expr, grid.clone());
+        grid
+    }
+
+    fn lower(&mut self, expr: Expr<'g>) -> Grid {
+        let shape = expr.shape();
+        let one = |scalar: Scalar| Grid { shape: Shape::scalar(), entries: vec![scalar] };
+        match expr.view() {
+            View::Symbol(symbol) => self.symbol(&symbol),
+            View::Pi => one(self.scalars.pi()),
+            View::Sum(terms) => self.terms(shape, terms),
+            View::Literal(entries) => Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() },
+            View::Stack(entries) => Grid { shape, entries: entries.into_iter().map(|entry| self.grid(entry).entries[0]).collect() },
+            View::Word(word) => self.word(&word),
+            View::Trace(word) => {
+                let product = self.word(&word);
+                let diagonal: Vec<_> = (0..product.shape.rows).map(|i| (product.at(i, i), integer(1))).collect();
+                one(self.scalars.sum(integer(0), diagonal))
+            }
+            View::Transpose(a) => {
+                let a = self.grid(a);
+                Grid::from_fn(shape, |(i, j)| a.at(j, i))
+            }
+            View::Inverse(a) => {
+                let a = self.grid(a);
+                self.inverse(&a)
+            }
+            View::Determinant(a) => {
+                let a = self.grid(a);
+                one(self.determinant(&a, &(0..a.shape.rows).collect::<Vec<_>>(), 0))
+            }
+            View::Function(function, a) => {
+                let a = self.grid(a).entries[0];
+                one(self.scalars.function(function, a))
+            }
+            View::Block(a, row, column) => {
+                let a = self.grid(a);
+                Grid::from_fn(shape, |(i, j)| a.at(row + i, column + j))
+            }
+            View::Embed(a, row, column) => {
+                let (a, zero) = (self.grid(a), self.scalars.zero());
+                let inside = |i: usize, j: usize| i >= row && j >= column && i < row + a.shape.rows && j < column + a.shape.columns;
+                Grid::from_fn(shape, |(i, j)| if inside(i, j) { a.at(i - row, j - column) } else { zero })
+            }
+            View::Hadamard(a, b) => {
+                let (a, b) = (self.grid(a), self.grid(b));
+                Grid::from_fn(shape, |(i, j)| self.scalars.product([a.at(i, j), b.at(i, j)]))
+            }
+            View::DiagonalMatrix(a) => {
+                let (a, zero) = (self.grid(a), self.scalars.zero());
+                Grid::from_fn(shape, |(i, j)| if i == j { a.at(i, 0) } else { zero })
+            }
+            View::Diagonal(a) => {
+                let a = self.grid(a);
+                Grid::from_fn(shape, |(i, _)| a.at(i, i))
+            }
+            View::Wedge(algebra, a) => {
+                let a = self.grid(a);
+                self.wedge(algebra, &a)
+            }
+            View::Components(algebra, a) => {
+                let a = self.grid(a);
+                self.components(algebra, &a)
+            }
+        }
+    }
+
+    fn symbol(&mut self, symbol: &clebsch_symbolic::Symbol) -> Grid {
+        use clebsch_symbolic::Property;
+        let is_vector = symbol.shape.is_column();
+        let zero = self.scalars.zero();
+        Grid::from_fn(symbol.shape, |(i, j)| {
+            let (row, column) = match symbol.property {
+                Property::Symmetric => (i.min(j), i.max(j)),
+                Property::Diagonal if i != j => return zero,
+                _ => (i, j),
+            };
+            self.scalars.input(Input { role: symbol.role, name: symbol.name.clone(), row, column, is_vector })
+        })
+    }
+
+    fn wedge(&mut self, algebra: Algebra, a: &Grid) -> Grid {
+        let shape = algebra.matrix_shape();
+        let zero = self.scalars.zero();
+        let mut matrix = Grid::from_fn(shape, |_| zero);
+        for (k, entries) in algebra.sparse_basis().into_iter().enumerate() {
+            for (i, j, value) in entries {
+                let entry = self.scalars.scale(a.at(k, 0), integer(value));
+                matrix.entries[i * shape.columns + j] = self.scalars.add(matrix.at(i, j), entry);
+            }
+        }
+        matrix
+    }
+
+    fn components(&mut self, algebra: Algebra, a: &Grid) -> Grid {
+        let component = |entries: Vec<(usize, usize, i64)>| {
+            let terms: Vec<_> = entries.into_iter().map(|(i, j, value)| (a.at(i, j), integer(value))).collect();
+            self.scalars.sum(integer(0), terms)
+        };
+        let entries = algebra.sparse_basis().into_iter().map(component).collect();
+        Grid { shape: Shape::vector(algebra.dimension()), entries }
+    }
+
+    /// The product of letters, associated so that vectors are multiplied first.
+    fn word(&mut self, word: &[Expr<'g>]) -> Grid {
+        let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
+        let mut grids: Vec<Grid> = word.iter().map(|letter| self.grid(*letter)).collect();
+        if from_right {
+            // by construction: words are not empty
+            let last = grids.pop().expect("a word has letters");
+            return grids.iter().rev().fold(last, |product, letter| self.multiply(letter, &product));
+        }
+        let mut grids = grids.into_iter();
+        let first = grids.next().expect("a word has letters");
+        grids.fold(first, |product, letter| self.multiply(&product, &letter))
+    }
+
+    fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
+        Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
+            let terms: Vec<_> =
+                (0..a.shape.columns).map(|k| (self.scalars.product([a.at(i, k), b.at(k, j)]), integer(1))).collect();
+            self.scalars.sum(integer(0), terms)
+        })
+    }
+
+    /// A sum of terms: components of one algebra are taken of the sum, constant letters are summed before they are multiplied.
+    fn terms(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
+        let mut under: BTreeMap<Algebra, Vec<WordTerm<'g>>> = BTreeMap::new();
+        let mut rest = Vec::new();
+        for term in terms {
+            match term.word.as_slice() {
+                [letter] => match letter.view() {
+                    View::Components(algebra, inner) => under.entry(algebra).or_default().extend(term.over(inner)),
+                    _ => rest.push(term),
+                },
+                _ => rest.push(term),
+            }
+        }
+        let mut grids = Vec::new();
+        for (algebra, inner) in under {
+            let matrix = self.gathered(algebra.matrix_shape(), inner);
+            grids.push(self.components(algebra, &matrix));
+        }
+        grids.push(self.gathered(shape, rest));
+        self.total(shape, &grids)
+    }
+
+    fn total(&mut self, shape: Shape, grids: &[Grid]) -> Grid {
+        Grid::from_fn(shape, |(i, j)| {
+            let terms: Vec<_> = grids.iter().map(|grid| (grid.at(i, j), integer(1))).collect();
+            self.scalars.sum(integer(0), terms)
+        })
+    }
+
+    fn gathered(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
+        type Key<'g> = (Vec<(Expr<'g>, (i64, i64))>, Vec<Expr<'g>>, Vec<Expr<'g>>);
+        let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
+        let mut grids = Vec::new();
+        for term in terms {
+            if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
+                let product = self.word(&term.word);
+                let scale = self.monomial(&term.coefficient, &term.scalars);
+                grids.push(self.scaled(&product, scale));
+                continue;
+            }
+            let (constant, varying): (Vec<_>, Vec<_>) = term.scalars.iter().cloned().partition(|(base, _)| self.is_constant(*base));
+            let scale = self.monomial(&term.coefficient, &constant);
+            let start = term.word.iter().position(|letter| self.is_constant(*letter)).unwrap_or(0);
+            let length = term.word[start..].iter().take_while(|letter| self.is_constant(**letter)).count();
+            let (prefix, suffix) = (term.word[..start].to_vec(), term.word[start + length..].to_vec());
+            let rows = suffix.first().map_or(shape.columns, |letter| letter.shape().rows);
+            let rows = if length > 0 { term.word[start].shape().rows } else { rows };
+            let run = match length {
+                0 => self.scaled_identity(rows, scale),
+                _ => {
+                    let product = self.word(&term.word[start..start + length]);
+                    self.scaled(&product, scale)
+                }
+            };
+            groups.entry((varying, prefix, suffix)).or_default().push(run);
+        }
+        for ((varying, prefix, suffix), runs) in groups {
+            let middle = self.total(runs[0].shape, &runs);
+            let with_suffix = suffix_product(self, middle, &suffix, &prefix);
+            let scale = self.monomial(&integer(1), &varying);
+            grids.push(self.scaled(&with_suffix, scale));
+        }
+        self.total(shape, &grids)
+    }
+
+    /// Whether an expression is fixed once per stepper.
+    fn is_constant(&self, expr: Expr<'g>) -> bool {
+        let once = |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::Auxiliary(_));
+        expr.symbols().into_iter().all(|symbol| symbol.as_symbol().is_some_and(|data| once(data.role)))
+    }
+
+    fn monomial(&mut self, coefficient: &Rational, scalars: &[(Expr<'g>, (i64, i64))]) -> Scalar {
+        let mut factors = vec![self.scalars.number(coefficient.clone())];
+        for (base, exponent) in scalars {
+            let base = self.grid(*base).entries[0];
+            factors.push(self.scalars.power(base, exponent.0, exponent.1));
+        }
+        self.scalars.product(factors)
+    }
+
+    fn scaled(&mut self, grid: &Grid, scale: Scalar) -> Grid {
+        Grid::from_fn(grid.shape, |(i, j)| self.scalars.product([scale, grid.at(i, j)]))
+    }
+
+    fn scaled_identity(&mut self, n: usize, scale: Scalar) -> Grid {
+        let zero = self.scalars.zero();
+        Grid::from_fn(Shape::square(n), |(i, j)| if i == j { scale } else { zero })
+    }
+
+    /// The inverse: by cofactors up to 3×3, by elimination without pivoting beyond, which is stable for the matrices I ± Z with
+    /// Z skew that arise in the Cayley chart.
+    fn inverse(&mut self, a: &Grid) -> Grid {
+        let n = a.shape.rows;
+        let indices: Vec<_> = (0..n).collect();
+        if n <= 3 {
+            let determinant = self.determinant(a, &indices, 0);
+            let reciprocal = self.scalars.reciprocal(determinant);
+            return Grid::from_fn(a.shape, |(i, j)| {
+                let cofactor = self.minor(a, j, i);
+                let sign = integer(if (i + j) % 2 == 0 { 1 } else { -1 });
+                let signed = self.scalars.scale(cofactor, sign);
+                self.scalars.product([signed, reciprocal])
+            });
+        }
+        let one = self.scalars.number(integer(1));
+        let (mut left, mut right) = (a.clone(), self.scaled_identity(n, one));
+        for k in 0..n {
+            let reciprocal = self.scalars.reciprocal(left.at(k, k));
+            for j in 0..n {
+                left.entries[k * n + j] = self.scalars.product([reciprocal, left.at(k, j)]);
+                right.entries[k * n + j] = self.scalars.product([reciprocal, right.at(k, j)]);
+            }
+            for i in (0..n).filter(|&i| i != k) {
+                let factor = left.at(i, k);
+                for j in 0..n {
+                    left.entries[i * n + j] = self.reduced(left.at(i, j), factor, left.at(k, j));
+                    right.entries[i * n + j] = self.reduced(right.at(i, j), factor, right.at(k, j));
+                }
+            }
+        }
+        right
+    }
+
+    fn reduced(&mut self, entry: Scalar, factor: Scalar, pivot: Scalar) -> Scalar {
+        let product = self.scalars.product([factor, pivot]);
+        self.scalars.sum(integer(0), [(entry, integer(1)), (product, integer(-1))])
+    }
+
+    /// The determinant of the rows `rows` and the columns from `column` on.
+    fn determinant(&mut self, a: &Grid, rows: &[usize], column: usize) -> Scalar {
+        if rows.is_empty() {
+            return self.scalars.number(integer(1));
+        }
+        let mut terms = Vec::new();
+        for (position, &row) in rows.iter().enumerate() {
+            let others: Vec<_> = rows.iter().copied().filter(|&other| other != row).collect();
+            let minor = self.determinant(a, &others, column + 1);
+            let sign = integer(if position % 2 == 0 { 1 } else { -1 });
+            terms.push((self.scalars.product([a.at(row, column), minor]), sign));
+        }
+        self.scalars.sum(integer(0), terms)
+    }
+
+    fn minor(&mut self, a: &Grid, row: usize, column: usize) -> Scalar {
+        let n = a.shape.rows;
+        let keep = |skip: usize| (0..n).filter(move |&k| k != skip);
+        let entries: Vec<_> = keep(row).flat_map(|i| keep(column).map(move |j| (i, j))).map(|(i, j)| a.at(i, j)).collect();
+        let inner = Grid { shape: Shape::square(n - 1), entries };
+        self.determinant(&inner, &(0..n - 1).collect::<Vec<_>>(), 0)
+    }
+}
+
+/// prefix · middle · suffix, vectors first.
+fn suffix_product<'g>(lowering: &mut Lowering<'_, 'g>, middle: Grid, suffix: &[Expr<'g>], prefix: &[Expr<'g>]) -> Grid {
+    let mut product = middle;
+    if let Some(last) = suffix.last()
+        && last.shape().columns == 1
+    {
+        let vector = lowering.word(suffix);
+        product = lowering.multiply(&product, &vector);
+    } else {
+        for letter in suffix {
+            let letter = lowering.grid(*letter);
+            product = lowering.multiply(&product, &letter);
+        }
+    }
+    for letter in prefix.iter().rev() {
+        let letter = lowering.grid(*letter);
+        product = lowering.multiply(&letter, &product);
+    }
+    product
+}

@@ -1,0 +1,416 @@
+//! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use clebsch_symbolic::{Function, Rational, Role, Shape, integer};
+
+use super::{Input, Node, Rate, Scalar, Scalars};
+
+/// Straight-line code of one output entry or shared term.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Code {
+    /// An entry of an argument.
+    Read(Input),
+    /// π.
+    Pi,
+    /// A number.
+    Number(Rational),
+    /// A value that is computed once per stepper, by its index.
+    Constant(usize),
+    /// A value that is computed once per solve, by its index.
+    Term(usize),
+    /// A shared term of this kernel, by its index.
+    Local(usize),
+    /// constant + Σ coefficient · code.
+    Sum(Rational, Vec<(Rational, Code)>),
+    /// A product.
+    Product(Vec<Code>),
+    /// 1/x.
+    Reciprocal(Box<Code>),
+    /// x^(numerator/denominator).
+    Root(Box<Code>, (i64, i64)),
+    /// An elementary function.
+    Function(Function, Box<Code>),
+}
+
+/// The operations of a kernel.
+#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+pub struct Cost {
+    /// Additions and subtractions.
+    pub additions: usize,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Divisions and reciprocals.
+    pub divisions: usize,
+    /// Square and other roots.
+    pub roots: usize,
+    /// Calls of elementary functions.
+    pub calls: usize,
+}
+
+/// Straight-line code.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    /// Shared terms, each in terms of those before it.
+    pub locals: Vec<Code>,
+    /// The outputs, one grid for each value returned.
+    pub outputs: Vec<(Shape, Vec<Code>)>,
+}
+
+/// Values that are computed less often than the kernels that use them.
+#[derive(Clone, Default, Debug)]
+pub struct Hoisted {
+    /// In the order in which they were met.
+    pub scalars: Vec<Scalar>,
+}
+
+impl Hoisted {
+    fn index(&mut self, scalar: Scalar) -> usize {
+        self.scalars.iter().position(|&known| known == scalar).unwrap_or_else(|| {
+            self.scalars.push(scalar);
+            self.scalars.len() - 1
+        })
+    }
+}
+
+/// Where a kernel finds what changes less often than itself.
+pub enum Hoisting<'a> {
+    /// It computes everything itself.
+    Nothing,
+    /// In the stepper's constants.
+    Constants(&'a mut Hoisted),
+    /// In the stepper's constants and in the terms of the solve.
+    Terms(&'a mut Hoisted, &'a mut Hoisted),
+}
+
+/// Makes a kernel of grids of outputs.
+pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
+    let mut builder = Builder { scalars, hoisting, operations: Vec::new(), index: HashMap::new(), known: HashMap::new() };
+    let outputs: Vec<(Shape, Vec<Id>)> =
+        outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect())).collect();
+    builder.share_pairs();
+    builder.code(&outputs)
+}
+
+/// The index of an operation of a kernel.
+type Id = usize;
+
+/// An operation of a kernel on its own operations.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+enum Operation {
+    /// A scalar that is read or has been taken out.
+    Leaf(Scalar),
+    Sum(Rational, Vec<(Rational, Id)>),
+    Product(Vec<Id>),
+    Reciprocal(Id),
+    Root(Id, (i64, i64)),
+    Function(Function, Id),
+}
+
+struct Builder<'a, 'b> {
+    scalars: &'a mut Scalars,
+    hoisting: Hoisting<'b>,
+    operations: Vec<Operation>,
+    index: HashMap<Operation, Id>,
+    known: HashMap<Scalar, Id>,
+}
+
+impl Builder<'_, '_> {
+    /// Rates below which values are taken out of this kernel, slowest first.
+    fn slow_rates(&self) -> &'static [Rate] {
+        match self.hoisting {
+            Hoisting::Nothing => &[],
+            Hoisting::Constants(_) => &[Rate::Once],
+            Hoisting::Terms(..) => &[Rate::Once, Rate::Step],
+        }
+    }
+
+    /// Whether a value is simply read: an argument, a number.
+    fn is_entry(&self, scalar: Scalar) -> bool {
+        match self.scalars.node(scalar) {
+            Node::Input(input) => input.role != Role::StepSize,
+            Node::Pi => true,
+            _ => self.scalars.as_number(scalar).is_some(),
+        }
+    }
+
+    fn is_hoisted(&self, scalar: Scalar) -> bool {
+        !self.is_entry(scalar) && self.slow_rates().contains(&self.scalars.rate(scalar))
+    }
+
+    fn intern(&mut self, operation: Operation) -> Id {
+        if let Some(&known) = self.index.get(&operation) {
+            return known;
+        }
+        self.operations.push(operation.clone());
+        self.index.insert(operation, self.operations.len() - 1);
+        self.operations.len() - 1
+    }
+
+    /// The operation that computes a scalar, slow parts of sums and products taken out.
+    fn convert(&mut self, scalar: Scalar) -> Id {
+        if let Some(&known) = self.known.get(&scalar) {
+            return known;
+        }
+        let node = self.scalars.node(scalar).clone();
+        let id = match node {
+            _ if self.is_hoisted(scalar) || self.is_entry(scalar) => self.intern(Operation::Leaf(scalar)),
+            Node::Sum(constant, terms) => self.convert_sum(constant, terms),
+            Node::Product(factors) => {
+                let (coefficient, product) = self.convert_product(integer(1), &factors);
+                self.scaled(coefficient, product)
+            }
+            Node::Reciprocal(x) => {
+                let x = self.convert(x);
+                self.intern(Operation::Reciprocal(x))
+            }
+            Node::Root(x, exponent) => {
+                let x = self.convert(x);
+                self.intern(Operation::Root(x, exponent))
+            }
+            Node::Function(function, x) => {
+                let x = self.convert(x);
+                self.intern(Operation::Function(function, x))
+            }
+            Node::Input(_) | Node::Pi => self.intern(Operation::Leaf(scalar)),
+        };
+        self.known.insert(scalar, id);
+        id
+    }
+
+    fn scaled(&mut self, coefficient: Rational, id: Id) -> Id {
+        if coefficient == integer(1) { id } else { self.intern(Operation::Sum(integer(0), vec![(coefficient, id)])) }
+    }
+
+    fn convert_sum(&mut self, mut constant: Rational, mut terms: Vec<(Scalar, Rational)>) -> Id {
+        let mut parts = Vec::new();
+        for &rate in self.slow_rates() {
+            let (slow, fast): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(term, _)| self.scalars.rate(*term) == rate);
+            terms = fast;
+            if slow.is_empty() {
+                continue;
+            }
+            let taken = if rate == Rate::Once { std::mem::replace(&mut constant, integer(0)) } else { integer(0) };
+            let group = self.scalars.sum(taken, slow);
+            let (coefficient, rest) = self.scalars.factor(group);
+            match rest {
+                // −x is read as x and subtracted, anything else has its coefficient inside
+                Some(rest) if coefficient == integer(-1) => parts.push((coefficient, self.convert(rest))),
+                Some(_) => parts.push((integer(1), self.convert(group))),
+                None => constant += coefficient,
+            }
+        }
+        for (term, coefficient) in terms {
+            parts.push(match self.scalars.node(term).clone() {
+                Node::Product(factors) => self.convert_product(coefficient, &factors),
+                _ => (coefficient, self.convert(term)),
+            });
+        }
+        match parts.as_slice() {
+            [(coefficient, only)] if constant == integer(0) && *coefficient == integer(1) => *only,
+            _ => self.intern(Operation::Sum(constant, parts)),
+        }
+    }
+
+    /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.
+    fn convert_product(&mut self, mut coefficient: Rational, factors: &[(Scalar, u32)]) -> (Rational, Id) {
+        let repeated = |&(factor, exponent): &(Scalar, u32)| std::iter::repeat_n(factor, exponent as usize);
+        let mut factors: Vec<Scalar> = factors.iter().flat_map(repeated).collect();
+        let mut parts = Vec::new();
+        for &rate in self.slow_rates() {
+            let (slow, fast): (Vec<_>, Vec<_>) = factors.into_iter().partition(|factor| self.scalars.rate(*factor) == rate);
+            factors = fast;
+            if slow.is_empty() {
+                continue;
+            }
+            let sign = if coefficient < integer(0) { integer(-1) } else { integer(1) };
+            let magnitude = std::mem::replace(&mut coefficient, sign.clone()) * sign;
+            let group = self.scalars.product(slow);
+            let group = self.scalars.scale(group, magnitude);
+            parts.push(self.convert(group));
+        }
+        for factor in factors {
+            parts.push(self.convert(factor));
+        }
+        parts.sort_unstable();
+        match parts.as_slice() {
+            [only] => (coefficient, *only),
+            _ => (coefficient, self.intern(Operation::Product(parts))),
+        }
+    }
+
+    /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
+    fn share_pairs(&mut self) {
+        while let Some((a, b)) = self.most_common_pair() {
+            let pair = self.intern(Operation::Product(vec![a, b]));
+            for operation in &mut self.operations {
+                if let Operation::Product(factors) = operation {
+                    while factors.len() > 2 {
+                        let Some(mut rest) = without_pair(factors, a, b) else { break };
+                        rest.push(pair);
+                        rest.sort_unstable();
+                        *factors = rest;
+                    }
+                }
+            }
+        }
+    }
+
+    fn most_common_pair(&self) -> Option<(Id, Id)> {
+        let mut counts: BTreeMap<(Id, Id), (usize, bool)> = BTreeMap::new();
+        for operation in &self.operations {
+            let Operation::Product(factors) = operation else { continue };
+            let mut pairs = BTreeSet::new();
+            for (i, &a) in factors.iter().enumerate() {
+                pairs.extend(factors[i + 1..].iter().map(|&b| (a.min(b), a.max(b))));
+            }
+            for pair in pairs {
+                let (count, long) = counts.entry(pair).or_insert((0, false));
+                *count += 1;
+                *long |= factors.len() > 2;
+            }
+        }
+        let shared = counts.into_iter().filter(|(_, (count, long))| *count > 1 && *long);
+        shared.max_by_key(|(pair, (count, _))| (*count, std::cmp::Reverse(*pair))).map(|(pair, _)| pair)
+    }
+
+    fn operands(&self, id: Id) -> Vec<Id> {
+        match &self.operations[id] {
+            Operation::Leaf(_) => Vec::new(),
+            Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Operation::Product(factors) => factors.clone(),
+            Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
+        }
+    }
+
+    fn code(mut self, outputs: &[(Shape, Vec<Id>)]) -> Kernel {
+        let mut uses = vec![0; self.operations.len()];
+        let mut order = Vec::new();
+        for &entry in outputs.iter().flat_map(|(_, entries)| entries) {
+            self.count(entry, &mut uses, &mut order);
+        }
+        let mut locals = Vec::new();
+        let mut names: HashMap<Id, usize> = HashMap::new();
+        for id in order {
+            if uses[id] > 1 && self.is_shared(id) {
+                let code = self.operation(id, &names);
+                locals.push(code);
+                names.insert(id, locals.len() - 1);
+            }
+        }
+        let mut grids = Vec::new();
+        for (shape, entries) in outputs {
+            grids.push((*shape, entries.iter().map(|&entry| self.reference(entry, &names)).collect()));
+        }
+        Kernel { locals, outputs: grids }
+    }
+
+    fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
+        uses[id] += 1;
+        if uses[id] == 1 {
+            for operand in self.operands(id) {
+                self.count(operand, uses, order);
+            }
+            order.push(id);
+        }
+    }
+
+    /// Whether a value is worth a name of its own when it is used more than once: a read or a change of sign is not.
+    fn is_shared(&self, id: Id) -> bool {
+        match &self.operations[id] {
+            Operation::Leaf(_) => false,
+            Operation::Sum(constant, terms) => !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1)),
+            _ => true,
+        }
+    }
+
+    fn reference(&mut self, id: Id, names: &HashMap<Id, usize>) -> Code {
+        match names.get(&id) {
+            Some(&local) => Code::Local(local),
+            None => self.operation(id, names),
+        }
+    }
+
+    fn operation(&mut self, id: Id, names: &HashMap<Id, usize>) -> Code {
+        match self.operations[id].clone() {
+            Operation::Leaf(scalar) => self.leaf(scalar),
+            Operation::Sum(constant, terms) => {
+                let terms = terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
+                Code::Sum(constant, terms)
+            }
+            Operation::Product(factors) => Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect()),
+            Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),
+            Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
+            Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
+        }
+    }
+
+    fn leaf(&mut self, scalar: Scalar) -> Code {
+        let hoisted = self.is_hoisted(scalar);
+        let rate = self.scalars.rate(scalar);
+        match (&mut self.hoisting, self.scalars.node(scalar)) {
+            (Hoisting::Terms(_, terms), _) if rate == Rate::Step => Code::Term(terms.index(scalar)),
+            (Hoisting::Terms(constants, _) | Hoisting::Constants(constants), _) if hoisted => Code::Constant(constants.index(scalar)),
+            (_, Node::Input(input)) => Code::Read(input.clone()),
+            (_, Node::Pi) => Code::Pi,
+            (_, Node::Sum(value, _)) => Code::Number(value.clone()),
+            // by construction: leaves are entries or have been taken out
+            (_, node) => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
+        }
+    }
+}
+
+fn without_pair(factors: &[Id], a: Id, b: Id) -> Option<Vec<Id>> {
+    let mut rest = factors.to_vec();
+    let first = rest.iter().position(|&factor| factor == a)?;
+    rest.remove(first);
+    let second = rest.iter().position(|&factor| factor == b)?;
+    rest.remove(second);
+    Some(rest)
+}
+
+impl Kernel {
+    /// The operations of this kernel.
+    pub fn cost(&self) -> Cost {
+        let mut cost = Cost::default();
+        self.locals.iter().for_each(|code| cost.count(code));
+        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|code| cost.count(code));
+        cost
+    }
+}
+
+impl Cost {
+    /// All operations.
+    pub fn total(self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.roots + self.calls
+    }
+
+    fn count(&mut self, code: &Code) {
+        match code {
+            Code::Sum(constant, terms) => {
+                self.additions += terms.len() - 1 + (*constant != integer(0)) as usize;
+                for (coefficient, term) in terms {
+                    self.multiplications += !(*coefficient == integer(1) || *coefficient == integer(-1)) as usize;
+                    self.count(term);
+                }
+            }
+            Code::Product(factors) => {
+                self.multiplications += factors.len() - 1;
+                factors.iter().for_each(|factor| self.count(factor));
+            }
+            Code::Reciprocal(x) => {
+                self.divisions += 1;
+                self.count(x);
+            }
+            Code::Root(x, _) => {
+                self.roots += 1;
+                self.count(x);
+            }
+            Code::Function(_, x) => {
+                self.calls += 1;
+                self.count(x);
+            }
+            Code::Read(_) | Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) => {}
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The program as text: each kernel with its operation counts and its code.
+
+use std::fmt;
+
+use clebsch_symbolic::integer;
+
+use super::{Code, Cost, Input, Kernel, Program};
+
+impl Cost {
+    /// The sum of two costs.
+    pub fn plus(self, other: Cost) -> Cost {
+        Cost {
+            additions: self.additions + other.additions,
+            multiplications: self.multiplications + other.multiplications,
+            divisions: self.divisions + other.divisions,
+            roots: self.roots + other.roots,
+            calls: self.calls + other.calls,
+        }
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            (self.additions, "+"),
+            (self.multiplications, "×"),
+            (self.divisions, "÷"),
+            (self.roots, "√"),
+            (self.calls, "f"),
+        ];
+        let text: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
+        f.write_str(if text.is_empty() { "no operations".to_string() } else { text.join(" ") }.as_str())
+    }
+}
+
+impl Program<'_> {
+    /// All kernels with their names, in the order of the generated code.
+    pub fn kernels(&self) -> Vec<(String, &Kernel)> {
+        let mut kernels: Vec<(String, &Kernel)> = vec![
+            ("constants".into(), &self.constants),
+            ("act".into(), &self.act),
+            ("momentum_map".into(), &self.momentum_map),
+            ("coadjoint".into(), &self.coadjoint),
+            ("legendre".into(), &self.legendre),
+            ("legendre_next".into(), &self.legendre_next),
+            ("potential".into(), &self.potential),
+            ("inertia".into(), &self.inertia),
+            ("momentum_matrix".into(), &self.momentum_matrix),
+            ("momentum_components".into(), &self.momentum_components),
+            ("cotangent_lift".into(), &self.cotangent_lift),
+        ];
+        kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
+        for (index, step) in self.steps.iter().enumerate() {
+            let suffix = self.suffix(index);
+            let named = |name: &str| format!("{name}{suffix}");
+            kernels.extend(step.start.iter().map(|kernel| (named("start_kick"), kernel)));
+            for (number, solve) in step.solves.iter().enumerate() {
+                let of = |name: &str| if step.solves.len() == 1 { named(name) } else { format!("{}_{}", named(name), number + 1) };
+                kernels.push((of("prepare"), &solve.prepare));
+                kernels.push((of("predict"), &solve.predict));
+                kernels.push((of("linearize"), &solve.linearize));
+            }
+            kernels.push((named("increment"), &step.increment));
+            kernels.push((named("advance"), &step.advance));
+            kernels.extend(step.update.iter().map(|kernel| (named("update"), kernel)));
+            if !step.end_is_start {
+                kernels.extend(step.end.iter().map(|kernel| (named("end_kick"), kernel)));
+            }
+        }
+        kernels
+    }
+
+    /// The suffix of the functions of a substep.
+    pub fn suffix(&self, substep: usize) -> &'static str {
+        match (self.steps.len(), substep) {
+            (1, _) => "",
+            (_, 0) => "_first",
+            _ => "_adjoint",
+        }
+    }
+}
+
+impl fmt::Display for Program<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, kernel) in self.kernels() {
+            writeln!(f, "{name}: {}", kernel.cost())?;
+            for (index, local) in kernel.locals.iter().enumerate() {
+                writeln!(f, "    t{index} = {}", self.text(local, 0))?;
+            }
+            for (position, code) in kernel.outputs.iter().flat_map(|(_, entries)| entries).enumerate() {
+                let target = if name == "constants" { self.constant_names[position].clone() } else { position.to_string() };
+                writeln!(f, "    {target} = {}", self.text(code, 0))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Program<'_> {
+    /// The text of a code; `place` is 0 in a sum, 1 in a product.
+    fn text(&self, code: &Code, place: usize) -> String {
+        match code {
+            Code::Read(input) => read(input),
+            Code::Pi => "π".into(),
+            Code::Number(value) => value.to_string(),
+            Code::Constant(index) => self.constant_names[*index].clone(),
+            Code::Term(index) => format!("s{index}"),
+            Code::Local(index) => format!("t{index}"),
+            Code::Sum(constant, terms) => {
+                let mut text = String::new();
+                for (coefficient, term) in terms {
+                    let negative = *coefficient < integer(0);
+                    let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
+                    text += match (text.is_empty(), negative) {
+                        (true, false) => "",
+                        (true, true) => "-",
+                        (false, false) => " + ",
+                        (false, true) => " - ",
+                    };
+                    let scaled = magnitude != integer(1);
+                    text += &if scaled { format!("{magnitude}*{}", self.text(term, 1)) } else { self.text(term, 1) };
+                }
+                if *constant != integer(0) {
+                    text = if text.is_empty() { constant.to_string() } else { format!("{constant} + {text}") };
+                }
+                if place == 0 { text } else { format!("({text})") }
+            }
+            Code::Product(factors) => factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*"),
+            Code::Reciprocal(x) => format!("1/{}", self.text(x, 1)),
+            Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
+            Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
+            Code::Function(function, x) => format!("{}({})", function.name(), self.text(x, 0)),
+        }
+    }
+}
+
+fn read(input: &Input) -> String {
+    match input.is_vector {
+        true => format!("{}[{}]", input.name, input.row),
+        false => format!("{}[{},{}]", input.name, input.row, input.column),
+    }
+}

@@ -1,0 +1,272 @@
+//! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
+
+use std::collections::{BTreeMap, HashMap};
+
+use clebsch_symbolic::{Function, Rational, Role, integer};
+
+/// How often a value changes, from never to in each iteration of a solve.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Rate {
+    /// Fixed by the parameters and the step size.
+    Once,
+    /// Fixed during a step.
+    Step,
+    /// Different in each iteration.
+    Iteration,
+}
+
+/// The identity of a scalar in its arena.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Scalar(u32);
+
+/// An entry of an input.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Input {
+    /// What the input is.
+    pub role: Role,
+    /// Its name, for the names of shared terms.
+    pub name: String,
+    /// The row of the entry.
+    pub row: usize,
+    /// Its column.
+    pub column: usize,
+    /// Whether the input is a vector or a scalar, which have one index or none.
+    pub is_vector: bool,
+}
+
+/// A scalar expression.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// An entry of an input.
+    Input(Input),
+    /// π.
+    Pi,
+    /// constant + Σ coefficient · scalar.
+    Sum(Rational, Vec<(Scalar, Rational)>),
+    /// Π scalar^exponent, exponents positive.
+    Product(Vec<(Scalar, u32)>),
+    /// 1/x.
+    Reciprocal(Scalar),
+    /// x^(numerator/denominator) with an exponent between zero and one.
+    Root(Scalar, (i64, i64)),
+    /// An elementary function.
+    Function(Function, Scalar),
+}
+
+/// Owns scalars.
+#[derive(Default)]
+pub struct Scalars {
+    nodes: Vec<(Node, Rate)>,
+    index: HashMap<Node, Scalar>,
+}
+
+impl Scalars {
+    /// The expression behind an identity.
+    pub fn node(&self, scalar: Scalar) -> &Node {
+        &self.nodes[scalar.0 as usize].0
+    }
+
+    /// How often its value changes.
+    pub fn rate(&self, scalar: Scalar) -> Rate {
+        self.nodes[scalar.0 as usize].1
+    }
+
+    fn intern(&mut self, node: Node, rate: Rate) -> Scalar {
+        if let Some(&known) = self.index.get(&node) {
+            return known;
+        }
+        let scalar = Scalar(self.nodes.len() as u32);
+        self.nodes.push((node.clone(), rate));
+        self.index.insert(node, scalar);
+        scalar
+    }
+
+    fn rate_of(&self, parts: impl Iterator<Item = Scalar>) -> Rate {
+        parts.map(|part| self.rate(part)).max().unwrap_or(Rate::Once)
+    }
+
+    /// An entry of an input.
+    pub fn input(&mut self, input: Input) -> Scalar {
+        let rate = match input.role {
+            Role::StepSize | Role::Parameter(_) | Role::Constant(_) => Rate::Once,
+            Role::Auxiliary(_) => Rate::Once,
+            Role::Chart(_) => Rate::Iteration,
+            _ => Rate::Step,
+        };
+        self.intern(Node::Input(input), rate)
+    }
+
+    /// Whether another entry of the same input occurs.
+    pub fn has_other_entries(&self, input: &Input) -> bool {
+        self.nodes.iter().any(|(node, _)| {
+            matches!(node, Node::Input(other) if other.role == input.role && (other.row, other.column) != (input.row, input.column))
+        })
+    }
+
+    /// π.
+    pub fn pi(&mut self) -> Scalar {
+        self.intern(Node::Pi, Rate::Once)
+    }
+
+    /// A number.
+    pub fn number(&mut self, value: Rational) -> Scalar {
+        self.intern(Node::Sum(value, Vec::new()), Rate::Once)
+    }
+
+    /// The number zero.
+    pub fn zero(&mut self) -> Scalar {
+        self.number(integer(0))
+    }
+
+    /// The value, if it is a number.
+    pub fn as_number(&self, scalar: Scalar) -> Option<&Rational> {
+        match self.node(scalar) {
+            Node::Sum(constant, terms) if terms.is_empty() => Some(constant),
+            _ => None,
+        }
+    }
+
+    /// Whether it is the number zero.
+    pub fn is_zero(&self, scalar: Scalar) -> bool {
+        self.as_number(scalar).is_some_and(|value| *value == integer(0))
+    }
+
+    /// constant + Σ coefficient · scalar; sums inside are merged where the coefficient is ±1.
+    pub fn sum(&mut self, constant: Rational, terms: impl IntoIterator<Item = (Scalar, Rational)>) -> Scalar {
+        let mut total = constant;
+        let mut collected: BTreeMap<Scalar, Rational> = BTreeMap::new();
+        let mut add = |scalar: Scalar, coefficient: Rational| {
+            *collected.entry(scalar).or_insert_with(|| integer(0)) += coefficient;
+        };
+        for (scalar, coefficient) in terms {
+            match self.node(scalar) {
+                Node::Sum(inner, parts) if parts.len() < 2 || coefficient == integer(1) || coefficient == integer(-1) => {
+                    total += inner * &coefficient;
+                    parts.iter().for_each(|(part, factor)| add(*part, factor * &coefficient));
+                }
+                _ => add(scalar, coefficient),
+            }
+        }
+        let terms: Vec<_> = collected.into_iter().filter(|(_, coefficient)| *coefficient != integer(0)).collect();
+        match terms.as_slice() {
+            [(only, coefficient)] if total == integer(0) && *coefficient == integer(1) => *only,
+            _ => {
+                let rate = self.rate_of(terms.iter().map(|(scalar, _)| *scalar));
+                self.intern(Node::Sum(total, terms), rate)
+            }
+        }
+    }
+
+    /// a + b.
+    pub fn add(&mut self, a: Scalar, b: Scalar) -> Scalar {
+        self.sum(integer(0), [(a, integer(1)), (b, integer(1))])
+    }
+
+    /// coefficient · a.
+    pub fn scale(&mut self, a: Scalar, coefficient: Rational) -> Scalar {
+        self.sum(integer(0), [(a, coefficient)])
+    }
+
+    /// A scalar as a number times the rest.
+    pub fn factor(&self, scalar: Scalar) -> (Rational, Option<Scalar>) {
+        match self.node(scalar) {
+            Node::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
+            Node::Sum(constant, terms) if terms.len() == 1 && *constant == integer(0) => (terms[0].1.clone(), Some(terms[0].0)),
+            _ => (integer(1), Some(scalar)),
+        }
+    }
+
+    /// The product of scalars.
+    pub fn product(&mut self, factors: impl IntoIterator<Item = Scalar>) -> Scalar {
+        let mut coefficient = integer(1);
+        let mut powers: BTreeMap<Scalar, u32> = BTreeMap::new();
+        for factor in factors {
+            let (number, rest) = self.factor(factor);
+            coefficient *= number;
+            match rest.map(|rest| (rest, self.node(rest))) {
+                Some((_, Node::Product(inner))) => inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e),
+                Some((rest, _)) => *powers.entry(rest).or_insert(0) += 1,
+                None => {}
+            }
+        }
+        if coefficient == integer(0) {
+            return self.zero();
+        }
+        self.cancel_reciprocals(&mut powers);
+        let powers: Vec<_> = powers.into_iter().filter(|&(_, exponent)| exponent > 0).collect();
+        let product = match powers.as_slice() {
+            [] => return self.number(coefficient),
+            [(only, 1)] => *only,
+            _ => {
+                let rate = self.rate_of(powers.iter().map(|&(base, _)| base));
+                self.intern(Node::Product(powers), rate)
+            }
+        };
+        self.scale(product, coefficient)
+    }
+
+    fn cancel_reciprocals(&self, powers: &mut BTreeMap<Scalar, u32>) {
+        let bases: Vec<_> = powers.keys().copied().collect();
+        for base in bases {
+            if let Node::Reciprocal(inner) = self.node(base)
+                && let Some(&other) = powers.get(inner)
+            {
+                let common = other.min(powers[&base]);
+                powers.insert(*inner, other - common);
+                powers.insert(base, powers[&base] - common);
+            }
+        }
+    }
+
+    /// 1/x.
+    pub fn reciprocal(&mut self, x: Scalar) -> Scalar {
+        let (number, rest) = self.factor(x);
+        // a reciprocal of the number zero stays symbolic: at run time it is an infinity that the finiteness checks report
+        let number = if number == integer(0) { integer(1) } else { number.recip() };
+        let Some(rest) = rest else {
+            return self.number(number);
+        };
+        let inverse = match self.node(rest).clone() {
+            Node::Reciprocal(inner) => inner,
+            _ => {
+                let rate = self.rate(rest);
+                self.intern(Node::Reciprocal(rest), rate)
+            }
+        };
+        self.scale(inverse, number)
+    }
+
+    /// x^exponent: whole part by products and a reciprocal, the rest as a root.
+    pub fn power(&mut self, x: Scalar, numerator: i64, denominator: i64) -> Scalar {
+        let whole = numerator.div_euclid(denominator);
+        let fraction = numerator.rem_euclid(denominator);
+        // x^(-1/2) is the reciprocal of a root rather than a root times a reciprocal
+        if whole < 0 && fraction != 0 {
+            let positive = self.power(x, -numerator, denominator);
+            return self.reciprocal(positive);
+        }
+        let base = if whole < 0 { self.reciprocal(x) } else { x };
+        let mut factors = vec![base; whole.unsigned_abs() as usize];
+        if fraction != 0 {
+            let rate = self.rate(x);
+            factors.push(self.intern(Node::Root(x, (fraction, denominator)), rate));
+        }
+        self.product(factors)
+    }
+
+    /// An elementary function.
+    pub fn function(&mut self, function: Function, x: Scalar) -> Scalar {
+        let rate = self.rate(x);
+        self.intern(Node::Function(function, x), rate)
+    }
+
+    /// The scalars that a scalar is made of.
+    pub fn children(&self, scalar: Scalar) -> Vec<Scalar> {
+        match self.node(scalar) {
+            Node::Input(_) | Node::Pi => Vec::new(),
+            Node::Sum(_, terms) => terms.iter().map(|(term, _)| *term).collect(),
+            Node::Product(factors) => factors.iter().map(|(factor, _)| *factor).collect(),
+            Node::Reciprocal(x) | Node::Root(x, _) | Node::Function(_, x) => vec![*x],
+        }
+    }
+}

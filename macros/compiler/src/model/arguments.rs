@@ -1,0 +1,292 @@
+//! Arguments go by name: the action fixes the names, the other closures use those that they need, in a fixed order.
+
+use clebsch_symbolic::Expr;
+use syn::ext::IdentExt;
+
+use super::scope::{Missing, Scope, check_reserved};
+use super::value::Value;
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::{Argument, Closure, Pattern, spell_type};
+
+/// What an argument stands for.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Slot {
+    Time,
+    Step,
+    Configuration,
+    Element,
+    Velocity,
+}
+
+/// The arguments of a closure, in order.
+const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
+const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
+const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+
+/// The names that the action fixes, with their values.
+pub(super) struct Arguments<'d, 'g> {
+    pub element: &'d Pattern,
+    pub configuration: &'d Pattern,
+    pub element_value: Option<Value<'g>>,
+    pub configuration_value: Option<Value<'g>>,
+    pub step_size: Expr<'g>,
+}
+
+/// The patterns and types of the two arguments of the action.
+pub(super) fn of_action<'d>(
+    action: &'d Closure,
+    diagnostics: &mut Diagnostics,
+) -> Option<((&'d Pattern, &'d syn::Type), (&'d Pattern, &'d syn::Type))> {
+    let [element, configuration] = action.arguments.as_slice() else {
+        let count = action.arguments.len();
+        let message = format!("the action has {count} argument{}, not two", if count == 1 { "" } else { "s" });
+        diagnostics.push(
+            Diagnostic::new(action.head, message)
+                .help("write `|F: SO<3>, q: Unit<Vector3>| …`")
+                .note("the group element comes first, then the configuration that it moves"),
+        );
+        return None;
+    };
+    let mut seen: Vec<String> = Vec::new();
+    for ident in element.pattern.names().into_iter().chain(configuration.pattern.names()) {
+        check_reserved(ident, "an argument", diagnostics);
+        let name = ident.unraw().to_string();
+        if seen.contains(&name) {
+            let error = Diagnostic::new(ident.span(), format!("`{name}` is the name of two arguments"));
+            diagnostics.push(error.help("choose another name for one of them"));
+        }
+        seen.push(name);
+    }
+    let element_type = typed(element, "SO<3>", "the group", diagnostics);
+    let configuration_type = typed(configuration, "Unit<Vector3>", "the space of configurations", diagnostics);
+    Some(((&element.pattern, element_type?), (&configuration.pattern, configuration_type?)))
+}
+
+fn typed<'d>(argument: &'d Argument, example: &str, what: &str, diagnostics: &mut Diagnostics) -> Option<&'d syn::Type> {
+    if argument.ty.is_none() {
+        let name = argument.pattern.spell();
+        let error = Diagnostic::new(argument.pattern.place(), format!("`{name}` has no type in the action"));
+        diagnostics.push(error.help(format!("write `{name}: {example}`")).note(format!("its type declares {what}")));
+    }
+    argument.ty.as_ref()
+}
+
+impl<'d, 'g> Arguments<'d, 'g> {
+    /// The names in the action itself.
+    pub fn action_scope(&self, diagnostics: &mut Diagnostics) -> Scope<'g> {
+        let mut scope = Scope::default();
+        scope.add_argument(self.element, self.element_value.clone(), diagnostics);
+        scope.add_argument(self.configuration, self.configuration_value.clone(), diagnostics);
+        let help = format!("the action depends on `{}` and `{}` alone", self.element.spell(), self.configuration.spell());
+        scope.add_missing("h".into(), Missing::Foreign { help });
+        scope
+    }
+
+    /// The names in a cost.
+    pub fn cost_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
+        let taken = self.match_slots(closure, COST, diagnostics);
+        self.scope(closure, COST, &taken, None, diagnostics)
+    }
+
+    /// The names in a potential.
+    pub fn potential_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
+        let taken = self.match_slots(closure, POTENTIAL, diagnostics);
+        self.scope(closure, POTENTIAL, &taken, None, diagnostics)
+    }
+
+    /// The names in a Lagrangian, whose last argument is new.
+    pub fn lagrangian_scope(&self, closure: &Closure, velocity: Option<Expr<'g>>, diagnostics: &mut Diagnostics) -> Scope<'g> {
+        let taken = self.match_slots(closure, LAGRANGIAN, diagnostics);
+        let mut scope = self.scope(closure, LAGRANGIAN, &taken, velocity, diagnostics);
+        if let Some(velocity) = velocity {
+            scope.set_velocity(velocity);
+        }
+        if let Some(position) = taken.iter().position(|slot| *slot == Some(Slot::Configuration)) {
+            let pattern = &closure.arguments[position].pattern;
+            diagnostics.push(
+                Diagnostic::later(pattern.place(), "a lagrangian that depends on the configuration")
+                    .help("write the kinetic energy as `lagrangian = |omega| …`, and what depends on the configuration as `potential`"),
+            );
+        }
+        scope
+    }
+
+    /// The pattern and the meaning of a slot; the velocity has none before it is introduced.
+    fn names(&self, slot: Slot) -> Option<(String, &'static str)> {
+        match slot {
+            Slot::Time => None,
+            Slot::Step => Some(("h".into(), "the step")),
+            Slot::Configuration => Some((self.configuration.spell(), "the configuration")),
+            Slot::Element => Some((self.element.spell(), "the group element")),
+            Slot::Velocity => Some(("omega".into(), "the velocity, any new name")),
+        }
+    }
+
+    fn pattern(&self, slot: Slot) -> Option<&'d Pattern> {
+        match slot {
+            Slot::Configuration => Some(self.configuration),
+            Slot::Element => Some(self.element),
+            _ => None,
+        }
+    }
+
+    /// The slot that each argument takes; `None` if there is an error, which is reported.
+    fn match_slots(&self, closure: &Closure, slots: &[Slot], diagnostics: &mut Diagnostics) -> Vec<Option<Slot>> {
+        let last = closure.arguments.len().wrapping_sub(1);
+        let mut taken: Vec<Option<Slot>> = closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
+        if slots.contains(&Slot::Velocity) && taken.last() == Some(&None) && !self.is_foreign(&closure.arguments[last].pattern) {
+            taken[last] = Some(Slot::Velocity);
+        }
+        for (position, argument) in closure.arguments.iter().enumerate() {
+            self.check_argument(closure, argument, position, &taken, slots, diagnostics);
+        }
+        self.check_order(closure, &taken, slots, diagnostics);
+        if slots.contains(&Slot::Velocity) && closure.arguments.is_empty() {
+            let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
+            diagnostics.push(error.help("write `|omega| …`"));
+        }
+        taken
+    }
+
+    fn find(&self, pattern: &Pattern, slots: &[Slot]) -> Option<Slot> {
+        slots.iter().copied().find(|&slot| match (slot, pattern) {
+            (Slot::Time, Pattern::Name(ident)) => ident == "t",
+            (Slot::Step, Pattern::Name(ident)) => ident == "h",
+            _ => self.pattern(slot).is_some_and(|known| known.matches(pattern)),
+        })
+    }
+
+    /// Whether a pattern has a meaning that this closure has no slot for.
+    fn is_foreign(&self, pattern: &Pattern) -> bool {
+        self.find(pattern, COST).is_some()
+    }
+
+    fn check_argument(
+        &self,
+        closure: &Closure,
+        argument: &Argument,
+        position: usize,
+        taken: &[Option<Slot>],
+        slots: &[Slot],
+        diagnostics: &mut Diagnostics,
+    ) {
+        let (name, place) = (argument.pattern.spell(), argument.pattern.place());
+        if let Some(ty) = &argument.ty {
+            diagnostics.push(
+                Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
+                    .help(format!("write `{name}` without `: {}`", spell_type(ty)))
+                    .note("types stand in the action, which introduces the spaces"),
+            );
+        }
+        match taken[position] {
+            Some(slot) if taken[..position].contains(&Some(slot)) => {
+                diagnostics.push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
+            }
+            Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
+            Some(Slot::Velocity) => {
+                argument.pattern.names().iter().for_each(|ident| check_reserved(ident, "the velocity", diagnostics));
+            }
+            Some(_) => {}
+            None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
+        }
+    }
+
+    /// The error for an argument that the action does not know.
+    fn unknown(&self, closure: &Closure, argument: &Argument, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Diagnostic {
+        let (name, place, key) = (argument.pattern.spell(), argument.pattern.place(), &closure.key);
+        let error = if self.is_foreign(&argument.pattern) {
+            Diagnostic::new(place, format!("the {key} cannot depend on `{name}`"))
+        } else {
+            Diagnostic::new(place, format!("cannot find `{name}` in the {key}"))
+        };
+        let meant = self.meant(position, taken, slots);
+        let head = self.head(taken, slots, meant, closure);
+        let error = match meant.and_then(|slot| self.names(slot)) {
+            Some((_, meaning)) if meant == Some(Slot::Velocity) => error.help(format!("{meaning}: write `{head}`")),
+            Some((known, meaning)) => error.help(format!("the action calls {meaning} `{known}`: write `{head}`")),
+            None => error.help(format!("write `{head}`")),
+        };
+        let listed = slots.iter().filter_map(|&slot| self.names(slot).map(|(name, meaning)| (slot, name, meaning)));
+        let listed: Vec<String> = listed
+            .map(|(slot, name, meaning)| match slot {
+                Slot::Step => format!("`{name}`"),
+                Slot::Velocity => format!("a new name ({})", meaning.split(',').next().unwrap_or_default()),
+                _ => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
+            })
+            .collect();
+        let order = if listed.len() > 1 { ", in this order" } else { "" };
+        error.note(format!("arguments go by name: {}{order}", listed.join(", ")))
+    }
+
+    /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
+    fn meant(&self, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Option<Slot> {
+        let index = |slot: Slot| slots.iter().position(|&other| other == slot);
+        let unknown_behind = taken[position + 1..].iter().filter(|slot| slot.is_none()).count();
+        let limit = taken[position + 1..].iter().flatten().filter_map(|&slot| index(slot)).min().unwrap_or(slots.len());
+        let free = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) && !taken.contains(&Some(**slot));
+        slots[..limit].iter().rev().filter(free).nth(unknown_behind).copied()
+    }
+
+    /// The arguments as they should be.
+    fn head(&self, taken: &[Option<Slot>], slots: &[Slot], meant: Option<Slot>, closure: &Closure) -> String {
+        let velocity = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
+        let wanted = slots.iter().filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
+        let names: Vec<String> = wanted
+            .filter_map(|&slot| match (slot, velocity) {
+                (Slot::Velocity, Some(position)) => Some(closure.arguments[position].pattern.spell()),
+                _ => self.names(slot).map(|(name, _)| name),
+            })
+            .collect();
+        format!("|{}|", names.join(", "))
+    }
+
+    fn check_order(&self, closure: &Closure, taken: &[Option<Slot>], slots: &[Slot], diagnostics: &mut Diagnostics) {
+        let index = |slot: &Slot| slots.iter().position(|other| other == slot);
+        let order: Vec<usize> = taken.iter().flatten().filter_map(index).collect();
+        if !taken.contains(&None) && order.windows(2).any(|pair| pair[0] > pair[1]) {
+            let error = Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
+            diagnostics.push(error.help(format!("write `{}`", self.head(taken, slots, None, closure))));
+        }
+    }
+
+    fn scope(
+        &self,
+        closure: &Closure,
+        slots: &[Slot],
+        taken: &[Option<Slot>],
+        velocity: Option<Expr<'g>>,
+        diagnostics: &mut Diagnostics,
+    ) -> Scope<'g> {
+        let mut scope = Scope::default();
+        for (argument, slot) in closure.arguments.iter().zip(taken) {
+            let value = match slot {
+                Some(Slot::Step) => Some(Value::Matrix(self.step_size)),
+                Some(Slot::Configuration) => self.configuration_value.clone(),
+                Some(Slot::Element) => self.element_value.clone(),
+                Some(Slot::Velocity) => velocity.map(Value::Matrix),
+                _ => None,
+            };
+            scope.add_argument(&argument.pattern, value, diagnostics);
+        }
+        for slot in [Slot::Step, Slot::Configuration, Slot::Element].into_iter().filter(|slot| !taken.contains(&Some(*slot))) {
+            let missing = match slots.contains(&slot) {
+                true => Missing::Argument { head: self.head(taken, slots, Some(slot), closure) },
+                false => Missing::Foreign { help: self.dependence(closure, slots) },
+            };
+            let names: Vec<String> = match self.pattern(slot) {
+                Some(pattern) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
+                None => vec!["h".into()],
+            };
+            names.into_iter().for_each(|name| scope.add_missing(name, missing.clone()));
+        }
+        scope
+    }
+
+    /// What a closure may depend on.
+    fn dependence(&self, closure: &Closure, slots: &[Slot]) -> String {
+        match slots.contains(&Slot::Velocity) {
+            true => format!("the {} depends on the velocity alone", closure.key),
+            false => format!("the {} depends on the configuration `{}` alone", closure.key, self.configuration.spell()),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! From the syntax of a closure's body to matrix expressions: one function for each construct, shapes checked on the way.
+
+mod access;
+mod block;
+mod constructors;
+mod literals;
+mod methods;
+mod names;
+mod operators;
+mod refused;
+mod sequences;
+mod tables;
+
+use std::collections::HashMap;
+
+use clebsch_symbolic::{Expr, Graph, Shape};
+use quote::ToTokens;
+use syn::Expr as Syntax;
+
+use super::scope::Scope;
+use super::fields::Fields;
+use super::value::Value;
+use super::Constant;
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::spell;
+
+/// Operators and methods inside each other.
+const DEPTH: usize = 200;
+/// Expressions that one closure may have, ranges written out.
+const WORK: usize = 100_000;
+/// The weight of one expression: factors, terms and digits together.
+const WEIGHT: u64 = 1 << 14;
+/// Functions of functions, products of sums of products.
+const NESTING: u32 = 512;
+
+/// What the elaboration of all closures shares.
+pub(super) struct Context<'c, 'g> {
+    pub graph: &'g Graph,
+    pub fields: &'c Fields<'g>,
+    pub constants: Vec<Constant<'g>>,
+    pub diagnostics: Diagnostics,
+}
+
+/// Elaborates the body of one closure.
+pub(super) struct Elaborator<'e, 'c, 'g> {
+    pub context: &'e mut Context<'c, 'g>,
+    /// What the closure gives, `potential`.
+    pub key: &'e str,
+    scope: Scope<'g>,
+    sizes: HashMap<Expr<'g>, Size>,
+    depth: usize,
+    work: usize,
+}
+
+/// How large an expression may have become at most.
+#[derive(Copy, Clone)]
+struct Size {
+    weight: u64,
+    nesting: u32,
+}
+
+/// How an operation makes expressions grow.
+#[derive(Copy, Clone)]
+enum Growth {
+    /// By its operands together.
+    Sum,
+    /// As a sum, one level deeper.
+    Product,
+    /// Every term meets every other.
+    Pairs,
+    /// A power, with the sizes of its numerator and denominator.
+    Power(u64),
+}
+
+impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
+    /// An elaborator for the closure of a key, with the names that its arguments introduce.
+    pub fn new(context: &'e mut Context<'c, 'g>, key: &'e str, scope: Scope<'g>) -> Elaborator<'e, 'c, 'g> {
+        Elaborator { context, key, scope, sizes: HashMap::new(), depth: 0, work: 0 }
+    }
+
+    fn graph(&self) -> &'g Graph {
+        self.context.graph
+    }
+
+    /// Reports an error; the expression then has no value.
+    fn error<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.context.diagnostics.push(diagnostic);
+        None
+    }
+
+    /// The value of an expression; `None` if it has an error, which is then reported.
+    pub fn elaborate(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
+        self.work += 1;
+        if self.work > WORK {
+            // one message is enough
+            let first = self.work == WORK + 1;
+            let message = format!("the {} has more than {WORK} operations", self.key);
+            return if first { self.error(Diagnostic::new(Place::of(syntax), message)) } else { None };
+        }
+        if self.depth == DEPTH {
+            let message = format!("more than {DEPTH} operations inside each other");
+            return self.error(Diagnostic::new(Place::of(syntax), message).help("give names to parts with `let`"));
+        }
+        self.depth += 1;
+        let value = self.dispatch(syntax);
+        self.depth -= 1;
+        value
+    }
+
+    fn dispatch(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
+        match syntax {
+            Syntax::Array(array) => self.array(array),
+            Syntax::Binary(binary) => self.binary(binary),
+            Syntax::Block(block) if block.label.is_none() => self.block(&block.block),
+            Syntax::Call(call) => self.call(call),
+            Syntax::Field(field) => self.field(field),
+            Syntax::Group(group) => self.elaborate(&group.expr),
+            Syntax::Index(index) => self.index(index),
+            Syntax::Lit(literal) => self.literal(literal),
+            Syntax::Macro(written) => self.macro_call(written),
+            Syntax::MethodCall(call) => self.method_call(call),
+            Syntax::Paren(inner) => self.elaborate(&inner.expr),
+            Syntax::Path(path) => self.path(path),
+            Syntax::Range(range) => self.range(range),
+            Syntax::Reference(reference) if reference.mutability.is_none() => self.elaborate(&reference.expr),
+            Syntax::Repeat(repeat) => self.repeat(repeat),
+            Syntax::Tuple(tuple) => self.tuple(tuple),
+            Syntax::Unary(unary) => self.unary(unary),
+            other => self.refused(other),
+        }
+    }
+
+    /// The value as a matrix.
+    fn matrix(&mut self, syntax: &Syntax) -> Option<Expr<'g>> {
+        let value = self.elaborate(syntax)?;
+        self.as_matrix(syntax, value)
+    }
+
+    fn as_matrix(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
+        match value {
+            Value::Matrix(expr) => Some(expr),
+            Value::Identity(_) => self.error(open_identity(syntax)),
+            other => {
+                let message = format!("`{}` is {}, not a matrix or a scalar", spell(syntax), other.describe());
+                let help = format!("take a part of it, as in `{}{}`", spell(syntax), first_part(&other));
+                self.error(Diagnostic::new(Place::of(syntax), message).help(help))
+            }
+        }
+    }
+
+    /// The value as a matrix of this shape, which an open identity takes.
+    fn shaped(&mut self, syntax: &Syntax, shape: Shape) -> Option<Value<'g>> {
+        match self.elaborate(syntax)? {
+            Value::Identity(scale) if shape.is_square() => {
+                let identity = self.graph().identity(shape.rows);
+                self.build(syntax, &[scale, identity], Growth::Sum, || scale * identity).map(Value::Matrix)
+            }
+            value => self.as_matrix(syntax, value).map(Value::Matrix),
+        }
+    }
+
+    /// The value as a scalar.
+    fn scalar(&mut self, syntax: &Syntax) -> Option<Expr<'g>> {
+        let expr = self.matrix(syntax)?;
+        if expr.shape().is_scalar() {
+            return Some(expr);
+        }
+        let message = format!("`{}` is {}, where a scalar is needed", spell(syntax), expr.shape());
+        self.error(Diagnostic::new(Place::of(syntax), message))
+    }
+
+    fn size(&self, expr: Expr<'g>) -> Size {
+        let digits = |number: clebsch_symbolic::Rational| (number.numer().bits() + number.denom().bits()) / 16;
+        let weight = || 1 + expr.as_number().map_or(0, digits);
+        self.sizes.get(&expr).copied().unwrap_or_else(|| Size { weight: weight(), nesting: 0 })
+    }
+
+    /// Makes an expression, unless it would become too large to work with.
+    fn build(
+        &mut self,
+        at: &dyn ToTokens,
+        operands: &[Expr<'g>],
+        growth: Growth,
+        make: impl FnOnce() -> Expr<'g>,
+    ) -> Option<Expr<'g>> {
+        let sizes: Vec<Size> = operands.iter().map(|&operand| self.size(operand)).collect();
+        let nesting = sizes.iter().map(|size| size.nesting).max().unwrap_or(0);
+        let weights = sizes.iter().map(|size| size.weight);
+        let sum = weights.clone().fold(0, u64::saturating_add);
+        let size = match growth {
+            Growth::Sum => Size { weight: sum, nesting },
+            Growth::Product => Size { weight: sum, nesting: nesting + 1 },
+            Growth::Pairs => Size { weight: weights.fold(1, u64::saturating_mul), nesting: nesting + 1 },
+            Growth::Power(exponent) => Size { weight: sum.saturating_mul(exponent.max(1)), nesting: nesting + 1 },
+        };
+        if size.weight > WEIGHT || size.nesting > NESTING {
+            let note = "written out, it has more terms, factors or digits than a formula should have";
+            return self.error(Diagnostic::new(Place::of(at), "this expression grows too large").note(note));
+        }
+        let expr = make();
+        self.sizes.insert(expr, size);
+        Some(expr)
+    }
+
+    /// Tries something without reporting its errors.
+    pub fn quietly<T>(&mut self, attempt: impl FnOnce(&mut Self) -> T) -> T {
+        let reported = self.context.diagnostics.clone();
+        let result = attempt(self);
+        self.context.diagnostics = reported;
+        result
+    }
+}
+
+/// The error for an `I` that meets nothing that has a size.
+fn open_identity(syntax: &Syntax) -> Diagnostic {
+    Diagnostic::new(Place::of(syntax), "the size of `I` is not known here")
+        .help("write `Matrix3::identity()`")
+        .note("`I` takes its size from the other side of `+`, `-` or `*`")
+}
+
+/// How a part of a tuple or an array is reached.
+fn first_part(value: &Value) -> &'static str {
+    match value {
+        Value::Tuple(_) => ".0",
+        _ => "[0]",
+    }
+}
+
+/// A text that is short enough for the first line of a message.
+pub(super) fn shortened(text: &str) -> String {
+    const LIMIT: usize = 80;
+    match text.chars().count() > LIMIT {
+        true => text.chars().take(LIMIT - 1).chain(['…']).collect(),
+        false => text.to_string(),
+    }
+}

@@ -1,0 +1,95 @@
+//! Names: arguments, `let`s, `I`, `PI`, constants of the user's crate.
+
+use clebsch_symbolic::{Property, Role, Shape};
+use syn::ext::IdentExt;
+use syn::{ExprPath, Ident, Path};
+
+use super::super::scope::Missing;
+use super::super::Constant;
+use super::super::value::Value;
+use super::Elaborator;
+use crate::diagnostic::{Diagnostic, Place, nearest};
+
+impl<'g> Elaborator<'_, '_, 'g> {
+    /// A name, or the path of a constant.
+    pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
+        if path.qself.is_some() {
+            return self.error(Diagnostic::new(Place::of(path), "a type in angle brackets has no meaning here"));
+        }
+        match path.path.get_ident() {
+            Some(ident) => self.name(ident),
+            None if is_pi(&path.path) => Some(Value::Matrix(self.graph().pi())),
+            None => self.constant(&path.path),
+        }
+    }
+
+    fn name(&mut self, ident: &Ident) -> Option<Value<'g>> {
+        let name = ident.unraw().to_string();
+        if let Some(value) = self.scope.value(&name) {
+            // a name whose definition has an error has no value, and the error was reported
+            return value.clone();
+        }
+        match name.as_str() {
+            "I" => Some(Value::Identity(self.graph().integer(1))),
+            "PI" => Some(Value::Matrix(self.graph().pi())),
+            "self" => {
+                let error = Diagnostic::new(ident.span(), "`self` alone is no quantity");
+                self.error(error.help("read a field, as in `self.mass`"))
+            }
+            "t" => self.error(Diagnostic::later(ident.span(), "the time `t`")),
+            _ if is_constant_name(&name) => self.constant(&ident.clone().into()),
+            _ => self.unknown_name(ident, &name),
+        }
+    }
+
+    /// The symbol of a constant, the same for every use.
+    fn constant(&mut self, path: &Path) -> Option<Value<'g>> {
+        if path.segments.iter().any(|segment| !segment.arguments.is_empty()) {
+            let error = Diagnostic::new(Place::of(path), "a constant has no generic arguments");
+            return self.error(error);
+        }
+        let known = self.context.constants.iter().position(|constant| constant.path == *path);
+        let index = known.unwrap_or(self.context.constants.len());
+        let name: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        let symbol = self.graph().symbol(&name.join("::"), Shape::scalar(), Role::Constant(index), Property::General);
+        if known.is_none() {
+            self.context.constants.push(Constant { path: path.clone(), symbol });
+        }
+        Some(Value::Matrix(symbol))
+    }
+
+    fn unknown_name(&mut self, ident: &Ident, name: &str) -> Option<Value<'g>> {
+        let error = Diagnostic::new(ident.span(), format!("cannot find `{name}` in the {}", self.key));
+        let error = match self.scope.missing(name) {
+            Some(Missing::Argument { head }) => error.help(format!("take it as an argument: write `{head}`")),
+            Some(Missing::Foreign { help }) => error.help(help),
+            None => match self.similar(name) {
+                Some(help) => error.help(help),
+                None => error.note(format!("known here are {}", self.scope.list())),
+            },
+        };
+        self.error(error)
+    }
+
+    fn similar(&self, name: &str) -> Option<String> {
+        let fields: Vec<&str> = self.context.fields.names().collect();
+        if fields.contains(&name) {
+            return Some(format!("write `self.{name}` for the field"));
+        }
+        if let Some(similar) = nearest(name, self.scope.names()) {
+            return Some(format!("a similar name exists: `{similar}`"));
+        }
+        nearest(name, fields).map(|similar| format!("a field with a similar name exists: `self.{similar}`"))
+    }
+}
+
+/// `std::f64::consts::PI` and the like.
+fn is_pi(path: &Path) -> bool {
+    let names: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+    matches!(names.as_slice(), [.., module, name] if module == "consts" && name == "PI")
+}
+
+/// A single name is a constant if it is written like one: `GRAVITY`, `G0`.
+fn is_constant_name(name: &str) -> bool {
+    name.len() > 1 && name.starts_with(|c: char| c.is_ascii_uppercase()) && !name.contains(|c: char| c.is_lowercase())
+}

@@ -1,0 +1,148 @@
+//! The methods of closures as data: name, what they are applied to, and the expression that they make.
+
+use clebsch_symbolic::{Expr, Function};
+
+/// A map of matrices.
+pub(super) type Unary = for<'g> fn(Expr<'g>) -> Expr<'g>;
+/// A map of pairs of matrices.
+pub(super) type Binary = for<'g> fn(Expr<'g>, Expr<'g>) -> Expr<'g>;
+
+/// What a method is applied to, and how it makes its value.
+#[derive(Copy, Clone)]
+pub(super) enum Rule {
+    /// Any matrix.
+    Any(Unary),
+    /// A square matrix.
+    Square(Unary),
+    /// A vector or a matrix that is no scalar.
+    Vector(Unary),
+    /// A vector of three components.
+    Three(Unary),
+    /// A scalar.
+    Scalar(Function),
+    /// Two matrices of the same shape.
+    Pair(Binary),
+    /// Two vectors of three components.
+    PairOfThree(Binary),
+    /// A method with a function of its own.
+    Special(Special),
+}
+
+/// Methods that are no plain maps of matrices.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(super) enum Special {
+    Sqrt,
+    Powi,
+    Powf,
+    Recip,
+    Norm,
+    Column,
+    Row,
+    FixedRows,
+    FixedColumns,
+    FixedView,
+    FirstTwo,
+    FirstThree,
+    Matrix,
+    Map,
+    Sum,
+}
+
+/// All methods with their number of arguments.
+pub(super) const METHODS: [(&str, usize, Rule); 37] = [
+    ("transpose",      0, Rule::Any(|a| a.transpose())),
+    ("norm_squared",   0, Rule::Any(|a| a.norm_squared())),
+    ("norm",           0, Rule::Special(Special::Norm)),
+    ("normalize",      0, Rule::Vector(|a| a.normalize())),
+    ("trace",          0, Rule::Square(|a| a.trace())),
+    ("determinant",    0, Rule::Square(|a| a.determinant())),
+    ("inverse",        0, Rule::Square(|a| a.inverse())),
+    ("symmetric_part", 0, Rule::Square(|a| a.symmetric_part())),
+    ("cross_matrix",   0, Rule::Three(|a| a.hat())),
+    ("dot",            1, Rule::Pair(|a, b| a.dot(b))),
+    ("component_mul",  1, Rule::Pair(|a, b| a.hadamard(b))),
+    ("cross",          1, Rule::PairOfThree(|a, b| a.cross(b))),
+    ("column",         1, Rule::Special(Special::Column)),
+    ("row",            1, Rule::Special(Special::Row)),
+    ("fixed_rows",     1, Rule::Special(Special::FixedRows)),
+    ("fixed_columns",  1, Rule::Special(Special::FixedColumns)),
+    ("fixed_view",     2, Rule::Special(Special::FixedView)),
+    ("xy",             0, Rule::Special(Special::FirstTwo)),
+    ("xyz",            0, Rule::Special(Special::FirstThree)),
+    ("matrix",         0, Rule::Special(Special::Matrix)),
+    ("map",            1, Rule::Special(Special::Map)),
+    ("sum",            0, Rule::Special(Special::Sum)),
+    ("sqrt",           0, Rule::Special(Special::Sqrt)),
+    ("powi",           1, Rule::Special(Special::Powi)),
+    ("powf",           1, Rule::Special(Special::Powf)),
+    ("recip",          0, Rule::Special(Special::Recip)),
+    ("sin",            0, Rule::Scalar(Function::Sin)),
+    ("cos",            0, Rule::Scalar(Function::Cos)),
+    ("tan",            0, Rule::Scalar(Function::Tan)),
+    ("asin",           0, Rule::Scalar(Function::Asin)),
+    ("acos",           0, Rule::Scalar(Function::Acos)),
+    ("atan",           0, Rule::Scalar(Function::Atan)),
+    ("sinh",           0, Rule::Scalar(Function::Sinh)),
+    ("cosh",           0, Rule::Scalar(Function::Cosh)),
+    ("tanh",           0, Rule::Scalar(Function::Tanh)),
+    ("exp",            0, Rule::Scalar(Function::Exp)),
+    ("ln",             0, Rule::Scalar(Function::Ln)),
+];
+
+/// Methods without a derivative everywhere: why, and what to write instead, with `…` for the receiver.
+pub(super) const REFUSED: [(&str, &str, &str); 19] = [
+    ("abs",        "has no derivative at 0",               "smooth it, `(… * … + self.width * self.width).sqrt()`"),
+    ("signum",     "has no derivative at 0",               "smooth it, `(… / self.width).tanh()`"),
+    ("min",        "has no derivative where both are equal", "write a formula that is smooth there"),
+    ("max",        "has no derivative where both are equal", "write a formula that is smooth there"),
+    ("clamp",      "has no derivative at its ends",        "write a formula that is smooth there"),
+    ("floor",      "has no derivative at whole numbers",   "write a formula that is smooth there"),
+    ("ceil",       "has no derivative at whole numbers",   "write a formula that is smooth there"),
+    ("round",      "has no derivative between whole numbers", "write a formula that is smooth there"),
+    ("trunc",      "has no derivative at whole numbers",   "write a formula that is smooth there"),
+    ("fract",      "has no derivative at whole numbers",   "write a formula that is smooth there"),
+    ("rem_euclid", "has no derivative at its jumps",       "a periodic potential is made of `sin` and `cos`"),
+    ("atan2",      "has a jump",                           "write the potential in the components themselves, without the angle"),
+    ("angle",      "has no derivative at 0",               "write the potential in `a.dot(&b)`, without the angle"),
+    ("argument",   "has a jump",                           "write the potential in the components themselves, without the angle"),
+    ("amax",       "has no derivative where two are equal", "use `norm_squared()`"),
+    ("amin",       "has no derivative where two are equal", "write a formula that is smooth there"),
+    ("lp_norm",    "has no derivative at 0",               "use `norm_squared()`"),
+    ("hypot",      "has no derivative at 0",               "write `(a * a + b * b).sqrt()`"),
+    ("cbrt",       "has no derivative at 0",               "write `….powf(1 / 3)` where it is positive"),
+];
+
+/// Methods of a later version.
+pub(super) const LATER: [&str; 5] = ["rotation", "translation", "scalar", "imag", "conjugate"];
+
+/// Methods by other names.
+pub(super) const SYNONYMS: [(&str, &str); 24] = [
+    ("magnitude", "norm()"),
+    ("length", "norm()"),
+    ("len", "norm()"),
+    ("magnitude_squared", "norm_squared()"),
+    ("length_squared", "norm_squared()"),
+    ("norm2", "norm_squared()"),
+    ("normalized", "normalize()"),
+    ("try_inverse", "inverse()"),
+    ("pseudo_inverse", "inverse()"),
+    ("det", "determinant()"),
+    ("tr", "trace()"),
+    ("t", "transpose()"),
+    ("adjoint", "transpose()"),
+    ("pow", "powi(2)"),
+    ("sq", "powi(2)"),
+    ("square", "powi(2)"),
+    ("squared", "powi(2)"),
+    ("log", "ln()"),
+    ("hat", "cross_matrix()"),
+    ("skew", "cross_matrix()"),
+    ("to_skew", "cross_matrix()"),
+    ("hadamard", "component_mul(&b)"),
+    ("symmetrize", "symmetric_part()"),
+    ("into_iter", "map(|i| …)"),
+];
+
+/// Methods that mathematics has no need of.
+pub(super) const NEEDLESS: [&str; 12] =
+    ["clone", "to_owned", "into", "into_inner", "as_ref", "iter", "collect", "unwrap", "clone_owned", "evaluate", "eval", "copied"];

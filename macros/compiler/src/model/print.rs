@@ -1,0 +1,92 @@
+//! The printed form of a model: a line for each parameter, factor, configuration and formula.
+
+use std::fmt;
+
+use super::fields::spell_scalar;
+use super::{Configuration, Discretization, Factor, Kinetic, Model, Order, Parameter, Promise, Side, Space};
+
+impl fmt::Display for Model<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "model {} over {}", self.item.ident, spell_scalar(&self.item.scalar))?;
+        self.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
+        for constant in &self.constants {
+            writeln!(f, "  constant {}", constant.symbol)?;
+        }
+        self.factors.iter().try_for_each(|factor| writeln!(f, "  {factor}"))?;
+        self.configurations.iter().try_for_each(|leaf| writeln!(f, "  {leaf}"))?;
+        for (leaf, image) in self.configurations.iter().zip(&self.action) {
+            writeln!(f, "  action     {} -> {image}", leaf.name)?;
+        }
+        match &self.kinetic {
+            Kinetic::Cost(cost) => writeln!(f, "  cost       {cost}")?,
+            Kinetic::Lagrangian { energy, name, discretization, .. } => {
+                writeln!(f, "  lagrangian {energy} of {name}, by {discretization}")?;
+            }
+        }
+        match self.potential {
+            Some(potential) => writeln!(f, "  potential  {potential}")?,
+            None => writeln!(f, "  potential  none")?,
+        }
+        writeln!(f, "  order      {}", self.order)
+    }
+}
+
+impl fmt::Display for Parameter<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for leaf in &self.leaves {
+            let shape = if leaf.is_scalar { "scalar".to_string() } else { leaf.shape.to_string() };
+            let promise = match self.promise {
+                None => "",
+                Some(Promise::Symmetric) => ", symmetric",
+                Some(Promise::Diagonal) => ", diagonal",
+                Some(Promise::Unit) => ", unit",
+            };
+            writeln!(f, "  parameter {}: {shape}{promise}", leaf.symbol)?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Factor<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "factor {}: {}, {}", self.name, self.group.name(), self.side)
+    }
+}
+
+impl fmt::Display for Configuration<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "configuration {}: {}", self.name, self.shape)?;
+        match self.space {
+            Space::Vectors => Ok(()),
+            Space::Unit => f.write_str(", unit"),
+            Space::Group(group) => write!(f, " in {}", group.name()),
+        }
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Side::Left => "left",
+            Side::Right => "right",
+        })
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Order::First => "1",
+            Order::Second => "2",
+        })
+    }
+}
+
+impl fmt::Display for Discretization {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Discretization::Cayley => "cayley",
+            Discretization::MoserVeselov => "moser_veselov",
+        })
+    }
+}

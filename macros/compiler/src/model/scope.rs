@@ -1,0 +1,146 @@
+//! The names that an expression may use, and what is known about those that it may not.
+
+use clebsch_symbolic::Expr;
+use proc_macro2::Ident;
+use syn::ext::IdentExt;
+
+use super::value::Value;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::parse::Pattern;
+
+/// Names with a meaning of their own in all closures.
+const RESERVED: [&str; 4] = ["h", "t", "I", "self"];
+
+/// A name and its value; a value with an error, which was reported, is `None`.
+pub(super) struct Binding<'g> {
+    ident: Ident,
+    value: Option<Value<'g>>,
+}
+
+/// Why a name of the declaration is not known in a closure.
+#[derive(Clone)]
+pub(super) enum Missing {
+    /// The closure may have it as an argument, with this head.
+    Argument {
+        /// `|h, q, F|`.
+        head: String,
+    },
+    /// The closure cannot depend on it.
+    Foreign {
+        /// What it may depend on.
+        help: String,
+    },
+}
+
+/// The names of one closure.
+#[derive(Default)]
+pub(super) struct Scope<'g> {
+    names: Vec<(String, Option<Value<'g>>)>,
+    arguments: usize,
+    missing: Vec<(String, Missing)>,
+    velocity: Option<Expr<'g>>,
+}
+
+impl<'g> Binding<'g> {
+    /// The names of a pattern with the parts of a value.
+    pub fn of(pattern: &Pattern, value: Option<Value<'g>>, diagnostics: &mut Diagnostics) -> Option<Vec<Binding<'g>>> {
+        match (pattern, value?) {
+            (Pattern::Name(ident), value) => Some(vec![Binding { ident: ident.clone(), value: Some(value) }]),
+            (Pattern::Tuple(patterns, _), Value::Tuple(parts)) if patterns.len() == parts.len() => {
+                let bindings: Option<Vec<Vec<Binding<'g>>>> =
+                    patterns.iter().zip(parts).map(|(pattern, part)| Binding::of(pattern, Some(part), diagnostics)).collect();
+                bindings.map(|bindings| bindings.into_iter().flatten().collect())
+            }
+            (pattern, other) => {
+                let message = format!("`{}` does not fit {}", pattern.spell(), other.describe());
+                diagnostics.push(Diagnostic::new(pattern.place(), message));
+                None
+            }
+        }
+    }
+
+    /// The names of a pattern without values.
+    pub fn unknown(pattern: &Pattern) -> Vec<Binding<'g>> {
+        pattern.names().into_iter().map(|ident| Binding { ident: ident.clone(), value: None }).collect()
+    }
+}
+
+/// Reports a name that may not be introduced.
+pub(super) fn check_reserved(ident: &Ident, what: &str, diagnostics: &mut Diagnostics) {
+    let name = ident.unraw().to_string();
+    if RESERVED.contains(&name.as_str()) {
+        diagnostics.push(
+            Diagnostic::new(ident.span(), format!("`{name}` is reserved and cannot be the name of {what}"))
+                .help("choose another name")
+                .note("in all closures `h` is the step, `t` the time, `I` the identity and `self` the struct"),
+        );
+    }
+}
+
+impl<'g> Scope<'g> {
+    /// Introduces an argument.
+    pub fn add_argument(&mut self, pattern: &Pattern, value: Option<Value<'g>>, diagnostics: &mut Diagnostics) {
+        let bindings = Binding::of(pattern, value, diagnostics).unwrap_or_else(|| Binding::unknown(pattern));
+        self.names.extend(bindings.into_iter().map(|binding| (binding.ident.unraw().to_string(), binding.value)));
+        self.arguments = self.names.len();
+    }
+
+    /// Introduces a name of a `let` or of a closure inside; arguments stay what they are.
+    pub fn add(&mut self, binding: Binding<'g>, what: &str, diagnostics: &mut Diagnostics) {
+        let name = binding.ident.unraw().to_string();
+        check_reserved(&binding.ident, what, diagnostics);
+        if self.names[..self.arguments].iter().any(|(argument, _)| *argument == name) {
+            let error = Diagnostic::new(binding.ident.span(), format!("`{name}` is an argument and cannot be redefined"));
+            diagnostics.push(error.help("choose another name").note("a `let` may replace a `let`, and nothing else"));
+            return;
+        }
+        self.names.push((name, binding.value));
+    }
+
+    /// Notes that a name of the declaration is not an argument here.
+    pub fn add_missing(&mut self, name: String, missing: Missing) {
+        self.missing.push((name, missing));
+    }
+
+    /// Notes which symbol is the velocity.
+    pub fn set_velocity(&mut self, velocity: Expr<'g>) {
+        self.velocity = Some(velocity);
+    }
+
+    /// Whether an expression is the velocity.
+    pub fn is_velocity(&self, expr: Expr<'g>) -> bool {
+        self.velocity == Some(expr)
+    }
+
+    /// The value of a name, the latest first.
+    pub fn value(&self, name: &str) -> Option<&Option<Value<'g>>> {
+        self.names.iter().rev().find(|(known, _)| known == name).map(|(_, value)| value)
+    }
+
+    /// Why a name is not known.
+    pub fn missing(&self, name: &str) -> Option<Missing> {
+        self.missing.iter().find(|(known, _)| known == name).map(|(_, missing)| missing.clone())
+    }
+
+    /// All names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// All names, for messages.
+    pub fn list(&self) -> String {
+        let mut names: Vec<String> = self.names().map(|name| format!("`{name}`")).collect();
+        names.extend(["`I`".to_string(), "`self`".to_string()]);
+        names.join(", ")
+    }
+
+    /// A point to come back to.
+    pub fn mark(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Forgets the names since a mark.
+    pub fn release(&mut self, mark: usize) {
+        self.names.truncate(mark);
+    }
+}

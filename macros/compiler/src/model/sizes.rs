@@ -1,0 +1,59 @@
+//! Sizes in types, and the limits within which the compiler is sure to come to an end.
+
+use syn::{Expr, GenericArgument, GenericParam, Generics, Lit, Type};
+
+use crate::diagnostic::{Diagnostic, Place};
+use crate::parse::{spell, spell_type};
+
+/// Rows or columns of one matrix, and the length of one array.
+pub(super) const LARGEST: usize = 64;
+/// Factors of a group, leaves of a configuration.
+pub(super) const LEAVES: usize = 128;
+/// Entries of all matrices in one field.
+pub(super) const ENTRIES: usize = 4096;
+
+/// The size that a generic argument stands for.
+pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> Result<usize, Diagnostic> {
+    match argument {
+        GenericArgument::Const(expr) => size(expr, generics),
+        GenericArgument::Type(ty) => Err(no_size(Place::of(ty), &spell_type(ty), generics)),
+        other => Err(Diagnostic::new(Place::of(other), "a size is a number")),
+    }
+}
+
+/// The size that an expression stands for: a number between one and the limit.
+pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic> {
+    match expr {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(number) => match number.base10_parse::<usize>() {
+                Ok(0) => Err(Diagnostic::new(number.span(), "a size of 0 leaves nothing")),
+                Ok(value) if value <= LARGEST => Ok(value),
+                _ => Err(Diagnostic::new(number.span(), format!("the size {number} is more than {LARGEST}"))
+                    .note("the code of a step is written out at compile time and grows with the size")),
+            },
+            _ => Err(no_size(Place::of(expr), &spell(expr), generics)),
+        },
+        Expr::Group(group) => size(&group.expr, generics),
+        _ => Err(no_size(Place::of(expr), &spell(expr), generics)),
+    }
+}
+
+fn no_size(place: Place, text: &str, generics: &Generics) -> Diagnostic {
+    if is_const_generic(text, generics) {
+        return Diagnostic::later(place, format!("the const generic `{text}` as a size")).help("write a number");
+    }
+    Diagnostic::new(place, format!("the size `{text}` is not a number"))
+        .help("write a number")
+        .note("a macro sees the text of the declaration, not the values of constants")
+}
+
+fn is_const_generic(name: &str, generics: &Generics) -> bool {
+    generics.params.iter().any(|parameter| matches!(parameter, GenericParam::Const(constant) if constant.ident == name))
+}
+
+/// Whether the type is a type parameter of the struct.
+pub(super) fn type_parameter<'p>(ty: &Type, generics: &'p Generics) -> Option<&'p syn::Ident> {
+    let Type::Path(path) = ty else { return None };
+    let name = path.path.get_ident()?;
+    generics.type_params().map(|parameter| &parameter.ident).find(|ident| *ident == name)
+}

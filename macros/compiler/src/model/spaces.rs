@@ -1,0 +1,168 @@
+//! The two typed arguments of the action: the group and the space of configurations, with products of both.
+
+use clebsch_symbolic::{Group, Property, Shape};
+use proc_macro2::Span;
+use syn::{Generics, Type};
+
+use super::groups::{group, suggestion, unknown_group};
+use super::sizes::{LEAVES, size};
+use super::vectors::{arguments, hint, last_segment, vectors};
+use super::{Space, Structure};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::spell_type;
+
+/// A type as a product of leaves.
+pub(super) struct Product<'t, L> {
+    pub structure: Structure,
+    /// Each leaf with its type.
+    pub leaves: Vec<(L, &'t Type)>,
+}
+
+/// A leaf of the configuration.
+#[derive(Copy, Clone)]
+pub(super) struct SpaceType<'t> {
+    pub space: Space,
+    pub shape: Shape,
+    /// The scalar, if it is written.
+    pub scalar: Option<&'t Type>,
+}
+
+impl SpaceType<'_> {
+    /// What holds for every point.
+    pub fn property(&self) -> Property {
+        match self.space {
+            Space::Vectors => Property::General,
+            Space::Unit => Property::Unit,
+            Space::Group(group) => group.element_property(),
+        }
+    }
+}
+
+/// Reads the type of the group element.
+pub(super) fn read_groups<'t>(
+    ty: &'t Type,
+    generics: &Generics,
+    diagnostics: &mut Diagnostics,
+) -> Option<Product<'t, Group>> {
+    let leaf = |ty: &'t Type| group(ty, generics).unwrap_or_else(|| Err(unknown_group(ty)));
+    read_product(ty, generics, &leaf, diagnostics)
+}
+
+/// Reads the type of the configuration.
+pub(super) fn read_spaces<'t>(
+    ty: &'t Type,
+    generics: &Generics,
+    diagnostics: &mut Diagnostics,
+) -> Option<Product<'t, SpaceType<'t>>> {
+    let leaf = |ty: &'t Type| read_space(ty, generics);
+    read_product(ty, generics, &leaf, diagnostics)
+}
+
+fn read_product<'t, L: Copy>(
+    ty: &'t Type,
+    generics: &Generics,
+    leaf: &impl Fn(&'t Type) -> Result<L, Diagnostic>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Product<'t, L>> {
+    let mut leaves = Vec::new();
+    let structure = read_structure(ty, generics, leaf, &mut leaves, diagnostics)?;
+    if leaves.len() > LEAVES {
+        let message = format!("`{}` has {} factors, more than {LEAVES}", spell_type(ty), leaves.len());
+        diagnostics.push(Diagnostic::new(Place::of(ty), message));
+        return None;
+    }
+    Some(Product { structure, leaves })
+}
+
+fn read_structure<'t, L: Copy>(
+    ty: &'t Type,
+    generics: &Generics,
+    leaf: &impl Fn(&'t Type) -> Result<L, Diagnostic>,
+    leaves: &mut Vec<(L, &'t Type)>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Structure> {
+    match ty {
+        Type::Group(group) => read_structure(&group.elem, generics, leaf, leaves, diagnostics),
+        Type::Paren(paren) => read_structure(&paren.elem, generics, leaf, leaves, diagnostics),
+        Type::Tuple(tuple) if !tuple.elems.is_empty() => {
+            let parts: Vec<Structure> = tuple
+                .elems
+                .iter()
+                .filter_map(|part| read_structure(part, generics, leaf, leaves, diagnostics))
+                .collect();
+            (parts.len() == tuple.elems.len()).then_some(Structure::Tuple(parts))
+        }
+        Type::Array(array) => {
+            let length = size(&array.len, generics).map_err(|error| diagnostics.push(error)).ok()?;
+            let first = leaves.len();
+            let part = read_structure(&array.elem, generics, leaf, leaves, diagnostics)?;
+            let element: Vec<(L, &'t Type)> = leaves[first..].to_vec();
+            if length * element.len() > LEAVES {
+                let message = format!("`{}` has {} factors, more than {LEAVES}", spell_type(ty), length * element.len());
+                diagnostics.push(Diagnostic::new(Place::of(ty), message));
+                return None;
+            }
+            (1..length).for_each(|_| leaves.extend(element.iter().copied()));
+            Some(Structure::Array((0..length).map(|i| part.shifted(i * element.len())).collect()))
+        }
+        _ => match leaf(ty) {
+            Ok(found) => {
+                leaves.push((found, ty));
+                Some(Structure::Leaf(leaves.len() - 1))
+            }
+            Err(error) => {
+                diagnostics.push(error);
+                None
+            }
+        },
+    }
+}
+
+fn read_space<'t>(ty: &'t Type, generics: &Generics) -> Result<SpaceType<'t>, Diagnostic> {
+    if let Some(found) = group(ty, generics) {
+        let group = found?;
+        // elements of Translation<n> are vectors, and every vector is one
+        let space = if matches!(group, Group::Translation(_)) { Space::Vectors } else { Space::Group(group) };
+        return Ok(SpaceType { space, shape: group.element_shape(), scalar: None });
+    }
+    if let Some(found) = vectors(ty, generics) {
+        return found.map(|vectors| SpaceType { space: Space::Vectors, shape: vectors.shape, scalar: vectors.scalar });
+    }
+    match last_segment(ty) {
+        Some(segment) if segment.ident == "Unit" => match arguments(segment).as_slice() {
+            [syn::GenericArgument::Type(inner)] => match vectors(inner, generics) {
+                Some(Ok(vectors)) if vectors.shape.is_column() && vectors.shape.rows > 1 => {
+                    Ok(SpaceType { space: Space::Unit, shape: vectors.shape, scalar: vectors.scalar })
+                }
+                Some(Err(error)) => Err(error),
+                _ => Err(no_unit(ty)),
+            },
+            _ => Err(no_unit(ty)),
+        },
+        Some(segment) if segment.ident == "Quaternion" || segment.ident == "UnitQuaternion" => {
+            Err(Diagnostic::later(Place::of(ty), format!("the space `{}`", spell_type(ty))).help("write `SO<3>`"))
+        }
+        segment => Err(unknown_space(ty, &segment.map(|segment| segment.ident.to_string()).unwrap_or_default())),
+    }
+}
+
+fn no_unit(ty: &Type) -> Diagnostic {
+    Diagnostic::new(Place::of(ty), format!("`{}` is no sphere", spell_type(ty))).help("write `Unit<Vector3>` for unit vectors")
+}
+
+fn unknown_space(ty: &Type, name: &str) -> Diagnostic {
+    let text = spell_type(ty);
+    let error = Diagnostic::new(Place::of(ty), format!("unknown space `{text}`"));
+    if matches!(name, "f32" | "f64") {
+        return error.help("write `Vector1` for a single coordinate");
+    }
+    match suggestion(name).map(|group| format!("write `{group}`")).or_else(|| hint(name)) {
+        Some(help) => error.help(help),
+        None => error.help("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)"),
+    }
+}
+
+/// Where a type begins.
+pub(super) fn span_of(ty: &Type) -> Span {
+    Place::of(ty).start()
+}

@@ -1,0 +1,52 @@
+//! What an expression of a closure may be: a matrix, the identity of a size that is still open, a tuple, an array.
+
+use clebsch_symbolic::{Expr, Shape};
+
+use super::Structure;
+
+/// The value of an expression.
+#[derive(Clone, Debug)]
+pub(super) enum Value<'g> {
+    /// A matrix; scalars are 1×1.
+    Matrix(Expr<'g>),
+    /// A scalar times the identity, whose size comes from what it meets.
+    Identity(Expr<'g>),
+    Tuple(Vec<Value<'g>>),
+    Array(Vec<Value<'g>>),
+}
+
+impl<'g> Value<'g> {
+    /// Nests expressions as a structure says.
+    pub fn nested(structure: &Structure, leaves: &[Expr<'g>]) -> Value<'g> {
+        let parts = |parts: &[Structure]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
+        match structure {
+            Structure::Leaf(leaf) => Value::Matrix(leaves[*leaf]),
+            Structure::Tuple(inner) => Value::Tuple(parts(inner)),
+            Structure::Array(inner) => Value::Array(parts(inner)),
+        }
+    }
+
+    /// The matrix, if it is one.
+    pub fn matrix(&self) -> Option<Expr<'g>> {
+        match self {
+            Value::Matrix(expr) => Some(*expr),
+            _ => None,
+        }
+    }
+
+    /// The shape, if it is known.
+    pub fn shape(&self) -> Option<Shape> {
+        self.matrix().map(Expr::shape)
+    }
+
+    /// What it is, for messages: `3x3`, `a pair`.
+    pub fn describe(&self) -> String {
+        match self {
+            Value::Matrix(expr) if expr.shape().is_scalar() => "a scalar".into(),
+            Value::Matrix(expr) => expr.shape().to_string(),
+            Value::Identity(_) => "a multiple of `I`, of unknown size".into(),
+            Value::Tuple(parts) => format!("a tuple of {}", parts.len()),
+            Value::Array(parts) => format!("an array of {}", parts.len()),
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! The value of the stage `parse`.
+
+use proc_macro2::Ident;
+use syn::{DeriveInput, Generics, Visibility};
+
+use super::keys::{Dials, Keys};
+use super::{Closure, Field};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+
+/// What the user declared: the struct, the closures and the dials, as written.
+#[derive(Clone, Debug)]
+pub struct Declaration {
+    /// The name of the struct.
+    pub ident: Ident,
+    /// Its visibility.
+    pub vis: Visibility,
+    /// Its generics.
+    pub generics: Generics,
+    /// Its fields.
+    pub fields: Vec<Field>,
+    /// The action of the group on the configurations.
+    pub action: Closure,
+    /// Where the kinetic energy comes from.
+    pub kinetic: Kinetic,
+    /// The potential energy; a free body has none.
+    pub potential: Option<Closure>,
+    /// Everything else.
+    pub dials: Dials,
+}
+
+/// The key that gives the kinetic energy.
+#[derive(Clone, Debug)]
+pub enum Kinetic {
+    /// `cost = …`, the kinetic part of the discrete Lagrangian.
+    Cost(Closure),
+    /// `lagrangian = …`, to be discretised.
+    Lagrangian(Closure),
+}
+
+impl Kinetic {
+    /// The closure.
+    pub fn closure(&self) -> &Closure {
+        match self {
+            Kinetic::Cost(closure) | Kinetic::Lagrangian(closure) => closure,
+        }
+    }
+}
+
+/// Puts the declaration together, or says what is missing or too much.
+pub(super) fn assemble(
+    input: &DeriveInput,
+    keys: Keys,
+    fields: Vec<Field>,
+    mut diagnostics: Diagnostics,
+) -> Result<Declaration, Diagnostics> {
+    // a closure that was given and could not be read has its own error
+    let given = |name: &str| keys.was_given(name);
+    if !given("action") {
+        diagnostics.push(missing_action(&input.ident, keys.is_empty()));
+    } else if !given("cost") && !given("lagrangian") {
+        diagnostics.push(missing_kinetic(&input.ident));
+    }
+    let kinetic = match (keys.cost, keys.lagrangian) {
+        (Some(_), Some(lagrangian)) => {
+            diagnostics.push(two_kinetic(&lagrangian.key));
+            None
+        }
+        (Some(cost), None) => Some(Kinetic::Cost(cost)),
+        (None, lagrangian) => lagrangian.map(Kinetic::Lagrangian),
+    };
+    if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
+        diagnostics.push(
+            Diagnostic::new(discretization.span, "a cost is discrete already, there is nothing to discretise")
+                .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
+        );
+    }
+    let (action, potential, dials) = (keys.action, keys.potential, keys.dials);
+    match (diagnostics.is_empty(), action, kinetic) {
+        (true, Some(action), Some(kinetic)) => Ok(Declaration {
+            ident: input.ident.clone(),
+            vis: input.vis.clone(),
+            generics: input.generics.clone(),
+            fields,
+            action,
+            kinetic,
+            potential,
+            dials,
+        }),
+        _ => Err(diagnostics),
+    }
+}
+
+fn missing_action(ident: &Ident, nothing_given: bool) -> Diagnostic {
+    let message = match nothing_given {
+        true => format!("`{ident}` has no `#[clebsch(…)]` that declares its motion"),
+        false => format!("`{ident}` has no action"),
+    };
+    let example = match nothing_given {
+        true => "#[clebsch(action = |F: SO<3>, R: SO<3>| R * F, lagrangian = |omega| …)]",
+        false => "action = |F: SO<3>, R: SO<3>| R * F",
+    };
+    Diagnostic::new(ident.span(), message)
+        .help(format!("write `{example}` for a rigid body"))
+        .note("the action declares the group and the configurations by its two typed arguments")
+}
+
+fn missing_kinetic(ident: &Ident) -> Diagnostic {
+    Diagnostic::new(ident.span(), format!("`{ident}` has neither a cost nor a lagrangian"))
+        .help("write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`")
+        .note("without kinetic energy nothing says how a momentum moves the configuration")
+}
+
+fn two_kinetic(key: &Ident) -> Diagnostic {
+    Diagnostic::new(key.span(), "there is a cost and a lagrangian, but a step needs one kinetic energy")
+        .help("keep one of the two: the `lagrangian` is discretised for you, the `cost` is discrete as it stands")
+}

@@ -1,0 +1,127 @@
+//! The keys of `#[clebsch(…)]`: which there are, which come later, and what was given.
+
+use proc_macro2::{Ident, Span};
+
+use super::Closure;
+use crate::model::{Discretization, Emit, Order};
+
+/// A value and where it was written.
+#[derive(Clone, Debug)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// What a key's value is.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    /// A closure, and how it usually begins.
+    Closure(&'static str),
+    Order,
+    Discretization,
+    Emit,
+    Scalar,
+    Crate,
+    /// Part of the language, but not of this version.
+    Later,
+}
+
+/// All keys.
+pub(super) const KEYS: [(&str, Kind); 22] = [
+    ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
+    ("cost", Kind::Closure("|h, F| …")),
+    ("lagrangian", Kind::Closure("|omega| …")),
+    ("potential", Kind::Closure("|q| …")),
+    ("order", Kind::Order),
+    ("discretization", Kind::Discretization),
+    ("emit", Kind::Emit),
+    ("scalar", Kind::Scalar),
+    ("crate", Kind::Crate),
+    ("isotropy", Kind::Later),
+    ("chart", Kind::Later),
+    ("tolerance", Kind::Later),
+    ("symmetry", Kind::Later),
+    ("force", Kind::Later),
+    ("force_on", Kind::Later),
+    ("constraint", Kind::Later),
+    ("discrete_constraint", Kind::Later),
+    ("controls", Kind::Later),
+    ("bounds", Kind::Later),
+    ("endpoint", Kind::Later),
+    ("dynamics", Kind::Later),
+    ("space", Kind::Later),
+];
+
+/// The dials that a name sets: the word, and its value or `None` if it comes later.
+pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 4] = [
+    ("cayley", Some(Discretization::Cayley)),
+    ("moser_veselov", Some(Discretization::MoserVeselov)),
+    ("exponential", None),
+    ("projection", None),
+];
+
+/// What may be emitted beside the integrator.
+pub(super) const EMITTED: [(&str, Option<Emit>); 2] = [("generated", Some(Emit { generated: true })), ("connection", None)];
+
+/// Orders by number.
+pub(super) const ORDERS: [(i64, Option<Order>); 5] =
+    [(1, Some(Order::First)), (2, Some(Order::Second)), (4, None), (6, None), (8, None)];
+
+/// The keys that are no closures; each has a default.
+#[derive(Clone, Default, Debug)]
+pub struct Dials {
+    /// `order = 2`.
+    pub order: Option<Located<Order>>,
+    /// `discretization = cayley`.
+    pub discretization: Option<Located<Discretization>>,
+    /// `emit = [generated]`.
+    pub emit: Emit,
+    /// `scalar = f32`, for systems without fields.
+    pub scalar: Option<Ident>,
+    /// `crate = path`.
+    pub krate: Option<syn::Path>,
+}
+
+/// All keys that were given.
+#[derive(Default)]
+pub(super) struct Keys {
+    pub action: Option<Closure>,
+    pub cost: Option<Closure>,
+    pub lagrangian: Option<Closure>,
+    pub potential: Option<Closure>,
+    pub dials: Dials,
+    given: Vec<String>,
+}
+
+impl Keys {
+    /// Notes that a key was given; `false` if it was given before.
+    pub fn give(&mut self, key: &Ident) -> bool {
+        let name = key.to_string();
+        let first = !self.given.contains(&name);
+        self.given.push(name);
+        first
+    }
+
+    /// Whether a key was given, readable or not.
+    pub fn was_given(&self, name: &str) -> bool {
+        self.given.iter().any(|given| given == name)
+    }
+
+    /// Whether no key was given.
+    pub fn is_empty(&self) -> bool {
+        self.given.is_empty()
+    }
+
+    /// Puts a closure in its place.
+    pub fn put(&mut self, closure: Closure) {
+        let place = match closure.key.to_string().as_str() {
+            "action" => &mut self.action,
+            "cost" => &mut self.cost,
+            "lagrangian" => &mut self.lagrangian,
+            _ => &mut self.potential,
+        };
+        *place = Some(closure);
+    }
+}

@@ -1,0 +1,40 @@
+//! The printed form of a declaration: one line for each key and field.
+
+use std::fmt;
+
+use super::{Declaration, Kinetic, spell_type};
+
+impl fmt::Display for Declaration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "declaration {}{}", self.ident, super::spelling::tokens(&self.generics))?;
+        writeln!(f, "  action     = {}", self.action.spell())?;
+        match &self.kinetic {
+            Kinetic::Cost(closure) => writeln!(f, "  cost       = {}", closure.spell())?,
+            Kinetic::Lagrangian(closure) => writeln!(f, "  lagrangian = {}", closure.spell())?,
+        }
+        if let Some(potential) = &self.potential {
+            writeln!(f, "  potential  = {}", potential.spell())?;
+        }
+        let dials = &self.dials;
+        if let Some(order) = &dials.order {
+            writeln!(f, "  order      = {}", order.value)?;
+        }
+        if let Some(discretization) = &dials.discretization {
+            writeln!(f, "  discretization = {}", discretization.value)?;
+        }
+        if dials.emit.generated {
+            writeln!(f, "  emit       = [generated]")?;
+        }
+        if let Some(scalar) = &dials.scalar {
+            writeln!(f, "  scalar     = {scalar}")?;
+        }
+        if let Some(krate) = &dials.krate {
+            writeln!(f, "  crate      = {}", super::spelling::tokens(krate))?;
+        }
+        for field in &self.fields {
+            let promise = field.promise.map(|(promise, _)| format!(", {promise:?}").to_lowercase()).unwrap_or_default();
+            writeln!(f, "  field {}: {}{promise}", field.name(), spell_type(&field.ty))?;
+        }
+        Ok(())
+    }
+}

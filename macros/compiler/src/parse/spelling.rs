@@ -1,0 +1,158 @@
+//! Expressions as the user would type them: messages quote these, so they must not depend on how tokens were spaced.
+
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::{Block, Expr, Lit, Member, RangeLimits, Stmt, Type};
+
+use super::Pattern;
+
+/// The text of an expression.
+pub fn spell(expr: &Expr) -> String {
+    match expr {
+        Expr::Array(array) => format!("[{}]", list(&array.elems)),
+        Expr::Binary(binary) => format!("{} {} {}", spell(&binary.left), tokens(&binary.op).trim(), spell(&binary.right)),
+        Expr::Block(block) => spell_block(&block.block),
+        Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args)),
+        Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),
+        Expr::Closure(closure) => {
+            let arguments: Vec<String> = closure.inputs.iter().map(tokens).collect();
+            format!("|{}| {}", arguments.join(", "), spell(&closure.body))
+        }
+        Expr::Field(field) => format!("{}.{}", spell(&field.base), spell_member(&field.member)),
+        Expr::Group(group) => spell(&group.expr),
+        Expr::Index(index) => format!("{}[{}]", spell(&index.expr), spell(&index.index)),
+        Expr::Lit(literal) => spell_literal(&literal.lit),
+        Expr::MethodCall(call) => {
+            let turbofish = call.turbofish.as_ref().map(tokens).unwrap_or_default();
+            format!("{}.{}{turbofish}({})", spell(&call.receiver), call.method, list(&call.args))
+        }
+        Expr::Paren(inner) => format!("({})", spell(&inner.expr)),
+        Expr::Range(range) => {
+            let end = |end: &Option<Box<Expr>>| end.as_ref().map(|end| spell(end)).unwrap_or_default();
+            let dots = if matches!(range.limits, RangeLimits::Closed(_)) { "..=" } else { ".." };
+            format!("{}{dots}{}", end(&range.start), end(&range.end))
+        }
+        Expr::Reference(reference) => format!("&{}", spell(&reference.expr)),
+        Expr::Repeat(repeat) => format!("[{}; {}]", spell(&repeat.expr), spell(&repeat.len)),
+        Expr::Tuple(tuple) if tuple.elems.len() == 1 => format!("({},)", list(&tuple.elems)),
+        Expr::Tuple(tuple) => format!("({})", list(&tuple.elems)),
+        Expr::Unary(unary) => format!("{}{}", tokens(&unary.op), spell(&unary.expr)),
+        other => tokens(other),
+    }
+}
+
+fn list<'a>(items: impl IntoIterator<Item = &'a Expr>) -> String {
+    items.into_iter().map(spell).collect::<Vec<_>>().join(", ")
+}
+
+fn spell_member(member: &Member) -> String {
+    match member {
+        Member::Named(ident) => ident.to_string(),
+        Member::Unnamed(index) => index.index.to_string(),
+    }
+}
+
+fn spell_literal(literal: &Lit) -> String {
+    match literal {
+        Lit::Int(number) => number.to_string(),
+        Lit::Float(number) => number.to_string(),
+        other => tokens(other),
+    }
+}
+
+/// A block on one line.
+fn spell_block(block: &Block) -> String {
+    let statements: Vec<String> = block.stmts.iter().map(spell_statement).collect();
+    format!("{{ {} }}", statements.join(" "))
+}
+
+fn spell_statement(statement: &Stmt) -> String {
+    match statement {
+        Stmt::Local(local) => match &local.init {
+            Some(init) => format!("let {} = {};", tokens(&local.pat), spell(&init.expr)),
+            None => format!("let {};", tokens(&local.pat)),
+        },
+        Stmt::Expr(expr, semicolon) => format!("{}{}", spell(expr), if semicolon.is_some() { ";" } else { "" }),
+        other => tokens(other),
+    }
+}
+
+/// The text of a type.
+pub fn spell_type(ty: &Type) -> String {
+    match ty {
+        Type::Array(array) => format!("[{}; {}]", spell_type(&array.elem), spell(&array.len)),
+        Type::Tuple(tuple) => format!("({})", tuple.elems.iter().map(spell_type).collect::<Vec<_>>().join(", ")),
+        Type::Group(group) => spell_type(&group.elem),
+        other => tokens(other),
+    }
+}
+
+/// The text of a pattern.
+pub(crate) fn spell_pattern(pattern: &Pattern) -> String {
+    match pattern {
+        Pattern::Name(ident) => ident.to_string(),
+        Pattern::Tuple(parts, _) => format!("({})", parts.iter().map(spell_pattern).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// The text of any tokens, spaced as rustfmt would where that is known.
+pub(crate) fn tokens(tree: &impl ToTokens) -> String {
+    let mut text = String::new();
+    write(tree.to_token_stream(), &mut text);
+    text
+}
+
+fn write(stream: TokenStream, text: &mut String) {
+    let mut glued = true;
+    for token in stream {
+        match token {
+            TokenTree::Group(group) => {
+                let (open, close) = match group.delimiter() {
+                    Delimiter::Parenthesis => ("(", ")"),
+                    Delimiter::Brace => ("{ ", " }"),
+                    Delimiter::Bracket => ("[", "]"),
+                    Delimiter::None => ("", ""),
+                };
+                if !glued && group.delimiter() == Delimiter::Brace {
+                    text.push(' ');
+                }
+                text.push_str(open);
+                write(group.stream(), text);
+                text.push_str(close);
+                glued = false;
+            }
+            TokenTree::Punct(punct) => {
+                let (before, after) = spaces(punct.as_char());
+                if before && !glued {
+                    text.push(' ');
+                }
+                text.push(punct.as_char());
+                glued = punct.spacing() == Spacing::Joint || !after;
+                if after && punct.spacing() == Spacing::Alone {
+                    text.push(' ');
+                    glued = true;
+                }
+            }
+            word => {
+                if !glued {
+                    text.push(' ');
+                }
+                text.push_str(&word.to_string());
+                glued = false;
+            }
+        }
+    }
+    if text.ends_with(' ') && text.trim_end().ends_with([',', ';']) {
+        text.truncate(text.trim_end().len());
+    }
+}
+
+/// Whether there is a space before and after a punctuation mark.
+fn spaces(mark: char) -> (bool, bool) {
+    match mark {
+        ',' | ';' => (false, true),
+        '+' | '*' | '/' | '%' | '=' => (true, true),
+        '.' | ':' | '<' | '>' | '&' | '!' | '#' | '\'' | '?' => (false, false),
+        _ => (false, false),
+    }
+}

@@ -1,0 +1,52 @@
+//! Linear parts: the matrix of a map that is linear in a vector, and the powers of a scalar in a sum.
+
+
+use crate::node::{Exponent, Term};
+use crate::{Expr, Rational, Shape};
+
+impl<'g> Expr<'g> {
+    /// The matrix A with `self` = A·v, for an expression that is linear in the vector symbol v.
+    pub fn matrix_of_linear(self, vector: Expr<'g>) -> Expr<'g> {
+        let graph = self.graph;
+        let shape = Shape::new(self.shape().rows, vector.shape().rows);
+        let expanded = self.expand();
+        let mut sum = graph.zero(shape);
+        for term in expanded.terms() {
+            let whole = graph.collect(self.shape(), [term.clone()]);
+            let Term { mut word, coefficient, scalars } = term;
+            let trailing = word.pop() == Some(vector.id) && !word.iter().any(|&letter| graph.expr(letter).depends_on(vector));
+            let free = !scalars.iter().any(|&(base, _)| graph.expr(base).depends_on(vector));
+            sum = sum
+                + match trailing && free {
+                    true => graph.collect(shape, [Term { word, coefficient, scalars }]),
+                    false => whole.jacobian(vector),
+                };
+        }
+        sum
+    }
+
+    /// The matrix of derivatives of a vector expression, column by column.
+    pub fn jacobian(self, vector: Expr<'g>) -> Expr<'g> {
+        let graph = self.graph;
+        let shape = Shape::new(self.shape().rows, vector.shape().rows);
+        let columns: Vec<Expr<'g>> =
+            (0..shape.columns).map(|j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))])).collect();
+        graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).collect())
+    }
+
+    /// 2^exponent times the expression.
+    pub fn times_power_of_two(self, exponent: i32) -> Expr<'g> {
+        self * self.graph.integer(2).powi(exponent)
+    }
+
+    /// The least exponent with which a scalar symbol occurs among the terms of the expanded expression; `None` for zero.
+    pub fn least_exponent(self, scalar: Expr<'g>) -> Option<Rational> {
+        let exponent = |term: &Term| {
+            let found = term.scalars.iter().find(|(base, _)| *base == scalar.id);
+            found.map_or(Exponent::from_integer(0), |(_, exponent)| *exponent)
+        };
+        let least = self.expand().terms().iter().map(exponent).min()?;
+        Some(Rational::new((*least.numer()).into(), (*least.denom()).into()))
+    }
+
+}

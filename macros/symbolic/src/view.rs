@@ -1,0 +1,113 @@
+//! Looking into an expression from outside of this crate: what the lowering to scalars walks over.
+
+use crate::node::{Exponent, Function, Id, Node, Term};
+use crate::{Algebra, Expr, Rational, Symbol};
+
+/// The outermost operation of an expression.
+#[derive(Clone, Debug)]
+pub enum View<'g> {
+    /// A symbol.
+    Symbol(Symbol),
+    /// π.
+    Pi,
+    /// A sum of terms.
+    Sum(Vec<WordTerm<'g>>),
+    /// A matrix of numbers, row by row.
+    Literal(Vec<Rational>),
+    /// A matrix of scalars, row by row.
+    Stack(Vec<Expr<'g>>),
+    /// A product of letters that is 1×1.
+    Word(Vec<Expr<'g>>),
+    /// The trace of a product of letters.
+    Trace(Vec<Expr<'g>>),
+    /// Aᵀ.
+    Transpose(Expr<'g>),
+    /// A⁻¹.
+    Inverse(Expr<'g>),
+    /// det A.
+    Determinant(Expr<'g>),
+    /// f(x).
+    Function(Function, Expr<'g>),
+    /// The block at (row, column).
+    Block(Expr<'g>, usize, usize),
+    /// A matrix in a zero matrix at (row, column).
+    Embed(Expr<'g>, usize, usize),
+    /// The product entry by entry.
+    Hadamard(Expr<'g>, Expr<'g>),
+    /// The diagonal matrix of a vector.
+    DiagonalMatrix(Expr<'g>),
+    /// The diagonal of a matrix.
+    Diagonal(Expr<'g>),
+    /// Σ v_i E_i.
+    Wedge(Algebra, Expr<'g>),
+    /// The vector of ⟨A, E_i⟩.
+    Components(Algebra, Expr<'g>),
+}
+
+/// coefficient · Π base^(numerator/denominator) · word; the empty word is the identity.
+#[derive(Clone, Debug)]
+pub struct WordTerm<'g> {
+    /// The rational factor.
+    pub coefficient: Rational,
+    /// Scalar factors with numerator and denominator of their exponents.
+    pub scalars: Vec<(Expr<'g>, (i64, i64))>,
+    /// Matrix factors.
+    pub word: Vec<Expr<'g>>,
+}
+
+impl<'g> WordTerm<'g> {
+    /// The terms of `inner`, each times the scalars of this term.
+    pub fn over(&self, inner: Expr<'g>) -> Vec<WordTerm<'g>> {
+        let mut terms = inner.word_terms();
+        for term in &mut terms {
+            term.coefficient *= &self.coefficient;
+            term.scalars.extend(self.scalars.iter().copied());
+        }
+        terms
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The terms whose sum this is.
+    pub fn word_terms(self) -> Vec<WordTerm<'g>> {
+        self.terms().into_iter().map(|term| self.word_term(term)).collect()
+    }
+
+    fn word_term(self, term: Term) -> WordTerm<'g> {
+        let exponent = |e: Exponent| (*e.numer(), *e.denom());
+        WordTerm {
+            coefficient: term.coefficient,
+            scalars: term.scalars.into_iter().map(|(base, e)| (self.graph.expr(base), exponent(e))).collect(),
+            word: self.exprs(&term.word),
+        }
+    }
+
+    fn exprs(self, ids: &[Id]) -> Vec<Expr<'g>> {
+        ids.iter().map(|&id| self.graph.expr(id)).collect()
+    }
+
+    /// The outermost operation.
+    pub fn view(self) -> View<'g> {
+        let expr = |id: &Id| self.graph.expr(*id);
+        match &*self.node() {
+            Node::Symbol(id) => View::Symbol(self.graph.symbol_data(*id)),
+            Node::Pi => View::Pi,
+            Node::Sum(_) => View::Sum(self.word_terms()),
+            Node::Literal(entries) => View::Literal(entries.clone()),
+            Node::Stack(entries) => View::Stack(self.exprs(entries)),
+            Node::Word(word) => View::Word(self.exprs(word)),
+            Node::Trace(word) => View::Trace(self.exprs(word)),
+            Node::Transpose(a) => View::Transpose(expr(a)),
+            Node::Inverse(a) => View::Inverse(expr(a)),
+            Node::Determinant(a) => View::Determinant(expr(a)),
+            Node::Function(function, a) => View::Function(*function, expr(a)),
+            Node::Block(a, row, column) => View::Block(expr(a), *row, *column),
+            Node::Embed(a, row, column) => View::Embed(expr(a), *row, *column),
+            Node::Hadamard(a, b) => View::Hadamard(expr(a), expr(b)),
+            Node::DiagonalMatrix(a) => View::DiagonalMatrix(expr(a)),
+            Node::Diagonal(a) => View::Diagonal(expr(a)),
+            Node::Wedge(algebra, a) => View::Wedge(*algebra, expr(a)),
+            Node::Components(algebra, a) => View::Components(*algebra, expr(a)),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! From the identity to the solution along the path of ρ(ξ; sμ) = 0, s from 0 to 1.
+//!
+//! The path is followed in small steps, each a prediction along the tangent and Newton's method with one of the M + 1 unknowns
+//! (ξ, s) held fixed: the one that changes fastest. So it does not stall where s reaches a maximum and the path turns back, which
+//! is how solvability ends: just there ξ changes fastest. The sign of det Dρ tells on which side of such a point one is.
+//! Reference: Rheinboldt, *Numerical Analysis of Parametrized Nonlinear Equations*, 1986.
+
+mod bracket;
+mod point;
+
+use super::{Equation, correct, is_much_smaller, size};
+use crate::space::larger;
+use crate::{Error, Scalar, Space};
+use nalgebra::SVector;
+use point::{Homotopy, Point};
+
+/// Bound on the linearisations of one path, those at the two ends s = 0 and s = 1 counted apart.
+pub const LINEARIZATIONS: u32 = 1024;
+
+/// The solution for s = 1 on the branch from the identity.
+#[cold]
+#[inline(never)]
+pub(super) fn follow<T: Scalar, const M: usize>(
+    equation: &impl Equation<T, M>,
+    target: &SVector<T, M>,
+) -> Result<SVector<T, M>, Error> {
+    if !target.is_finite() {
+        return Err(Error::NotFinite { name: "the momentum" });
+    }
+    let mut homotopy = Homotopy::new(equation, target);
+    let mut here = homotopy.start()?;
+    if homotopy.scale == T::zero() {
+        return Ok(here.xi);
+    }
+    let (half, eighth, two) = (T::from_ratio(1, 2), T::from_ratio(1, 8), T::from_f64(2.0));
+    let mut length = T::from_ratio(1, 4);
+    while homotopy.is_affordable() {
+        if let Some(xi) = homotopy.land(&here, length * two) {
+            return Ok(xi);
+        }
+        let parameter = homotopy.fastest(&here);
+        match homotopy.step(&here, parameter, length) {
+            Some(next) if next.is_past || next.s >= T::one() => return bracket::decide(&mut homotopy, here, next, parameter),
+            Some(next) => {
+                here = next;
+                // Longer steps far out, for paths that leave the chart.
+                let longest = larger(half, homotopy.distance(&here.xi, here.s) * half);
+                length = if length * two < longest { length * two } else { longest };
+            }
+            None => length *= eighth,
+        }
+        // Steps that cannot be seen: the path ends here, in a point where several folds meet.
+        if length <= T::from_f64(8.0) * T::EPSILON * homotopy.distance(&here.xi, here.s) {
+            return Err(unsolvable(here.s));
+        }
+    }
+    Err(homotopy.exhausted(&here))
+}
+
+/// The error for a path that ends at s.
+fn unsolvable<T: Scalar>(s: T) -> Error {
+    Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None }
+}
+
+impl<T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'_, T, E, M> {
+    /// Newton's method for s = 1 from the tangent at `here`, if that is within `reach` and contracts cleanly on the branch.
+    fn land(&mut self, here: &Point<T, M>, reach: T) -> Option<SVector<T, M>> {
+        let distance = T::one() - here.s;
+        if here.slope_s <= T::zero() || distance > reach * here.slope_s {
+            return None;
+        }
+        let step = here.slope_xi * (distance / here.slope_s);
+        let mut xi = here.xi + step;
+        let half = T::from_ratio(1, 2);
+        let (mut before, mut residual_before) = (size(&step), SVector::from_element(T::zero()));
+        while self.is_affordable() {
+            self.count(1);
+            let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
+            let (correction, orientation) = correct(&residual, &jacobian)?;
+            if orientation != self.branch {
+                return None;
+            }
+            let terms = larger(self.weight, jacobian.max_abs() * size(&xi));
+            xi -= correction;
+            let (now, seen) = (size(&correction), T::EPSILON * size(&xi));
+            let ratio = now / before;
+            if ratio <= half {
+                if now * ratio * ratio <= seen * T::from_ratio(1, 4) {
+                    return Some(xi);
+                }
+            } else {
+                if now <= seen || size(&residual) <= T::from_f64(8.0) * T::EPSILON * terms {
+                    return Some(xi);
+                }
+                if !is_much_smaller(&residual, &residual_before) {
+                    return None;
+                }
+            }
+            (before, residual_before) = (now, residual);
+        }
+        None
+    }
+}

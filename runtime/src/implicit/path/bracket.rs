@@ -1,0 +1,76 @@
+//! The end of the path: s = 1 or the end of the branch, whichever comes first, lies between two points.
+
+use super::point::{Homotopy, Parameter, Point};
+use super::unsolvable;
+use crate::implicit::Equation;
+use crate::{Error, Scalar};
+use nalgebra::SVector;
+
+/// Narrows the bracket until the solution is found, or until s stays below 1 on all of the branch.
+///
+/// `before` is on the branch with s < 1; `after` has s ≥ 1 or is past the end of the branch. In a small bracket s is a concave
+/// function of the parameter, and its tangent at `before` bounds it. Each evaluation is regular at the end of the branch too, so
+/// that even there s is exact to round-off.
+pub(super) fn decide<T: Scalar, E: Equation<T, M>, const M: usize>(
+    homotopy: &mut Homotopy<'_, T, E, M>,
+    mut before: Point<T, M>,
+    mut after: Point<T, M>,
+    parameter: Parameter,
+) -> Result<SVector<T, M>, Error> {
+    let half = T::from_ratio(1, 2);
+    let round_off = T::from_f64(4.0) * T::EPSILON;
+    let mut is_bisection = false;
+    while homotopy.is_affordable() {
+        if (T::one() - before.s).abs() <= round_off {
+            return Ok(before.xi);
+        }
+        // Lengths are along the tangent at `before`.
+        let width = (parameter.of(&after) - parameter.of(&before)) / parameter.slope(&before);
+        let rise = width * before.slope_s;
+        if after.s < T::one() && rise <= T::from_ratio(1, 1000) * before.s && before.s + rise < T::one() {
+            return Err(unsolvable(before.s + rise * half));
+        }
+        if width <= round_off * homotopy.distance(&before.xi, before.s) {
+            return Err(unsolvable(before.s));
+        }
+        if let Some(xi) = homotopy.land(&before, width) {
+            return Ok(xi);
+        }
+        let length = if is_bisection { width * half } else { guess(&before, &after, parameter, width) };
+        is_bisection = !is_bisection;
+        let mut middle = homotopy.step(&before, parameter, length);
+        if middle.is_none() {
+            middle = homotopy.step(&before, parameter, length * T::from_ratio(1, 8));
+        }
+        match middle {
+            Some(middle) if !middle.is_past && (middle.s - T::one()).abs() <= round_off => return Ok(middle.xi),
+            Some(middle) if middle.is_past || middle.s > T::one() => after = middle,
+            Some(middle) => before = middle,
+            None => return Err(unsolvable(before.s)),
+        }
+    }
+    Err(homotopy.exhausted(&before))
+}
+
+/// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
+fn guess<T: Scalar, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, parameter: Parameter, width: T) -> T {
+    let length = if after.s >= T::one() {
+        (T::one() - before.s) / before.slope_s
+    } else {
+        let (first, last) = (before.slope_s / parameter.slope(before), after.slope_s / parameter.slope(after));
+        width * first / (first - last)
+    };
+    if length > T::zero() && length < width { length } else { width * T::from_ratio(1, 2) }
+}
+
+impl Parameter {
+    /// The value of the parameter at a point.
+    fn of<T: Scalar, const M: usize>(self, point: &Point<T, M>) -> T {
+        if self.0 < M { point.xi[self.0] } else { point.s }
+    }
+
+    /// Its change along the tangent.
+    fn slope<T: Scalar, const M: usize>(self, point: &Point<T, M>) -> T {
+        if self.0 < M { point.slope_xi[self.0] } else { point.slope_s }
+    }
+}

@@ -1,0 +1,188 @@
+//! Points of the path, and Newton's method with one unknown held fixed.
+
+use super::{LINEARIZATIONS, unsolvable};
+use crate::implicit::{Equation, is_much_smaller, rows, size};
+use crate::linear::{Orientation, eliminate};
+use crate::space::larger;
+use crate::{Error, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
+
+/// A point (ξ, s) of the path with its unit tangent, in the direction away from the identity.
+#[derive(Clone, Copy)]
+pub(super) struct Point<T: Scalar, const M: usize> {
+    pub xi: SVector<T, M>,
+    pub s: T,
+    pub slope_xi: SVector<T, M>,
+    pub slope_s: T,
+    /// Whether the branch has ended before: det Dρ has changed its sign, or s goes back.
+    pub is_past: bool,
+}
+
+/// Which of the unknowns is held fixed: number j of ξ, or s itself for j = M.
+#[derive(Clone, Copy)]
+pub(super) struct Parameter(pub usize);
+
+/// The equation ρ(ξ; sμ) = 0 in the M + 1 unknowns (ξ, s).
+pub(super) struct Homotopy<'a, T: Scalar, E: Equation<T, M>, const M: usize> {
+    pub equation: &'a E,
+    /// Terms for the target 0.
+    still: E::Terms,
+    /// Terms for the whole target.
+    pub moving: E::Terms,
+    /// The sign of det Dρ on the branch.
+    pub branch: Orientation,
+    /// Largest entry of dξ/ds at the identity: what a change of ξ is measured by.
+    pub scale: T,
+    /// Size of ρ(0; μ): what a residual is measured by.
+    pub weight: T,
+    count: u32,
+}
+
+/// ρ, Dρ and ∂ρ/∂s at a point.
+struct Linearization<T: Scalar, const M: usize> {
+    residual: SVector<T, M>,
+    jacobian: SMatrix<T, M, M>,
+    rate: SVector<T, M>,
+}
+
+impl<'a, T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'a, T, E, M> {
+    pub fn new(equation: &'a E, target: &SVector<T, M>) -> Self {
+        let still = equation.prepare(&SVector::from_element(T::zero()));
+        let moving = equation.prepare(target);
+        Self { equation, still, moving, branch: Orientation::Positive, scale: T::zero(), weight: T::zero(), count: 0 }
+    }
+
+    /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight.
+    pub fn start(&mut self) -> Result<Point<T, M>, Error> {
+        let zero = SVector::from_element(T::zero());
+        let Linearization { jacobian, rate, .. } = self.linearize(&zero, T::zero());
+        if !(jacobian.is_finite() && rate.is_finite()) {
+            return Err(Error::NotFinite { name: "the implicit equation of the step" });
+        }
+        let mut slope = core::array::from_fn(|i| [-rate[i]]);
+        self.branch = eliminate(rows(&jacobian), &mut slope).ok_or(unsolvable(T::zero()))?;
+        let slope_xi = SVector::<T, M>::from_fn(|i, _| slope[i][0]);
+        if !slope_xi.is_finite() {
+            return Err(unsolvable(T::zero()));
+        }
+        (self.scale, self.weight) = (slope_xi.max_abs(), size(&rate));
+        Ok(Point { xi: zero, s: T::zero(), slope_xi, slope_s: T::one(), is_past: false })
+    }
+
+    pub fn is_affordable(&self) -> bool {
+        self.count < LINEARIZATIONS
+    }
+
+    pub fn count(&mut self, linearizations: u32) {
+        self.count += linearizations;
+    }
+
+    /// The error for too much work.
+    pub fn exhausted(&mut self, here: &Point<T, M>) -> Error {
+        let (residual, _) = self.equation.linearize(&self.moving, &here.xi);
+        Error::NotConverged { residual: (size(&residual) / self.weight).to_f64(), iterations: self.count }
+    }
+
+    /// Distance of a point from the identity, in units of the scale and of s.
+    pub fn distance(&self, xi: &SVector<T, M>, s: T) -> T {
+        size(xi) / self.scale + s.abs()
+    }
+
+    /// The unknown that changes fastest along the path.
+    pub fn fastest(&self, point: &Point<T, M>) -> Parameter {
+        let mut fastest = (M, point.slope_s.abs());
+        for (j, slope) in point.slope_xi.iter().enumerate() {
+            let speed = slope.abs() / self.scale;
+            if speed > fastest.1 {
+                fastest = (j, speed);
+            }
+        }
+        Parameter(fastest.0)
+    }
+
+    /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed.
+    ///
+    /// `None` if Newton's method does not contract cleanly or the path turns by too much for this length.
+    pub fn step(&mut self, from: &Point<T, M>, parameter: Parameter, length: T) -> Option<Point<T, M>> {
+        let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
+        let half = T::from_ratio(1, 2);
+        let (mut before, mut residual_before) = (length * half, SVector::from_element(T::zero()));
+        while self.is_affordable() {
+            let at = self.linearize(&xi, s);
+            let (correction, change) = at.correct(parameter)?;
+            let terms = larger(self.weight * s.abs(), at.jacobian.max_abs() * size(&xi));
+            xi -= correction;
+            s -= change;
+            let (now, seen) = (self.distance(&correction, change), T::EPSILON * self.distance(&xi, s));
+            let ratio = now / before;
+            if now <= seen || ratio <= half && now * ratio * ratio <= seen {
+                return self.arrive(xi, s, parameter, from);
+            }
+            if ratio > half && size(&at.residual) <= T::from_f64(8.0) * T::EPSILON * terms {
+                return self.arrive(xi, s, parameter, from);
+            }
+            if ratio <= half || is_much_smaller(&at.residual, &residual_before) {
+                (before, residual_before) = (now, at.residual);
+            } else {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// The tangent at a point of the path, and on which side of the end of the branch the point is.
+    fn arrive(&mut self, xi: SVector<T, M>, s: T, parameter: Parameter, from: &Point<T, M>) -> Option<Point<T, M>> {
+        let at = self.linearize(&xi, s);
+        let (mut slope_xi, mut slope_s) = at.tangent(parameter)?;
+        let along = (slope_xi / self.scale).dot(&(from.slope_xi / self.scale)) + slope_s * from.slope_s;
+        let speed = larger(slope_s.abs(), slope_xi.max_abs() / self.scale);
+        let unit = if along < T::zero() { -T::one() / speed } else { T::one() / speed };
+        slope_xi *= unit;
+        slope_s *= unit;
+        let half = T::from_ratio(1, 2);
+        let turn = larger((slope_xi - from.slope_xi).max_abs() / self.scale, (slope_s - from.slope_s).abs());
+        if turn < half {
+            let is_past = slope_s <= T::zero() || Orientation::of(rows(&at.jacobian)) != Some(self.branch);
+            return Some(Point { xi, s, slope_xi, slope_s, is_past });
+        }
+        None
+    }
+
+    /// ρ(ξ; sμ) = ρ(ξ; 0) + s(ρ(ξ; μ) − ρ(ξ; 0)), for ρ is affine in μ.
+    fn linearize(&mut self, xi: &SVector<T, M>, s: T) -> Linearization<T, M> {
+        self.count(2);
+        let (residual, jacobian) = self.equation.linearize(&self.still, xi);
+        let (residual_moving, jacobian_moving) = self.equation.linearize(&self.moving, xi);
+        let rate = residual_moving - residual;
+        Linearization { residual: residual + rate * s, jacobian: jacobian + (jacobian_moving - jacobian) * s, rate }
+    }
+}
+
+impl<T: Scalar, const M: usize> Linearization<T, M> {
+    /// The Newton correction of (ξ, s) with the parameter held fixed.
+    fn correct(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
+        self.solve(parameter, core::array::from_fn(|i| self.residual[i]), T::zero())
+    }
+
+    /// The derivatives of (ξ, s) by the parameter.
+    fn tangent(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
+        let fixed = |i| if parameter.0 < M { self.jacobian[(i, parameter.0)] } else { self.rate[i] };
+        self.solve(parameter, core::array::from_fn(|i| -fixed(i)), T::one())
+    }
+
+    /// Solves \[Dρ ∂ρ/∂s\] (ξ, s) = `right` without the column of the parameter, which gets `fixed`.
+    fn solve(&self, parameter: Parameter, right: [T; M], fixed: T) -> Option<(SVector<T, M>, T)> {
+        let mut matrix = rows(&self.jacobian);
+        if parameter.0 < M {
+            matrix.iter_mut().zip(&self.rate).for_each(|(row, &rate)| row[parameter.0] = rate);
+        }
+        let mut unknowns = right.map(|entry| [entry]);
+        eliminate(matrix, &mut unknowns)?;
+        let mut xi = SVector::from_fn(|i, _| unknowns[i][0]);
+        let mut s = fixed;
+        if parameter.0 < M {
+            core::mem::swap(&mut s, &mut xi[parameter.0]);
+        }
+        Some((xi, s))
+    }
+}
