@@ -76,10 +76,16 @@ impl Display for Error {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
             Self::StepSize { value } => {
-                write!(f, "the step size is {value}: it must be a finite number other than zero (negative runs back in time)")
+                write!(
+                    f,
+                    "the step size is {value}: it must be a finite number other than zero (negative runs back in time)"
+                )
             }
             Self::NotFinite { name } => {
-                write!(f, "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from")
+                write!(
+                    f,
+                    "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from"
+                )
             }
             Self::NotSymmetric { field, defect, tolerance } => write!(
                 f,

@@ -1,10 +1,11 @@
 //! The implicit equation of a step: ρ(ξ; μ) = 0 for the chart coordinates ξ of the group element F, given the momentum μ.
 //!
 //! [`solve`] first tries full Newton steps from the predictor, which ends after one to four linearisations for the step sizes
-//! that people use. Where these do not contract cleanly, [the path](path) from the identity is followed instead, with bounded
-//! work, until it arrives or is found to turn back: then no solution is connected to the identity.
+//! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work, until it arrives or is found to turn back: then no solution is connected to the identity.
 
 mod path;
+
+pub use path::LINEARIZATIONS;
 
 use crate::linear::{Orientation, eliminate};
 use crate::{Error, Scalar};
@@ -60,7 +61,7 @@ const QUICK: usize = 12;
 ///
 /// Accuracy: the correction that Newton's method would make next is below a quarter of a unit in the last place of ξ, or the
 /// residual is round-off. Work: at most 12 linearisations, and where they do not decide at most
-/// [`path::LINEARIZATIONS`] more (about a hundred in practice).
+/// [`LINEARIZATIONS`] more (ten to two hundred in practice).
 ///
 /// # Errors
 /// [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
@@ -81,10 +82,7 @@ pub fn solve<T: Scalar, const M: usize>(
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
 /// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0.
 #[inline]
-fn newton<T: Scalar, const M: usize>(
-    equation: &impl Equation<T, M>,
-    target: &SVector<T, M>,
-) -> Option<SVector<T, M>> {
+fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SVector<T, M>) -> Option<SVector<T, M>> {
     let branch = equation.orientation()?;
     let terms = equation.prepare(target);
     let start = equation.predict(target);

@@ -1,4 +1,54 @@
 //! Integrators that keep the structure of a mechanical system, derived at compile time from its declaration.
+//!
+//! A rigid body turning freely, from its inertia tensor:
+//!
+//! ```ignore
+//! use clebsch::Clebsch;
+//! use nalgebra::{Matrix3, Vector3};
+//!
+//! #[derive(Clebsch, Clone, Debug)]
+//! #[clebsch(
+//!     action         = |F: SO<3>, R: SO<3>| R * F,
+//!     lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+//!     discretization = moser_veselov,
+//! )]
+//! pub struct RigidBody {
+//!     /// Inertia tensor about the centre of mass, body frame, kg·m².
+//!     #[clebsch(symmetric)]
+//!     pub inertia: Matrix3<f64>,
+//! }
+//!
+//! let body = RigidBody { inertia: Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)) };
+//! let stepper = body.stepper(0.01)?;
+//! let start = stepper.state(Matrix3::identity(), Vector3::new(0.1, 2.0, 0.1))?;
+//! for state in stepper.trajectory(start).take(1000) {
+//!     let state = state?;
+//!     println!("{} {}", state.configuration(), state.momentum());
+//! }
+//! # Ok::<(), clebsch::Error>(())
+//! ```
+//!
+//! The attitude stays a rotation, the spatial momentum `R * π` is constant to round-off, and the energy is too, for any number of
+//! steps: the step is the exact motion of a discrete mechanical system, not an approximation that drifts.
+//!
+//! # What is where
+//!
+//! | to | see |
+//! |---|---|
+//! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
+//! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |
+//! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
+//! | handle failures | [`Error`]: each kind with its numbers and what to change |
+//! | solve an implicit equation of one's own | [`implicit`] |
+//! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
+//!
+//! # What holds everywhere
+//!
+//! * Momenta are components in a documented basis; those of a right action (`R * F`) are in the body frame.
+//! * A step changes nothing but what it returns: on an [`Error`] the state that was passed in is still good.
+//! * Nothing allocates and no input makes it panic. Without the feature `std` (the default) elementary functions come from
+//!   `libm`; with it, from the standard library.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -132,7 +132,10 @@ mod tests {
         let rows = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [-3.0, 2.0, 0.0]];
         assert_eq!(annihilator_defect(&rows, &Vector3::new(1.0, -2.0, 0.0)), 0.0);
         assert_eq!(annihilator_defect(&rows, &Vector3::new(1.0, -2.0, 0.25)), 0.25);
-        assert_eq!(annihilator_defect(&rows.map(|row| row.map(|x| x * 1e-200)), &Vector3::new(1e200, 0.0, 1e200)), 1e200);
+        assert_eq!(
+            annihilator_defect(&rows.map(|row| row.map(|x| x * 1e-200)), &Vector3::new(1e200, 0.0, 1e200)),
+            1e200
+        );
         assert_eq!(annihilator_defect(&[[0.0; 3]; 0], &Vector3::new(3.0, 4.0, 0.0)), 5.0);
     }
 }

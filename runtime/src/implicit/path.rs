@@ -14,7 +14,7 @@ use crate::{Error, Scalar, Space};
 use nalgebra::SVector;
 use point::{Homotopy, Point};
 
-/// Bound on the linearisations of one path, those at the two ends s = 0 and s = 1 counted apart.
+/// Bound on the linearisations in following one path; the step that reaches it is finished, which takes at most four more.
 pub const LINEARIZATIONS: u32 = 1024;
 
 /// The solution for s = 1 on the branch from the identity.
@@ -40,7 +40,9 @@ pub(super) fn follow<T: Scalar, const M: usize>(
         }
         let parameter = homotopy.fastest(&here);
         match homotopy.step(&here, parameter, length) {
-            Some(next) if next.is_past || next.s >= T::one() => return bracket::decide(&mut homotopy, here, next, parameter),
+            Some(next) if next.is_past || next.s >= T::one() => {
+                return bracket::decide(&mut homotopy, here, next, parameter);
+            }
             Some(next) => {
                 here = next;
                 // Longer steps far out, for paths that leave the chart.

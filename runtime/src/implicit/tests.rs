@@ -129,11 +129,11 @@ fn the_closed_form_in_three_dimensions_agrees() {
     ] {
         let (squares, d) = (j.component_mul(&j), j.product());
         let p1 = squares.sum() - a.norm_squared();
-        let p2 = squares.x * squares.y + squares.y * squares.z + squares.z * squares.x
-            - a.component_mul(&a).dot(&squares);
-        let mut t = j.sum();
+        let p2 =
+            squares.x * squares.y + squares.y * squares.z + squares.z * squares.x - a.component_mul(&a).dot(&squares);
+        let mut t: f64 = j.sum();
         for _ in 0..60 {
-            t -= ((t * t - p1).powi(2) - 4.0 * p2 - 8.0 * d * t) / (4.0 * t * (t * t - p1) - 8.0 * d);
+            t -= (f64::powi(t * t - p1, 2) - 4.0 * p2 - 8.0 * d * t) / (4.0 * t * (t * t - p1) - 8.0 * d);
         }
         let (diagonal, m, e2) = (Matrix3::from_diagonal(&squares), a.cross_matrix(), (t * t - p1) / 2.0);
         let left = m * m + diagonal - m * t + Matrix3::identity() * e2;
