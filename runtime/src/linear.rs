@@ -18,7 +18,7 @@ impl Orientation {
     /// The sign of the determinant of `rows`, `None` where it is singular or not finite.
     #[inline]
     pub fn of<T: Scalar, const M: usize>(rows: [[T; M]; M]) -> Option<Self> {
-        eliminate(rows, &mut [[T::zero(); 0]; M])
+        eliminate::<T, M, 0>(rows, &mut [[]; M])
     }
 }
 
@@ -27,6 +27,7 @@ impl Orientation {
 /// Returns the sign of det A. `None` where a pivot is zero or not finite; `b` is spoilt then.
 /// Cost: M³/3 + M²K multiplications, M(M+1)/2 + MK divisions less M.
 #[inline]
+#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
     mut a: [[T; M]; M],
     b: &mut [[T; K]; M],
@@ -49,10 +50,10 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
         for i in k + 1..M {
             let factor = a[i][k] / pivot;
             for j in k + 1..M {
-                a[i][j] = a[i][j] - factor * a[k][j];
+                a[i][j] -= factor * a[k][j];
             }
             for j in 0..K {
-                b[i][j] = b[i][j] - factor * b[k][j];
+                b[i][j] -= factor * b[k][j];
             }
         }
     }
@@ -60,7 +61,7 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
         for j in 0..K {
             let mut sum = b[k][j];
             for i in k + 1..M {
-                sum = sum - a[k][i] * b[i][j];
+                sum -= a[k][i] * b[i][j];
             }
             b[k][j] = sum / a[k][k];
         }

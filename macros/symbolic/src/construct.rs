@@ -180,6 +180,9 @@ impl<'g> Expr<'g> {
         if algebra.is_identification() {
             return self;
         }
+        if algebra.dimension() == 1 {
+            return self.wedge_of_scalar(algebra);
+        }
         if let Node::Literal(entries) = &*self.node() {
             let basis = algebra.basis(self.graph);
             let terms = entries.iter().zip(basis).map(|(entry, element)| element.times(entry));
@@ -188,6 +191,20 @@ impl<'g> Expr<'g> {
         self.linear(shape, |plain| match &*plain.node() {
             Node::Literal(_) if plain != self => plain.wedge(algebra),
             _ => plain.atom_of(Node::Wedge(algebra, plain.id), shape),
+        })
+    }
+
+    /// v E_1 of a one-dimensional algebra, kept as one letter so that its products are known as those of v^.
+    fn wedge_of_scalar(self, algebra: Algebra) -> Expr<'g> {
+        let graph = self.graph;
+        let shape = algebra.matrix_shape();
+        self.terms().into_iter().fold(graph.zero(shape), |sum, Term { coefficient, scalars, word }| {
+            let plain = graph.collect(Shape::scalar(), [Term { coefficient: Rational::one(), scalars, word }]);
+            let element = match plain.as_number() {
+                Some(number) => algebra.basis(graph)[0].times(&number),
+                None => self.atom_of(Node::Wedge(algebra, plain.id), shape),
+            };
+            sum + element.times(&coefficient)
         })
     }
 

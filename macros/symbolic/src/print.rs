@@ -74,7 +74,7 @@ impl Printer<'_> {
             Node::Embed(a, row, column) => atom(format!("embed({}, {row}, {column})", self.print(*a, Binding::Sum))),
             Node::Hadamard(a, b) => {
                 let symbol = if latex { " \\circ " } else { " ∘ " };
-                (format!("{}{symbol}{}", self.print(*a, Binding::Atom), self.print(*b, Binding::Atom)), Binding::Product)
+                (format!("{}{symbol}{}", self.print(*a, Binding::Atom), self.print(*b, Binding::Atom)), Binding::Sum)
             }
             Node::DiagonalMatrix(a) => call(if latex { "\\operatorname{diag}" } else { "diag" }, *a),
             Node::Diagonal(a) => call(if latex { "\\operatorname{diagonal}" } else { "diagonal" }, *a),

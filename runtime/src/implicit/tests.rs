@@ -119,7 +119,7 @@ fn spherical_bodies_turn_about_their_momentum() {
     assert!((fraction(solve(&principal([1.5; 3]), &(direction * 3.0))) - 0.5).abs() < 1e-3);
 }
 
-/// theory: FJ_d = (h²M² + J_d² − t hM + e₂I)⁻¹(tJ_d² + dI − hM J_d²), t the largest root of (t² − p₁)² = 4p₂ + 8dt.
+/// FJ_d = (h²M² + J_d² − t hM + e₂I)⁻¹(tJ_d² + dI − hM J_d²), t the largest root of (t² − p₁)² = 4p₂ + 8dt.
 #[test]
 fn the_closed_form_in_three_dimensions_agrees() {
     for (j, a) in [
@@ -256,7 +256,8 @@ fn paths_that_leave_the_chart_end() {
 
 #[test]
 fn work_is_bounded_whatever_the_equation() {
-    let wild: [fn(f64, f64) -> (f64, f64); 4] = [
+    type Wild = fn(f64, f64) -> (f64, f64);
+    let wild: [Wild; 4] = [
         |m, x| ((1e3 * x).sin() + 1e-3 * x - m, 1e-9 + (7e5 * x).cos()),
         |m, x| (if x > 0.3 { f64::NAN } else { x - m }, 1.0),
         |m, x| (x.signum() - m, 1.0),
@@ -298,7 +299,7 @@ proptest! {
         }
     }
 
-    /// theory: always solvable for h|J⁻¹π| ≤ 1, never beyond 1.31.
+    /// Found numerically for bodies: always solvable for h|J⁻¹π| ≤ 1, never beyond 1.31.
     #[test]
     fn the_rule_for_solvability_holds(moments in moments(), direction in prop::array::uniform3(-1.0_f64..1.0), speed in 0.0_f64..2.0) {
         let direction = Vector3::from(direction);

@@ -89,7 +89,8 @@ fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) ->
         return Ok(());
     }
     let name = &model.factors[0].name;
-    let error = match lost_direction(model, inertia) {
+    let lost = if rank == 0 { Lost::Other } else { lost_direction(model, inertia) };
+    let error = match lost {
         Lost::About(axis) => Diagnostic::new(model.spans.kinetic.place, format!("the cost does not fix the rotation about `{axis}`"))
             .note(format!("its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}"))
             .help(format!("use the chord of the group: `self.mass * ({name} - I).norm_squared() / (4 * h)`, which has the same motion")),

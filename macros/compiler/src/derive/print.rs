@@ -59,17 +59,22 @@ impl<'g> Formulas<'g> {
         tuple(self.model.factors.iter().map(|factor| factor.name.clone()))
     }
 
+    /// The letter of symbols that differ in their subscripts.
+    fn letter(&self, symbols: &[Expr<'g>]) -> String {
+        symbols.first().map(|symbol| symbol.to_string().trim_end_matches(|c: char| ('₀'..='₉').contains(&c)).to_string()).unwrap_or_default()
+    }
+
     /// All formulas, in the order of the derivation.
     pub fn listing(&self) -> Vec<Formula> {
         let (q, f) = (self.q(), self.f());
         let mut formulas = vec![
             Formula::new("action", format!("Φ_{f}({q})"), &self.model.action),
-            Formula::new("generator", format!("ξ_Q({q})"), &self.generator),
+            Formula::new("generator", format!("{}_Q({q})", self.letter(&self.symbols.algebra)), &self.generator),
             self.formula_of_momentum_map(),
             self.formula_of_coadjoint(),
-            Formula::new("cotangent lift", format!("(TΦ_{f})^-* p at {q}⁺"), &self.cotangent_lift),
-            Formula::new("inertia", "Σξ", &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>()),
-            Formula::new("kinetic energy", "T(ξ)", &[self.kinetic_energy]),
+            Formula::new("cotangent lift", format!("(TΦ_{f})^-* {} at {q}⁺", self.letter(&self.symbols.covectors)), &self.cotangent_lift),
+            Formula::new("inertia", format!("Σ{}", self.letter(&self.symbols.algebra)), &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>()),
+            Formula::new("kinetic energy", format!("T({})", self.letter(&self.symbols.algebra)), &[self.kinetic_energy]),
             self.formula_of_potential(),
             self.formula_of_hamiltonian(),
             Formula::new("discrete Lagrangian", format!("K(h, {f})"), &[self.lagrangian.kinetic]),
@@ -87,12 +92,12 @@ impl<'g> Formulas<'g> {
 
     /// J(q, p).
     pub fn formula_of_momentum_map(&self) -> Formula {
-        Formula::new("momentum map", format!("J({}, p)", self.q()), &self.momentum_map)
+        Formula::new("momentum map", format!("J({}, {})", self.q(), self.letter(&self.symbols.covectors)), &self.momentum_map)
     }
 
     /// Ad*_F μ.
     pub fn formula_of_coadjoint(&self) -> Formula {
-        Formula::new("coadjoint action", format!("Ad*_{} μ", self.f()), &self.coadjoint)
+        Formula::new("coadjoint action", format!("Ad*_{} {}", self.f(), self.letter(&self.symbols.momenta)), &self.coadjoint)
     }
 
     /// V(q).
@@ -105,8 +110,9 @@ impl<'g> Formulas<'g> {
         let mut formula = self.formula_of_potential();
         let potential = if self.potential_energy.is_zero() { String::new() } else { format!(" + {}", formula.text[0]) };
         formula.title = "Hamiltonian";
-        formula.symbol = format!("H({}, μ)", self.q());
-        formula.text = vec![format!("½ μ·Σ⁻¹·μ{potential}")];
+        let mu = self.letter(&self.symbols.momenta);
+        formula.symbol = format!("H({}, {mu})", self.q());
+        formula.text = vec![format!("½ {mu}·Σ⁻¹·{mu}{potential}")];
         formula
     }
 
@@ -121,7 +127,7 @@ impl<'g> Formulas<'g> {
         let (kinetic, end) = self.legendre_next();
         let mut formula = Formula::new("", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
         if let Some(end) = end {
-            formula.text.iter_mut().zip(end).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
+            formula.text.iter_mut().zip(expanded(&end)).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
         }
         formula
     }
@@ -129,7 +135,7 @@ impl<'g> Formulas<'g> {
     fn formulas_of_substep(&self, substep: &Substep<'g>) -> Vec<Formula> {
         let mut formulas = Vec::new();
         if let Some(start) = &substep.start {
-            formulas.push(Formula::new("kick", "M − N", start));
+            formulas.push(Formula::new("kick", "M − N", &expanded(start)));
         }
         for equation in &substep.equations {
             formulas.push(self.formula_of_equation(equation));
@@ -137,7 +143,7 @@ impl<'g> Formulas<'g> {
         }
         formulas.push(self.formula_of_update(substep));
         if let Some(end) = &substep.end {
-            formulas.push(Formula::new("kick", format!("N⁺ − M⁺, at {}⁺", self.q()), end));
+            formulas.push(Formula::new("kick", format!("N⁺ − M⁺, at {}⁺", self.q()), &expanded(end)));
         }
         formulas
     }
@@ -145,12 +151,13 @@ impl<'g> Formulas<'g> {
     /// ρ(x) = 0.
     pub fn formula_of_equation(&self, equation: &Equation<'g>) -> Formula {
         let title = if equation.solution == Solution::Explicit { "equation (explicit)" } else { "equation" };
-        Formula::new(title, "0 = ρ(x)", &[equation.residual])
+        Formula::new(title, format!("0 = ρ({})", self.letter(&self.symbols.charts)), &[equation.residual])
     }
 
     /// Dρ(x)·δ.
     pub fn formula_of_jacobian(&self, equation: &Equation<'g>) -> Formula {
-        Formula::new("Jacobian", "Dρ(x)·δ", &[equation.directional])
+        let (x, direction) = (self.letter(&self.symbols.charts), self.letter(&self.symbols.directions));
+        Formula::new("Jacobian", format!("Dρ({x})·{direction}"), &[equation.directional])
     }
 
     fn formula_of_update(&self, substep: &Substep<'g>) -> Formula {
@@ -166,6 +173,10 @@ impl<'g> Formulas<'g> {
         let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
         Formula::new("momentum update", "M⁺", &updates)
     }
+}
+
+fn expanded<'g>(expressions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    expressions.iter().map(|expression| expression.expand()).collect()
 }
 
 fn tuple(names: impl Iterator<Item = String>) -> String {

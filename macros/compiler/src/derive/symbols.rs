@@ -25,11 +25,14 @@ pub struct Symbols<'g> {
 impl<'g> Symbols<'g> {
     pub(super) fn new(model: &Model<'g>) -> Symbols<'g> {
         let graph = model.graph;
+        let taken = taken(model);
+        let covector = fresh(&["p", "α", "β"], &taken);
         let covectors = model.configurations.iter().enumerate().map(|(i, leaf)| {
-            let name = subscripted("p", i, model.configurations.len());
+            let name = subscripted(covector, i, model.configurations.len());
             graph.symbol(&name, leaf.shape, Role::Covector(i), Property::General)
         });
-        let factor = |letter: &str, role: fn(usize) -> Role, matrix: bool| -> Vec<Expr<'g>> {
+        let factor = |letters: &[&'static str], role: fn(usize) -> Role, matrix: bool| -> Vec<Expr<'g>> {
+            let letter = fresh(letters, &taken);
             let symbol = |(k, factor): (usize, &crate::model::Factor<'g>)| {
                 let shape = if matrix { factor.group.element_shape() } else { Shape::vector(factor.group.dimension()) };
                 graph.symbol(&subscripted(letter, k, model.factors.len()), shape, role(k), Property::General)
@@ -38,14 +41,28 @@ impl<'g> Symbols<'g> {
         };
         Symbols {
             covectors: covectors.collect(),
-            algebra: factor("ξ", Role::Algebra, false),
-            momenta: factor("μ", Role::Momentum, false),
-            charts: factor("x", Role::Chart, false),
-            directions: factor("δ", Role::Auxiliary, false),
-            increments: factor("D", Role::Increment, true),
-            momentum_matrices: factor("M", Role::MomentumMatrix, true),
+            algebra: factor(&["ξ", "η", "ζ"], Role::Algebra, false),
+            momenta: factor(&["μ", "ν", "λ"], Role::Momentum, false),
+            charts: factor(&["x", "c", "z"], Role::Chart, false),
+            directions: factor(&["δ", "ε", "γ"], Role::Auxiliary, false),
+            increments: factor(&["D", "Δ", "B"], Role::Increment, true),
+            momentum_matrices: factor(&["M", "N", "P"], Role::MomentumMatrix, true),
         }
     }
+}
+
+/// The first letters of the user's own names, which the derivation does not take.
+fn taken(model: &Model<'_>) -> Vec<String> {
+    let base = |name: &str| name.split('[').next().unwrap_or(name).to_string();
+    let leaves = model.configurations.iter().map(|leaf| base(&leaf.name));
+    let factors = model.factors.iter().map(|factor| base(&factor.name));
+    leaves.chain(factors).chain(model.parameters.iter().map(|parameter| parameter.name.clone())).collect()
+}
+
+/// The first letter that the user has not taken; the last one if all are.
+fn fresh(letters: &[&'static str], taken: &[String]) -> &'static str {
+    let free = letters.iter().find(|letter| !taken.iter().any(|name| name == *letter));
+    free.or(letters.last()).copied().unwrap_or("")
 }
 
 /// The letter alone if there is one of them, else with a subscript that counts from one.

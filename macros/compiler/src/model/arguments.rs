@@ -184,7 +184,9 @@ impl<'d, 'g> Arguments<'d, 'g> {
             }
             Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
             Some(Slot::Velocity) => {
-                argument.pattern.names().iter().for_each(|ident| check_reserved(ident, "the velocity", diagnostics));
+                argument.pattern.names().iter().for_each(|ident| {
+                    check_reserved(ident, "the velocity", diagnostics);
+                });
             }
             Some(_) => {}
             None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),

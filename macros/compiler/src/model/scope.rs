@@ -65,16 +65,18 @@ impl<'g> Binding<'g> {
     }
 }
 
-/// Reports a name that may not be introduced.
-pub(super) fn check_reserved(ident: &Ident, what: &str, diagnostics: &mut Diagnostics) {
+/// Reports a name that may not be introduced, and returns whether it may.
+pub(super) fn check_reserved(ident: &Ident, what: &str, diagnostics: &mut Diagnostics) -> bool {
     let name = ident.unraw().to_string();
-    if RESERVED.contains(&name.as_str()) {
+    let reserved = RESERVED.contains(&name.as_str());
+    if reserved {
         diagnostics.push(
             Diagnostic::new(ident.span(), format!("`{name}` is reserved and cannot be the name of {what}"))
                 .help("choose another name")
                 .note("in all closures `h` is the step, `t` the time, `I` the identity and `self` the struct"),
         );
     }
+    !reserved
 }
 
 impl<'g> Scope<'g> {
@@ -88,7 +90,9 @@ impl<'g> Scope<'g> {
     /// Introduces a name of a `let` or of a closure inside; arguments stay what they are.
     pub fn add(&mut self, binding: Binding<'g>, what: &str, diagnostics: &mut Diagnostics) {
         let name = binding.ident.unraw().to_string();
-        check_reserved(&binding.ident, what, diagnostics);
+        if !check_reserved(&binding.ident, what, diagnostics) {
+            return;
+        }
         if self.names[..self.arguments].iter().any(|(argument, _)| *argument == name) {
             let error = Diagnostic::new(binding.ident.span(), format!("`{name}` is an argument and cannot be redefined"));
             diagnostics.push(error.help("choose another name").note("a `let` may replace a `let`, and nothing else"));

@@ -10,6 +10,8 @@ mod operators;
 mod refused;
 mod sequences;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashMap;
 
@@ -198,7 +200,10 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             return self.error(Diagnostic::new(Place::of(at), "this expression grows too large").note(note));
         }
         let expr = make();
-        self.sizes.insert(expr, size);
+        // a number is as large as its digits, however it was made
+        if expr.as_number().is_none() {
+            self.sizes.insert(expr, size);
+        }
         Some(expr)
     }
 
