@@ -2,7 +2,7 @@
 //!
 //! A rigid body turning freely, from its inertia tensor:
 //!
-//! ```ignore
+//! ```
 //! use clebsch::Clebsch;
 //! use nalgebra::{Matrix3, Vector3};
 //!

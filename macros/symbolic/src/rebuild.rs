@@ -111,6 +111,7 @@ impl<'g> Expr<'g> {
     fn expand_node(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
+            Node::Function(..) => self,
             Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| sum + graph.expand_term(term, self.shape(), images)),
             Node::Word(word) => graph.expand_word(word, images, Shape::scalar()),
             Node::Trace(word) => {
@@ -126,7 +127,7 @@ impl Graph {
     fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
         let mut scale = self.number(term.coefficient.clone());
         for (base, exponent) in &term.scalars {
-            scale = self.distribute(scale, self.expanded_power(images[base], *exponent), Shape::scalar());
+            scale = self.distribute(scale, self.expanded_power(self.expr(*base), images[base], *exponent), Shape::scalar());
         }
         let word = match term.word.is_empty() {
             true => self.identity(shape.rows),
@@ -135,9 +136,11 @@ impl Graph {
         self.distribute(scale, word, shape)
     }
 
-    fn expanded_power<'g>(&'g self, base: Expr<'g>, exponent: Exponent) -> Expr<'g> {
+    /// Positive integer powers are multiplied out. The base of any other power stays as it was written: |x − y|² under a root
+    /// must not become x² − 2xy + y², which cancels.
+    fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
         match exponent.is_integer().then(|| exponent.to_integer().to_u32()).flatten() {
-            Some(count) if count <= 16 => (0..count).fold(self.integer(1), |power, _| self.distribute(power, base, Shape::scalar())),
+            Some(count) if count <= 16 => (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar())),
             _ => base.power(Rational::new((*exponent.numer()).into(), (*exponent.denom()).into())),
         }
     }

@@ -62,11 +62,10 @@ fn cayley_velocity<'g>(group: Group, f: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
 
 /// Separates the cost into a part of F and a part of q, and places the potential.
 pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> Result<DiscreteLagrangian<'g>, Diagnostics> {
-    let static_part = cost.substitute(&identities(model)).expand();
-    let kinetic = match model.configurations.iter().any(|leaf| cost.depends_on(leaf.symbol)) {
-        false => cost - static_part,
-        true => (cost - static_part).expand(),
-    };
+    let static_part = cost.substitute(&identities(model));
+    let couples = |kinetic: Expr<'g>| model.configurations.iter().any(|leaf| kinetic.depends_on(leaf.symbol));
+    let difference = cost - static_part;
+    let kinetic = if couples(difference) { difference.expand() } else { difference };
     if let Some(leaf) = model.configurations.iter().find(|leaf| kinetic.depends_on(leaf.symbol)) {
         let written = &model.spans.kinetic;
         let error = Diagnostic::new(written.place, format!("the cost couples `{}` and `{}`", leaf.name, model.factors[0].name))

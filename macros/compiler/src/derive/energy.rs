@@ -166,7 +166,7 @@ pub(super) fn inertia<'g>(symbols: &Symbols<'g>, energy: Expr<'g>) -> Expr<'g> {
 /// V(q): the declared potential and what the cost holds of one.
 pub(super) fn potential<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
-    let energy = -((lagrangian.start + lagrangian.end) / h).expand();
+    let energy = -(lagrangian.start / h + lagrangian.end / h);
     let scaled = energy.substitute(&[(h, 2 * h)]);
     match energy == scaled || identity::equal(&[energy], &[scaled]) {
         true => Ok(if energy.depends_on(h) { energy.substitute(&[(h, model.graph.integer(1))]) } else { energy }),
