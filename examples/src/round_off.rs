@@ -9,8 +9,10 @@ const ROUNDINGS_PER_STEP: f64 = 64.0;
 ///
 /// The growth is then *linear*. That happens: a body in steady rotation repeats one group element and with it one rounding.
 /// Roundings of random sign grow like √steps and stay far below; [`in_random_walks`] tells by how much.
+///
+/// Below the smallest normal number rounding is no longer relative, and squares underflow.
 pub fn worst_case(steps: u64, scale: f64) -> f64 {
-    ROUNDINGS_PER_STEP * f64::EPSILON / 2.0 * (steps as f64 + 1.0) * scale
+    ROUNDINGS_PER_STEP * (steps as f64 + 1.0) * (f64::EPSILON / 2.0 * scale).max(f64::MIN_POSITIVE)
 }
 
 /// `defect` in units of ε √steps `scale`: of the order of 1 where roundings of random sign add up.

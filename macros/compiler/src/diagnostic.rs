@@ -95,7 +95,8 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
-        let later = self.comes_later.then_some("note: it belongs to the language and comes with a later version of clebsch");
+        let later =
+            self.comes_later.then_some("note: it belongs to the language and comes with a later version of clebsch");
         let mut lines = self.lines.iter().map(String::as_str).chain(later).peekable();
         if lines.peek().is_some() {
             f.write_str("\n")?;
@@ -106,7 +107,14 @@ impl fmt::Display for Diagnostic {
 
 impl From<syn::Error> for Diagnostic {
     fn from(error: syn::Error) -> Diagnostic {
-        Diagnostic::new(error.span(), error.to_string())
+        let text = error.to_string();
+        let plain = !text.contains("\n\nhelp: ");
+        let diagnostic = Diagnostic::new(error.span(), text);
+        if plain {
+            diagnostic.note("a declaration is `key = value, …`, and closures are written in Rust's syntax")
+        } else {
+            diagnostic
+        }
     }
 }
 

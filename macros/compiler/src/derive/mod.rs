@@ -9,6 +9,7 @@ mod discrete_lagrangian;
 mod energy;
 mod equation;
 mod print;
+mod reference;
 mod symbols;
 
 use clebsch_symbolic::Expr;
@@ -20,6 +21,7 @@ pub(crate) use action::generator_columns;
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use equation::{Equation, Solution};
 pub use print::Formula;
+pub use reference::Reference;
 pub use symbols::Symbols;
 
 /// What is derived, as matrix expressions.

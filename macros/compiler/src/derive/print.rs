@@ -4,7 +4,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{Equation, Formulas, Solution, Substep};
+use super::{Equation, Formulas, Reference, Solution, Substep, reference};
 use crate::model::Side;
 
 /// A derived formula, `symbol = expression`.
@@ -20,6 +20,8 @@ pub struct Formula {
     pub latex: Vec<String>,
     /// The shapes of the right sides.
     pub shapes: Vec<Shape>,
+    /// Where it comes from.
+    pub source: Option<Reference>,
 }
 
 impl Formula {
@@ -30,6 +32,7 @@ impl Formula {
             text: expressions.iter().map(|expression| expression.to_string()).collect(),
             latex: expressions.iter().map(|expression| expression.latex()).collect(),
             shapes: expressions.iter().map(|expression| expression.shape()).collect(),
+            source: reference::of(title),
         }
     }
 
@@ -44,7 +47,7 @@ impl Formula {
 
 impl fmt::Display for Formula {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:<22} {}", self.title, self.equation())
+        write!(f, "{:<24} {}", self.title, self.equation())
     }
 }
 
@@ -118,16 +121,15 @@ impl<'g> Formulas<'g> {
 
     /// F⁻ℓd(q, F).
     pub fn formula_of_legendre(&self) -> Formula {
-        let legendre: Vec<_> = self.legendre().into_iter().map(|component| component.expand()).collect();
-        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &legendre)
+        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &readable(&self.legendre()))
     }
 
     /// F⁺ℓd(q, F).
     pub fn formula_of_legendre_next(&self) -> Formula {
         let (kinetic, end) = self.legendre_next();
-        let mut formula = Formula::new("", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
+        let mut formula = Formula::new("next Legendre transform", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
         if let Some(end) = end {
-            formula.text.iter_mut().zip(expanded(&end)).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
+            formula.text.iter_mut().zip(readable(&end)).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
         }
         formula
     }
@@ -135,7 +137,7 @@ impl<'g> Formulas<'g> {
     fn formulas_of_substep(&self, substep: &Substep<'g>) -> Vec<Formula> {
         let mut formulas = Vec::new();
         if let Some(start) = &substep.start {
-            formulas.push(Formula::new("kick", "M − N", &expanded(start)));
+            formulas.push(Formula::new("kick", "M − N", &readable(start)));
         }
         for equation in &substep.equations {
             formulas.push(self.formula_of_equation(equation));
@@ -143,7 +145,7 @@ impl<'g> Formulas<'g> {
         }
         formulas.push(self.formula_of_update(substep));
         if let Some(end) = &substep.end {
-            formulas.push(Formula::new("kick", format!("N⁺ − M⁺, at {}⁺", self.q()), &expanded(end)));
+            formulas.push(Formula::new("kick", format!("N⁺ − M⁺, at {}⁺", self.q()), &readable(end)));
         }
         formulas
     }
@@ -175,8 +177,10 @@ impl<'g> Formulas<'g> {
     }
 }
 
-fn expanded<'g>(expressions: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    expressions.iter().map(|expression| expression.expand()).collect()
+/// Each expression as it is or expanded, whichever is shorter.
+fn readable<'g>(expressions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let length = |expression: &Expr<'g>| expression.to_string().chars().count();
+    expressions.iter().flat_map(|expression| [expression.expand(), *expression].into_iter().min_by_key(length)).collect()
 }
 
 fn tuple(names: impl Iterator<Item = String>) -> String {

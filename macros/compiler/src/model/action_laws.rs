@@ -4,8 +4,9 @@
 use clebsch_symbolic::{Expr, Graph, Group, Role, identity};
 
 use super::{Configuration, Factor, Side, Space};
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::parse::{Closure, spell};
+use super::action_errors::ascii;
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::Closure;
 
 /// The action with what it acts on.
 pub(super) struct Action<'a, 'g> {
@@ -70,12 +71,12 @@ impl<'g> Action<'_, 'g> {
         self.value.iter().map(|expr| expr.substitute(&rules)).collect()
     }
 
-    fn of_identity(&self) -> Vec<Expr<'g>> {
+    pub(super) fn of_identity(&self) -> Vec<Expr<'g>> {
         self.at(&[], &self.points())
     }
 
     /// A second element of a factor, printed as `F1` or `F2`.
-    fn element(&self, factor: usize, number: usize) -> Expr<'g> {
+    pub(super) fn element(&self, factor: usize, number: usize) -> Expr<'g> {
         let Factor { group, name, .. } = &self.factors[factor];
         let role = Role::Auxiliary(2 * factor + number);
         self.graph.symbol(&format!("{name}{number}"), group.element_shape(), role, group.element_property())
@@ -92,32 +93,16 @@ impl<'g> Action<'_, 'g> {
                 }
             };
             if !identity::equal(&[norm], &[fixed]) {
-                let message = format!("the action moves `{}` to `{}`, which is not always {promise}", leaf.name, ascii(moved));
+                let message =
+                    format!("the action moves `{}` to `{}`, which is not always {promise}", leaf.name, ascii(moved));
                 let plain = match leaf.shape.is_column() {
                     true => format!("Vector{}", leaf.shape.rows),
                     false => format!("Matrix{}", leaf.shape.rows),
                 };
-                let error = Diagnostic::new(crate::diagnostic::Place::of(&self.closure.body), message);
+                let error = Diagnostic::new(Place::of(&self.closure.body), message);
                 diagnostics.push(error.help(format!("write `{}: {plain}` if any value is a configuration", leaf.name)));
             }
         }
-    }
-
-    fn identity_moves(&self) -> Diagnostic {
-        let images = self.of_identity();
-        let moved = self.configurations.iter().zip(&images).find(|(leaf, image)| leaf.symbol != **image);
-        let names: Vec<String> = self.factors.iter().map(|factor| format!("{} = {}", factor.name, identity_name(factor.group))).collect();
-        let error = self.no_action(None);
-        match moved {
-            Some((leaf, &image)) => error.note(format!(
-                "the identity has to move nothing, but with {} it moves {} to {}",
-                names.join(", "),
-                leaf.name,
-                ascii(image)
-            )),
-            None => error.note("the identity has to move nothing"),
-        }
-        .help(self.example(0))
     }
 
     /// The sides on which a factor's composition law holds.
@@ -142,54 +127,11 @@ impl<'g> Action<'_, 'g> {
             (true, false) => Some(Sides::Left),
             (false, true) => Some(Sides::Right),
             (false, false) => {
-                let error = self.no_action(Some(index)).note(self.composition(index, &composed)).help(self.example(index));
+                let error =
+                    self.no_action(Some(index)).note(self.composition(index, &composed)).help(self.example(index));
                 diagnostics.push(error);
                 None
             }
-        }
-    }
-
-    fn no_action(&self, factor: Option<usize>) -> Diagnostic {
-        let names: Vec<String> = self.closure.arguments.iter().map(|argument| argument.pattern.spell()).collect();
-        let text = format!("|{}| {}", names.join(", "), spell(&self.closure.body));
-        let group = match factor {
-            Some(index) if self.factors.len() > 1 => {
-                format!("{} by its factor `{}`", self.factors[index].group.name(), self.factors[index].name)
-            }
-            _ if self.factors.len() > 1 => "the group".to_string(),
-            _ => self.factors[0].group.name(),
-        };
-        Diagnostic::new(crate::diagnostic::Place::of(&self.closure.body), format!("`{text}` is not an action of {group}"))
-    }
-
-    fn composition(&self, index: usize, composed: &[Expr<'g>]) -> String {
-        let name = &self.factors[index].name;
-        let element = self.element(index, 1);
-        // the first leaf that the factor moves shows the formula
-        let shown = composed.iter().find(|image| image.depends_on(element)).unwrap_or(&composed[0]);
-        let [left, right] = match self.factors[index].group {
-            Group::Translation(_) => [format!("{name}1 + {name}2"), format!("{name}2 + {name}1")],
-            _ => [format!("{name}2*{name}1"), format!("{name}1*{name}2")],
-        };
-        match left.contains('+') {
-            true => format!("acting by {name}1 and then by {name}2 gives {}, which is not the action of {left}", ascii(*shown)),
-            false => format!(
-                "acting by {name}1 and then by {name}2 gives {}, which is neither the action of {left} nor of {right}",
-                ascii(*shown)
-            ),
-        }
-    }
-
-    /// Actions that a factor could have.
-    fn example(&self, index: usize) -> String {
-        let Factor { group, name: f, symbol, .. } = &self.factors[index];
-        let moved = self.configurations.iter().zip(self.value).find(|(_, image)| image.depends_on(*symbol));
-        let leaf = moved.map_or(&self.configurations[0], |(leaf, _)| leaf);
-        let q = &leaf.name;
-        match group {
-            Group::Translation(_) => format!("`{q} + {f}` is an action"),
-            _ if leaf.shape.is_column() => format!("`{f} * {q}` (left) and `{f}.transpose() * {q}` (right) are actions"),
-            _ => format!("`{f} * {q}` (left), `{q} * {f}` (right) and `{f} * {q} * {f}.transpose()` (left) are actions"),
         }
     }
 
@@ -214,43 +156,4 @@ impl<'g> Action<'_, 'g> {
             diagnostics.push(self.no_action(None).note("its factors together act otherwise than one after the other"));
         }
     }
-
-    fn do_not_commute(&self, first: usize, second: usize, then_second: &[Expr<'g>], then_first: &[Expr<'g>]) -> Diagnostic {
-        let differs = |(&a, &b): (&Expr<'g>, &Expr<'g>)| !identity::equal(&[a], &[b]);
-        let leaf = then_second.iter().zip(then_first).position(differs).unwrap_or(0);
-        let (one, other) = (&self.factors[first], &self.factors[second]);
-        let declared = |factor: &Factor| format!("`{}: {}`", factor.name, factor.group.name());
-        Diagnostic::new(
-            crate::diagnostic::Place::of(&self.closure.body),
-            format!("the factors {} and {} do not commute", declared(one), declared(other)),
-        )
-        .note(format!(
-            "{} and then {} moves {} to {}, in the other order to {}",
-            verb(one),
-            verb(other),
-            self.configurations[leaf].name,
-            ascii(then_second[leaf]),
-            ascii(then_first[leaf])
-        ))
-        .help("let each factor move a part of the configuration of its own")
-    }
-}
-
-fn verb(factor: &Factor) -> String {
-    match factor.group {
-        Group::Translation(_) => format!("shifting by {}", factor.name),
-        _ => format!("turning by {}", factor.name),
-    }
-}
-
-fn identity_name(group: Group) -> &'static str {
-    match group {
-        Group::Translation(_) => "0",
-        _ => "I",
-    }
-}
-
-/// A formula with the operators of the declaration.
-fn ascii(expr: Expr) -> String {
-    expr.to_string().replace('·', "*").replace('−', "-")
 }

@@ -32,11 +32,17 @@ pub(super) struct Arguments<'d, 'g> {
     pub step_size: Expr<'g>,
 }
 
+/// The two arguments of the action: the group element and the configuration, with their types.
+#[derive(Copy, Clone)]
+pub(super) struct TypedArguments<'d> {
+    pub element: &'d Pattern,
+    pub group: &'d syn::Type,
+    pub configuration: &'d Pattern,
+    pub space: &'d syn::Type,
+}
+
 /// The patterns and types of the two arguments of the action.
-pub(super) fn of_action<'d>(
-    action: &'d Closure,
-    diagnostics: &mut Diagnostics,
-) -> Option<((&'d Pattern, &'d syn::Type), (&'d Pattern, &'d syn::Type))> {
+pub(super) fn of_action<'d>(action: &'d Closure, diagnostics: &mut Diagnostics) -> Option<TypedArguments<'d>> {
     let [element, configuration] = action.arguments.as_slice() else {
         let count = action.arguments.len();
         let message = format!("the action has {count} argument{}, not two", if count == 1 { "" } else { "s" });
@@ -57,12 +63,17 @@ pub(super) fn of_action<'d>(
         }
         seen.push(name);
     }
-    let element_type = typed(element, "SO<3>", "the group", diagnostics);
-    let configuration_type = typed(configuration, "Unit<Vector3>", "the space of configurations", diagnostics);
-    Some(((&element.pattern, element_type?), (&configuration.pattern, configuration_type?)))
+    let group = typed(element, "SO<3>", "the group", diagnostics);
+    let space = typed(configuration, "Unit<Vector3>", "the space of configurations", diagnostics);
+    Some(TypedArguments { element: &element.pattern, group: group?, configuration: &configuration.pattern, space: space? })
 }
 
-fn typed<'d>(argument: &'d Argument, example: &str, what: &str, diagnostics: &mut Diagnostics) -> Option<&'d syn::Type> {
+fn typed<'d>(
+    argument: &'d Argument,
+    example: &str,
+    what: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<&'d syn::Type> {
     if argument.ty.is_none() {
         let name = argument.pattern.spell();
         let error = Diagnostic::new(argument.pattern.place(), format!("`{name}` has no type in the action"));
@@ -77,7 +88,8 @@ impl<'d, 'g> Arguments<'d, 'g> {
         let mut scope = Scope::default();
         scope.add_argument(self.element, self.element_value.clone(), diagnostics);
         scope.add_argument(self.configuration, self.configuration_value.clone(), diagnostics);
-        let help = format!("the action depends on `{}` and `{}` alone", self.element.spell(), self.configuration.spell());
+        let help =
+            format!("the action depends on `{}` and `{}` alone", self.element.spell(), self.configuration.spell());
         scope.add_missing("h".into(), Missing::Foreign { help });
         scope
     }
@@ -95,7 +107,12 @@ impl<'d, 'g> Arguments<'d, 'g> {
     }
 
     /// The names in a Lagrangian, whose last argument is new.
-    pub fn lagrangian_scope(&self, closure: &Closure, velocity: Option<Expr<'g>>, diagnostics: &mut Diagnostics) -> Scope<'g> {
+    pub fn lagrangian_scope(
+        &self,
+        closure: &Closure,
+        velocity: Option<Expr<'g>>,
+        diagnostics: &mut Diagnostics,
+    ) -> Scope<'g> {
         let taken = self.match_slots(closure, LAGRANGIAN, diagnostics);
         let mut scope = self.scope(closure, LAGRANGIAN, &taken, velocity, diagnostics);
         if let Some(velocity) = velocity {
@@ -133,8 +150,12 @@ impl<'d, 'g> Arguments<'d, 'g> {
     /// The slot that each argument takes; `None` if there is an error, which is reported.
     fn match_slots(&self, closure: &Closure, slots: &[Slot], diagnostics: &mut Diagnostics) -> Vec<Option<Slot>> {
         let last = closure.arguments.len().wrapping_sub(1);
-        let mut taken: Vec<Option<Slot>> = closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
-        if slots.contains(&Slot::Velocity) && taken.last() == Some(&None) && !self.is_foreign(&closure.arguments[last].pattern) {
+        let mut taken: Vec<Option<Slot>> =
+            closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
+        if slots.contains(&Slot::Velocity)
+            && taken.last() == Some(&None)
+            && !self.is_foreign(&closure.arguments[last].pattern)
+        {
             taken[last] = Some(Slot::Velocity);
         }
         for (position, argument) in closure.arguments.iter().enumerate() {
@@ -180,7 +201,8 @@ impl<'d, 'g> Arguments<'d, 'g> {
         }
         match taken[position] {
             Some(slot) if taken[..position].contains(&Some(slot)) => {
-                diagnostics.push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
+                diagnostics
+                    .push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
             }
             Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
             Some(Slot::Velocity) => {
@@ -193,46 +215,12 @@ impl<'d, 'g> Arguments<'d, 'g> {
         }
     }
 
-    /// The error for an argument that the action does not know.
-    fn unknown(&self, closure: &Closure, argument: &Argument, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Diagnostic {
-        let (name, place, key) = (argument.pattern.spell(), argument.pattern.place(), &closure.key);
-        let error = if self.is_foreign(&argument.pattern) {
-            Diagnostic::new(place, format!("the {key} cannot depend on `{name}`"))
-        } else {
-            Diagnostic::new(place, format!("cannot find `{name}` in the {key}"))
-        };
-        let meant = self.meant(position, taken, slots);
-        let head = self.head(taken, slots, meant, closure);
-        let error = match meant.and_then(|slot| self.names(slot)) {
-            Some((_, meaning)) if meant == Some(Slot::Velocity) => error.help(format!("{meaning}: write `{head}`")),
-            Some((known, meaning)) => error.help(format!("the action calls {meaning} `{known}`: write `{head}`")),
-            None => error.help(format!("write `{head}`")),
-        };
-        let listed = slots.iter().filter_map(|&slot| self.names(slot).map(|(name, meaning)| (slot, name, meaning)));
-        let listed: Vec<String> = listed
-            .map(|(slot, name, meaning)| match slot {
-                Slot::Step => format!("`{name}`"),
-                Slot::Velocity => format!("a new name ({})", meaning.split(',').next().unwrap_or_default()),
-                _ => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
-            })
-            .collect();
-        let order = if listed.len() > 1 { ", in this order" } else { "" };
-        error.note(format!("arguments go by name: {}{order}", listed.join(", ")))
-    }
-
-    /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
-    fn meant(&self, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Option<Slot> {
-        let index = |slot: Slot| slots.iter().position(|&other| other == slot);
-        let unknown_behind = taken[position + 1..].iter().filter(|slot| slot.is_none()).count();
-        let limit = taken[position + 1..].iter().flatten().filter_map(|&slot| index(slot)).min().unwrap_or(slots.len());
-        let free = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) && !taken.contains(&Some(**slot));
-        slots[..limit].iter().rev().filter(free).nth(unknown_behind).copied()
-    }
-
     /// The arguments as they should be.
     fn head(&self, taken: &[Option<Slot>], slots: &[Slot], meant: Option<Slot>, closure: &Closure) -> String {
         let velocity = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
-        let wanted = slots.iter().filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
+        let wanted = slots
+            .iter()
+            .filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
         let names: Vec<String> = wanted
             .filter_map(|&slot| match (slot, velocity) {
                 (Slot::Velocity, Some(position)) => Some(closure.arguments[position].pattern.spell()),
@@ -246,7 +234,8 @@ impl<'d, 'g> Arguments<'d, 'g> {
         let index = |slot: &Slot| slots.iter().position(|other| other == slot);
         let order: Vec<usize> = taken.iter().flatten().filter_map(index).collect();
         if !taken.contains(&None) && order.windows(2).any(|pair| pair[0] > pair[1]) {
-            let error = Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
+            let error =
+                Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
             diagnostics.push(error.help(format!("write `{}`", self.head(taken, slots, None, closure))));
         }
     }
@@ -270,7 +259,9 @@ impl<'d, 'g> Arguments<'d, 'g> {
             };
             scope.add_argument(&argument.pattern, value, diagnostics);
         }
-        for slot in [Slot::Step, Slot::Configuration, Slot::Element].into_iter().filter(|slot| !taken.contains(&Some(*slot))) {
+        for slot in
+            [Slot::Step, Slot::Configuration, Slot::Element].into_iter().filter(|slot| !taken.contains(&Some(*slot)))
+        {
             let missing = match slots.contains(&slot) {
                 true => Missing::Argument { head: self.head(taken, slots, Some(slot), closure) },
                 false => Missing::Foreign { help: self.dependence(closure, slots) },

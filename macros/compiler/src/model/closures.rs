@@ -97,7 +97,10 @@ fn cost<'g>(
             let message = format!("the cost does not depend on `{}`", factor.name);
             let error = Diagnostic::new(tail(&closure.body).0, message)
                 .help(format!("add the kinetic energy of `{}`, as in `{}`", factor.name, example_cost(factor)))
-                .note(format!("the momentum of `{}` is the derivative of the cost, and cannot be inverted where that is 0", factor.name));
+                .note(format!(
+                    "the momentum of `{}` is the derivative of the cost, and cannot be inverted where that is 0",
+                    factor.name
+                ));
             context.diagnostics.push(error);
         }
     }
@@ -126,7 +129,8 @@ fn lagrangian<'g>(
         Some(factors) => {
             let groups: Vec<String> = factors.iter().map(|factor| factor.group.name()).collect();
             let what = format!("a lagrangian on {}", groups.join(" x "));
-            let error = Diagnostic::later(closure.key.span(), what).help("declare a `cost`, the discrete kinetic energy, instead");
+            let error = Diagnostic::later(closure.key.span(), what)
+                .help("declare a `cost`, the discrete kinetic energy, instead");
             context.diagnostics.push(error);
             None
         }
@@ -136,8 +140,11 @@ fn lagrangian<'g>(
     let energy = scalar(context, closure, Elaborated { scope, needs: "a Lagrangian is a scalar" })?;
     let velocity = velocity?;
     if !energy.depends_on(velocity) {
-        let error = Diagnostic::new(tail(&closure.body).0, format!("the lagrangian does not depend on the velocity `{name}`"));
-        context.diagnostics.push(error.help(format!("add the kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`")));
+        let error =
+            Diagnostic::new(tail(&closure.body).0, format!("the lagrangian does not depend on the velocity `{name}`"));
+        context
+            .diagnostics
+            .push(error.help(format!("add the kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`")));
         return None;
     }
     Some(Kinetic::Lagrangian { energy, velocity, name, discretization })
@@ -230,7 +237,11 @@ fn tail(body: &Syntax) -> (Place, &Syntax) {
 }
 
 /// The name of each leaf: the pattern's names, with accessors where one name stands for several leaves.
-pub(super) fn leaf_names(pattern: &Pattern, structure: &Structure, diagnostics: &mut Diagnostics) -> Option<Vec<String>> {
+pub(super) fn leaf_names(
+    pattern: &Pattern,
+    structure: &Structure,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<String>> {
     match (pattern, structure) {
         (Pattern::Name(ident), _) => {
             let name = syn::ext::IdentExt::unraw(ident).to_string();
@@ -248,7 +259,8 @@ pub(super) fn leaf_names(pattern: &Pattern, structure: &Structure, diagnostics: 
                 Structure::Array(parts) => format!("an array of {}", parts.len()),
             };
             let message = format!("`{}` has {} names, but its type is {is}", pattern.spell(), patterns.len());
-            diagnostics.push(Diagnostic::new(*place, message).help("write one name, or as many as the tuple has parts"));
+            diagnostics
+                .push(Diagnostic::new(*place, message).help("write one name, or as many as the tuple has parts"));
             None
         }
     }

@@ -11,6 +11,7 @@ use syn::{Generics, Type};
 use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::Value;
 use super::vectors::{hint, last_segment, vectors};
+use super::scalar::Agreement;
 use super::{Leaf, Parameter, Promise, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Declaration, Field, spell_type};
@@ -96,8 +97,10 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
             let length = size(&array.len, generics).map_err(Some)?;
             let leaves = length * element.leaves;
             if leaves * element.shape.len() > ENTRIES {
-                let message = format!("`{}` has {} numbers, more than {ENTRIES}", spell_type(ty), leaves * element.shape.len());
-                return Err(Some(Diagnostic::new(Place::of(ty), message)));
+                let message =
+                    format!("`{}` has {} numbers, more than {ENTRIES}", spell_type(ty), leaves * element.shape.len());
+                let note = "the code of a step is written out at compile time and grows with the size";
+                return Err(Some(Diagnostic::new(Place::of(ty), message).note(note)));
             }
             let parts = (0..length).map(|i| element.structure.shifted(i * element.leaves)).collect();
             Ok(FieldType { structure: Structure::Array(parts), leaves, ..element })
@@ -105,7 +108,13 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
         Type::Group(group) => field_type(&group.elem, generics),
         Type::Paren(paren) => field_type(&paren.elem, generics),
         _ => {
-            let leaf = |shape, is_scalar, scalar| FieldType { structure: Structure::Leaf(0), leaves: 1, shape, is_scalar, scalar };
+            let leaf = |shape, is_scalar, scalar| FieldType {
+                structure: Structure::Leaf(0),
+                leaves: 1,
+                shape,
+                is_scalar,
+                scalar,
+            };
             if is_float(ty) || type_parameter(ty, generics).is_some() {
                 return Ok(leaf(Shape::scalar(), true, Some(ty)));
             }
@@ -118,7 +127,8 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
 }
 
 fn is_float(ty: &Type) -> bool {
-    last_segment(ty).is_some_and(|segment| segment.arguments.is_empty() && (segment.ident == "f64" || segment.ident == "f32"))
+    last_segment(ty)
+        .is_some_and(|segment| segment.arguments.is_empty() && (segment.ident == "f64" || segment.ident == "f32"))
 }
 
 /// The error for a type that no closure can read.
@@ -129,13 +139,18 @@ fn explain(field: &Field, error: Option<Diagnostic>) -> Diagnostic {
     let text = spell_type(&field.ty);
     let name = last_segment(&field.ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
     let help = match name.as_str() {
-        "usize" | "u8" | "u16" | "u32" | "u64" | "i8" | "i16" | "i32" | "i64" | "isize" => Some("write `f64`".to_string()),
+        "usize" | "u8" | "u16" | "u32" | "u64" | "i8" | "i16" | "i32" | "i64" | "isize" => {
+            Some("write `f64`".to_string())
+        }
         "Unit" => Some("write `#[clebsch(unit)]` before the field, and the vector itself as its type".to_string()),
         _ => hint(&name),
     };
-    Diagnostic::new(Place::of(&field.ty), format!("a closure reads `self.{}`, and its type `{text}` has no meaning there", field.name()))
-        .maybe_help(help)
-        .note("a field that a closure reads is a scalar, a vector, a matrix, or an array of these")
+    Diagnostic::new(
+        Place::of(&field.ty),
+        format!("a closure reads `self.{}`, and its type `{text}` has no meaning there", field.name()),
+    )
+    .maybe_help(help)
+    .note("a field that a closure reads is a scalar, a vector, a matrix, or an array of these")
 }
 
 /// The symbols of a field.
@@ -159,11 +174,23 @@ fn parameter<'g>(
         Some(Promise::Unit) => Property::Unit,
     };
     let leaf = |(position, accessor): (usize, String)| {
-        let symbol = graph.symbol(&format!("{symbol_name}{accessor}"), ty.shape, Role::Parameter(first_leaf + position), property);
+        let symbol = graph.symbol(
+            &format!("{symbol_name}{accessor}"),
+            ty.shape,
+            Role::Parameter(first_leaf + position),
+            property,
+        );
         Leaf { symbol, accessor, shape: ty.shape, is_scalar: ty.is_scalar }
     };
     let leaves = ty.structure.accessors().into_iter().enumerate().map(leaf).collect();
-    Ok(Parameter { field: field.member.clone(), name: symbol_name, first_use, promise, structure: ty.structure, leaves })
+    Ok(Parameter {
+        field: field.member.clone(),
+        name: symbol_name,
+        first_use,
+        promise,
+        structure: ty.structure,
+        leaves,
+    })
 }
 
 /// A promise must make sense for the field's shape.
@@ -175,76 +202,9 @@ fn check_promise(promise: Promise, span: Span, shape: Shape, field: &Field) -> R
     };
     match fits {
         true => Ok(()),
-        false => Err(Diagnostic::new(span, format!("`{}` is {shape}: {needs}", field.name())).help("remove the promise")),
-    }
-}
-
-/// The scalar that all types agree on.
-struct Agreement<'d> {
-    generics: &'d Generics,
-    given: Option<ScalarType>,
-    found: Option<(ScalarType, String)>,
-}
-
-impl<'d> Agreement<'d> {
-    fn new(declaration: &'d Declaration, diagnostics: &mut Diagnostics) -> Agreement<'d> {
-        let generics = &declaration.generics;
-        let given = declaration.dials.scalar.as_ref().and_then(|ident| {
-            let scalar = named_scalar(&ident.to_string(), generics);
-            if scalar.is_none() {
-                let error = Diagnostic::new(ident.span(), format!("`{ident}` is no scalar"));
-                diagnostics.push(error.help("write `f64`, `f32` or a type parameter of the struct"));
-            }
-            scalar
-        });
-        Agreement { generics, found: given.clone().map(|scalar| (scalar, "`scalar`".to_string())), given }
-    }
-
-    /// Compares one more scalar with those before.
-    fn meet(&mut self, ty: &Type, whose: &str, diagnostics: &mut Diagnostics) {
-        let text = spell_type(ty);
-        let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
-        let Some(scalar) = named_scalar(&name, self.generics) else {
-            diagnostics.push(
-                Diagnostic::new(Place::of(ty), format!("the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter"))
-                    .help("write `f64`")
-                    .note("a macro cannot see what an alias stands for"),
-            );
-            return;
-        };
-        match &self.found {
-            None => self.found = Some((scalar, whose.to_string())),
-            Some((other, first)) if *other != scalar => {
-                let message = format!("the scalar of {whose} is `{text}`, that of {first} is `{}`", spell_scalar(other));
-                let error = Diagnostic::new(Place::of(ty), message);
-                diagnostics.push(error.help(format!("write `{}`", spell_scalar(other))).note("a system has one scalar type"));
-            }
-            Some(_) => {}
+        false => {
+            Err(Diagnostic::new(span, format!("`{}` is {shape}: {needs}", field.name())).help("remove the promise"))
         }
-    }
-
-    fn settle(self) -> ScalarType {
-        self.found.map(|(scalar, _)| scalar).or(self.given).unwrap_or(ScalarType::F64)
-    }
-}
-
-fn named_scalar(name: &str, generics: &Generics) -> Option<ScalarType> {
-    match name {
-        "f64" => Some(ScalarType::F64),
-        "f32" => Some(ScalarType::F32),
-        _ => generics
-            .type_params()
-            .find(|parameter| parameter.ident == name)
-            .map(|parameter| ScalarType::Parameter(parameter.ident.clone())),
-    }
-}
-
-/// The name of a scalar.
-pub(super) fn spell_scalar(scalar: &ScalarType) -> String {
-    match scalar {
-        ScalarType::F32 => "f32".into(),
-        ScalarType::F64 => "f64".into(),
-        ScalarType::Parameter(ident) => ident.to_string(),
     }
 }
 

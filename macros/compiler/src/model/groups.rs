@@ -47,13 +47,15 @@ pub(super) fn group(ty: &Type, generics: &Generics) -> Option<Result<Group, Diag
                 .help(format!("`{name}<n>` needs n ≥ {least}"))),
         }),
         (Maker::OneSize(..), _) => {
-            Err(Diagnostic::new(place, format!("`{}` needs one size", spell_type(ty))).help(format!("write `{name}<3>`")))
+            Err(Diagnostic::new(place, format!("`{}` needs one size", spell_type(ty)))
+                .help(format!("write `{name}<3>`")))
         }
     })
 }
 
 fn later(place: Place, text: &str) -> Diagnostic {
-    Diagnostic::later(place, format!("the group `{text}`")).help("the groups of this version are `SO<n>` and `Translation<n>`")
+    Diagnostic::later(place, format!("the group `{text}`"))
+        .help("the groups of this version are `SO<n>` and `Translation<n>`")
 }
 
 /// The error for a type that is no group, where a group is expected.
@@ -63,10 +65,16 @@ pub(super) fn unknown_group(ty: &Type) -> Diagnostic {
     let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
     if let Some(shape) = named_shape(&name) {
         return match shape.is_column() {
-            true => Diagnostic::new(place, format!("`{text}` is a space, but the first argument of the action is a group element"))
-                .help(format!("write `Translation<{}>` to shift by a vector", shape.rows)),
-            false => Diagnostic::new(place, format!("`{text}` is a space, but the first argument of the action is a group element"))
-                .help(format!("write `SO<{}>` for rotations", shape.rows)),
+            true => Diagnostic::new(
+                place,
+                format!("`{text}` is a space, but the first argument of the action is a group element"),
+            )
+            .help(format!("write `Translation<{}>` to shift by a vector", shape.rows)),
+            false => Diagnostic::new(
+                place,
+                format!("`{text}` is a space, but the first argument of the action is a group element"),
+            )
+            .help(format!("write `SO<{}>` for rotations", shape.rows)),
         };
     }
     let error = Diagnostic::new(place, format!("unknown group `{text}`"));
@@ -88,7 +96,8 @@ pub(super) fn suggestion(name: &str) -> Option<String> {
         "Translate" | "Shift" => Some("Translation"),
         _ => None,
     };
-    let known = synonym.or_else(|| GROUPS.iter().map(|&(group, _)| group).find(|group| group.eq_ignore_ascii_case(base)));
+    let known =
+        synonym.or_else(|| GROUPS.iter().map(|&(group, _)| group).find(|group| group.eq_ignore_ascii_case(base)));
     let similar = known.or_else(|| nearest(base, GROUPS.iter().map(|&(group, _)| group)).filter(|_| base.len() > 2));
     similar.map(|group| format!("{group}<{size}>"))
 }

@@ -1,5 +1,6 @@
 //! The second stage: the declaration as mathematics, with names resolved, shapes checked and the action's laws verified.
 
+mod action_errors;
 mod action_laws;
 mod arguments;
 mod closures;
@@ -7,6 +8,7 @@ mod elaborate;
 mod fields;
 mod groups;
 mod print;
+mod scalar;
 mod scope;
 mod sizes;
 mod spaces;
@@ -21,7 +23,7 @@ pub use types::*;
 use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape};
 
 use self::action_laws::Action;
-use self::arguments::Arguments;
+use self::arguments::{Arguments, TypedArguments};
 use self::elaborate::Context;
 use self::spaces::{Product, SpaceType};
 use self::value::Value;
@@ -33,11 +35,11 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let mut diagnostics = Diagnostics::new();
     let types = arguments::of_action(&declaration.action, &mut diagnostics);
     let generics = &declaration.generics;
-    let groups = types.and_then(|((_, group), _)| spaces::read_groups(group, generics, &mut diagnostics));
-    let spaces = types.and_then(|(_, (_, space))| spaces::read_spaces(space, generics, &mut diagnostics));
+    let groups = types.and_then(|types| spaces::read_groups(types.group, generics, &mut diagnostics));
+    let spaces = types.and_then(|types| spaces::read_spaces(types.space, generics, &mut diagnostics));
     let scalars: Vec<Option<&syn::Type>> = spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
     let fields = fields::read(graph, declaration, &scalars, &mut diagnostics);
-    let (Some(((element, _), (configuration, _))), Some(groups), Some(spaces)) = (types, groups, spaces) else {
+    let (Some(TypedArguments { element, configuration, .. }), Some(groups), Some(spaces)) = (types, groups, spaces) else {
         return diagnostics.propagate(()).and(Err(Diagnostics::new()));
     };
 
@@ -111,16 +113,13 @@ fn factors<'g>(
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Factor<'g>>> {
     let names = closures::leaf_names(pattern, &groups.structure, diagnostics)?;
-    let leaves = groups.leaves.iter().zip(names).zip(groups.structure.accessors()).enumerate();
-    let factor = |(index, ((&(group, ty), name), accessor)): (usize, ((&(Group, &syn::Type), String), String))| Factor {
-        group,
-        symbol: graph.symbol(&name, group.element_shape(), Role::Element(index), group.element_property()),
-        name,
-        side: Side::Left,
-        accessor,
-        span: spaces::span_of(ty),
-    };
-    Some(leaves.map(factor).collect())
+    let mut factors = Vec::new();
+    for (&(group, ty), (name, accessor)) in groups.leaves.iter().zip(names.into_iter().zip(groups.structure.accessors())) {
+        let role = Role::Element(factors.len());
+        let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
+        factors.push(Factor { group, symbol, name, side: Side::Left, accessor, span: spaces::span_of(ty) });
+    }
+    Some(factors)
 }
 
 fn configurations<'g>(
@@ -130,13 +129,11 @@ fn configurations<'g>(
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Configuration<'g>>> {
     let names = closures::leaf_names(pattern, &spaces.structure, diagnostics)?;
-    let leaves = spaces.leaves.iter().zip(names).zip(spaces.structure.accessors()).enumerate();
-    let leaf = |(index, (((leaf, _), name), accessor)): (usize, ((&(SpaceType, _), String), String))| Configuration {
-        symbol: graph.symbol(&name, leaf.shape, Role::Configuration(index), leaf.property()),
-        name,
-        space: leaf.space,
-        shape: leaf.shape,
-        accessor,
-    };
-    Some(leaves.map(leaf).collect())
+    let mut configurations = Vec::new();
+    for ((leaf, _), (name, accessor)) in spaces.leaves.iter().zip(names.into_iter().zip(spaces.structure.accessors())) {
+        let role = Role::Configuration(configurations.len());
+        let symbol = graph.symbol(&name, leaf.shape, role, leaf.property());
+        configurations.push(Configuration { symbol, name, space: leaf.space, shape: leaf.shape, accessor });
+    }
+    Some(configurations)
 }

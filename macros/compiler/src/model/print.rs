@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::fields::spell_scalar;
+use super::scalar::spell_scalar;
 use super::{Configuration, Discretization, Factor, Kinetic, Model, Order, Parameter, Promise, Side, Space};
 
 impl fmt::Display for Model<'_> {

@@ -47,13 +47,19 @@ impl<'g> Binding<'g> {
         match (pattern, value?) {
             (Pattern::Name(ident), value) => Some(vec![Binding { ident: ident.clone(), value: Some(value) }]),
             (Pattern::Tuple(patterns, _), Value::Tuple(parts)) if patterns.len() == parts.len() => {
-                let bindings: Option<Vec<Vec<Binding<'g>>>> =
-                    patterns.iter().zip(parts).map(|(pattern, part)| Binding::of(pattern, Some(part), diagnostics)).collect();
+                let bindings: Option<Vec<Vec<Binding<'g>>>> = patterns
+                    .iter()
+                    .zip(parts)
+                    .map(|(pattern, part)| Binding::of(pattern, Some(part), diagnostics))
+                    .collect();
                 bindings.map(|bindings| bindings.into_iter().flatten().collect())
             }
             (pattern, other) => {
                 let message = format!("`{}` does not fit {}", pattern.spell(), other.describe());
-                diagnostics.push(Diagnostic::new(pattern.place(), message));
+                diagnostics.push(
+                    Diagnostic::new(pattern.place(), message)
+                        .help("write as many names as the tuple has parts, or one for all"),
+                );
                 None
             }
         }
@@ -94,7 +100,8 @@ impl<'g> Scope<'g> {
             return;
         }
         if self.names[..self.arguments].iter().any(|(argument, _)| *argument == name) {
-            let error = Diagnostic::new(binding.ident.span(), format!("`{name}` is an argument and cannot be redefined"));
+            let error =
+                Diagnostic::new(binding.ident.span(), format!("`{name}` is an argument and cannot be redefined"));
             diagnostics.push(error.help("choose another name").note("a `let` may replace a `let`, and nothing else"));
             return;
         }

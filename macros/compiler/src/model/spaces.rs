@@ -67,8 +67,7 @@ fn read_product<'t, L: Copy>(
     let mut leaves = Vec::new();
     let structure = read_structure(ty, generics, leaf, &mut leaves, diagnostics)?;
     if leaves.len() > LEAVES {
-        let message = format!("`{}` has {} factors, more than {LEAVES}", spell_type(ty), leaves.len());
-        diagnostics.push(Diagnostic::new(Place::of(ty), message));
+        diagnostics.push(too_many(ty, leaves.len()));
         return None;
     }
     Some(Product { structure, leaves })
@@ -98,8 +97,7 @@ fn read_structure<'t, L: Copy>(
             let part = read_structure(&array.elem, generics, leaf, leaves, diagnostics)?;
             let element: Vec<(L, &'t Type)> = leaves[first..].to_vec();
             if length * element.len() > LEAVES {
-                let message = format!("`{}` has {} factors, more than {LEAVES}", spell_type(ty), length * element.len());
-                diagnostics.push(Diagnostic::new(Place::of(ty), message));
+                diagnostics.push(too_many(ty, length * element.len()));
                 return None;
             }
             (1..length).for_each(|_| leaves.extend(element.iter().copied()));
@@ -116,6 +114,11 @@ fn read_structure<'t, L: Copy>(
             }
         },
     }
+}
+
+fn too_many(ty: &Type, count: usize) -> Diagnostic {
+    Diagnostic::new(Place::of(ty), format!("`{}` has {count} factors, more than {LEAVES}", spell_type(ty)))
+        .note("the code of a step is written out at compile time and grows with the number of factors")
 }
 
 fn read_space<'t>(ty: &'t Type, generics: &Generics) -> Result<SpaceType<'t>, Diagnostic> {
@@ -147,7 +150,8 @@ fn read_space<'t>(ty: &'t Type, generics: &Generics) -> Result<SpaceType<'t>, Di
 }
 
 fn no_unit(ty: &Type) -> Diagnostic {
-    Diagnostic::new(Place::of(ty), format!("`{}` is no sphere", spell_type(ty))).help("write `Unit<Vector3>` for unit vectors")
+    Diagnostic::new(Place::of(ty), format!("`{}` is no sphere", spell_type(ty)))
+        .help("write `Unit<Vector3>` for unit vectors")
 }
 
 fn unknown_space(ty: &Type, name: &str) -> Diagnostic {
@@ -158,7 +162,9 @@ fn unknown_space(ty: &Type, name: &str) -> Diagnostic {
     }
     match suggestion(name).map(|group| format!("write `{group}`")).or_else(|| hint(name)) {
         Some(help) => error.help(help),
-        None => error.help("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)"),
+        None => {
+            error.help("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)")
+        }
     }
 }
 

@@ -115,7 +115,9 @@ pub(super) fn hint(name: &str) -> Option<String> {
         ("Rotation", Some(n)) => Some(format!("write `Matrix{n}`")),
         ("Point" | "Vec" | "DVec", Some(n)) => Some(format!("write `Vector{n}`")),
         ("Mat" | "DMat", Some(n)) => Some(format!("write `Matrix{n}`")),
-        ("Vec" | "DVector", None) => Some("write a vector of fixed size, like `Vector3<f64>` or `SVector<f64, 8>`".into()),
+        ("Vec" | "DVector", None) => {
+            Some("write a vector of fixed size, like `Vector3<f64>` or `SVector<f64, 8>`".into())
+        }
         ("DMatrix", None) => Some("write a matrix of fixed size, like `Matrix3<f64>` or `SMatrix<f64, 2, 8>`".into()),
         _ => None,
     }

@@ -83,7 +83,8 @@ fn find(key: &Ident) -> Option<Kind> {
 fn unknown_key(key: &Ident) -> Diagnostic {
     let name = key.to_string();
     let similar = nearest(&name, KEYS.iter().map(|&(name, _)| name));
-    let known: Vec<String> = KEYS.iter().filter(|(_, kind)| *kind != Kind::Later).map(|(name, _)| format!("`{name}`")).collect();
+    let known: Vec<String> =
+        KEYS.iter().filter(|(_, kind)| *kind != Kind::Later).map(|(name, _)| format!("`{name}`")).collect();
     let error = Diagnostic::new(key.span(), format!("unknown key `{name}`"));
     match similar {
         Some(similar) => error.help(format!("write `{similar}`")),

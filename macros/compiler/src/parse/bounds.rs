@@ -71,8 +71,8 @@ impl Run {
     /// Whether a token may start a level of the grammar that its end does not mark.
     fn opens(&self, token: &TokenTree) -> bool {
         const WORDS: [&str; 22] = [
-            "return", "break", "yield", "if", "else", "match", "while", "for", "loop", "unsafe", "async", "const", "move", "static",
-            "let", "as", "fn", "impl", "dyn", "mut", "ref", "box",
+            "return", "break", "yield", "if", "else", "match", "while", "for", "loop", "unsafe", "async", "const",
+            "move", "static", "let", "as", "fn", "impl", "dyn", "mut", "ref", "box",
         ];
         match token {
             TokenTree::Punct(punct) => match punct.as_char() {

@@ -5,8 +5,8 @@ use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{Expr, ExprClosure, Pat, ReturnType, Type};
 
-use super::spelling::{spell, spell_pattern};
 use super::spell_type;
+use super::spelling::{spell, spell_pattern};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 
 /// A closure of the declaration.
@@ -111,7 +111,7 @@ impl Pattern {
             }
             other => {
                 let message = format!("`{}` is neither a name nor a tuple of names", super::spelling::tokens(other));
-                diagnostics.push(Diagnostic::new(other.span(), message));
+                diagnostics.push(Diagnostic::new(other.span(), message).help("write a name, or `(a, b)` for a pair"));
                 None
             }
         }

@@ -63,7 +63,8 @@ pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 4] = [
 ];
 
 /// What may be emitted beside the integrator.
-pub(super) const EMITTED: [(&str, Option<Emit>); 2] = [("generated", Some(Emit { generated: true })), ("connection", None)];
+pub(super) const EMITTED: [(&str, Option<Emit>); 2] =
+    [("generated", Some(Emit { generated: true })), ("connection", None)];
 
 /// Orders by number.
 pub(super) const ORDERS: [(i64, Option<Order>); 5] =

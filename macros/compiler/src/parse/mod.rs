@@ -13,8 +13,8 @@ pub use closure::{Argument, Closure, Pattern};
 pub use declaration::{Declaration, Kinetic};
 pub use field::Field;
 pub use keys::{Dials, Located};
-pub use spelling::{spell, spell_type};
 pub(crate) use spelling::tokens as spell_tokens;
+pub use spelling::{spell, spell_type};
 
 use proc_macro2::TokenStream;
 use syn::{Data, DeriveInput, Fields};

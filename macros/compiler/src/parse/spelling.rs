@@ -10,7 +10,9 @@ use super::Pattern;
 pub fn spell(expr: &Expr) -> String {
     match expr {
         Expr::Array(array) => format!("[{}]", list(&array.elems)),
-        Expr::Binary(binary) => format!("{} {} {}", spell(&binary.left), tokens(&binary.op).trim(), spell(&binary.right)),
+        Expr::Binary(binary) => {
+            format!("{} {} {}", spell(&binary.left), tokens(&binary.op).trim(), spell(&binary.right))
+        }
         Expr::Block(block) => spell_block(&block.block),
         Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args)),
         Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),

@@ -24,14 +24,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (Member::Unnamed(index), Value::Tuple(parts)) => match parts.get(index.index as usize) {
                 Some(part) => Some(part.clone()),
                 None => {
-                    let message = format!("`{}` has {} parts and no `.{}`", spell(&field.base), parts.len(), index.index);
-                    self.error(Diagnostic::new(index.span, message))
+                    let message =
+                        format!("`{}` has {} parts and no `.{}`", spell(&field.base), parts.len(), index.index);
+                    self.error(Diagnostic::new(index.span, message).note("parts are counted from 0"))
                 }
             },
             (Member::Unnamed(index), other) => {
-                let message = format!("`{}` is {} and has no part `.{}`", spell(&field.base), other.describe(), index.index);
+                let message =
+                    format!("`{}` is {} and has no part `.{}`", spell(&field.base), other.describe(), index.index);
                 let error = Diagnostic::new(index.span, message);
-                let help = matches!(other, Value::Array(_)).then(|| format!("write `{}[{}]`", parenthesized(&field.base), index.index));
+                let help = matches!(other, Value::Array(_))
+                    .then(|| format!("write `{}[{}]`", parenthesized(&field.base), index.index));
                 self.error(error.maybe_help(help))
             }
             (Member::Named(name), base) => {
@@ -50,7 +53,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return value.clone();
         }
         let names: Vec<&str> = self.context.fields.names().collect();
-        let similar = nearest(&name, names.iter().copied()).map(|similar| format!("a field with a similar name exists: `{similar}`"));
+        let similar = nearest(&name, names.iter().copied())
+            .map(|similar| format!("a field with a similar name exists: `{similar}`"));
         let error = Diagnostic::new(span, format!("cannot find `{name}` in the {}", self.key));
         let listed: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
         let error = match (similar, listed.is_empty()) {
@@ -66,14 +70,19 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let shape = vector.shape();
         let Some(&(_, index)) = COMPONENTS.iter().find(|(component, _)| name == component) else {
             let error = Diagnostic::new(name.span(), format!("`{base}` has no component `{name}`"));
-            return self.error(error.note("components are `.x`, `.y`, `.z`, `.w`, `[i]` of a vector and `[(i, j)]` of a matrix"));
+            return self.error(
+                error.note("components are `.x`, `.y`, `.z`, `.w`, `[i]` of a vector and `[(i, j)]` of a matrix"),
+            );
         };
         if !shape.is_column() && shape.rows != 1 {
-            let error = Diagnostic::new(name.span(), format!("`{base}` is {shape}: `.{name}` is a component of a vector"));
-            return self.error(error.help(format!("write `{}[({index}, {index})]` for an entry", parenthesized(&field.base))));
+            let error =
+                Diagnostic::new(name.span(), format!("`{base}` is {shape}: `.{name}` is a component of a vector"));
+            return self
+                .error(error.help(format!("write `{}[({index}, {index})]` for an entry", parenthesized(&field.base))));
         }
         if index >= shape.len() {
-            return self.error(Diagnostic::new(name.span(), format!("`{base}` is {shape} and has no component `{name}`")));
+            let error = Diagnostic::new(name.span(), format!("`{base}` is {shape} and has no component `{name}`"));
+            return self.error(error.note("components are `.x`, `.y`, `.z`, `.w` in this order"));
         }
         self.entry(field, vector, index)
     }
@@ -90,7 +99,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let at = index;
         match base {
             Value::Array(parts) => {
-                let position = self.position(&index.index, parts.len(), &spell(&index.expr))?;
+                let position =
+                    self.position(&index.index, parts.len(), &format!("the entries of `{}`", spell(&index.expr)))?;
                 parts.get(position).cloned()
             }
             Value::Tuple(_) => {
@@ -109,12 +119,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
                         self.build(at, &[matrix], Growth::Sum, || matrix.entry(row, column)).map(Value::Matrix)
                     }
                     single if rows == 1 || columns == 1 => {
-                        let position = self.position(single, rows * columns, &base)?;
+                        let position = self.position(single, rows * columns, &format!("the components of `{base}`"))?;
                         self.entry(at, matrix, position)
                     }
                     single => {
-                        let error = Diagnostic::new(Place::of(single), format!("`{base}` is {rows}x{columns}: an entry has two indices"));
-                        self.error(error.help(format!("write `{}[(i, j)]`, counted from 0", parenthesized(&index.expr))))
+                        let error = Diagnostic::new(
+                            Place::of(single),
+                            format!("`{base}` is {rows}x{columns}: an entry has two indices"),
+                        );
+                        self.error(
+                            error.help(format!("write `{}[(i, j)]`, counted from 0", parenthesized(&index.expr))),
+                        )
                     }
                 }
             }
@@ -125,15 +140,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn position(&mut self, syntax: &Syntax, length: usize, of: &str) -> Option<usize> {
         let value = self.matrix(syntax)?;
         let Some(number) = value.as_number().filter(|number| number.is_integer()) else {
-            let error = Diagnostic::new(Place::of(syntax), format!("`{}` is no index: an index is a whole number known here", spell(syntax)));
+            let error = Diagnostic::new(
+                Place::of(syntax),
+                format!("`{}` is no index: an index is a whole number known here", spell(syntax)),
+            );
             return self.error(error);
         };
         match number.to_integer().to_string().parse::<usize>() {
             Ok(position) if position < length => Some(position),
             _ => {
-                let of = if of.starts_with("the ") { of.to_string() } else { format!("`{of}`") };
-                let message = format!("the index {number} is out of range: {of} goes from 0 to {}", length - 1);
-                self.error(Diagnostic::new(Place::of(syntax), message.replace("the rows", "rows").replace("the columns", "columns")))
+                let error = Diagnostic::new(Place::of(syntax), format!("the index {number} is out of range"));
+                self.error(error.note(format!("{of} are counted from 0 to {}", length - 1)))
             }
         }
     }

@@ -20,7 +20,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn statements(&mut self, block: &Block) -> Option<Value<'g>> {
         let (last, before) = match block.stmts.split_last() {
             Some(parts) => parts,
-            None => return self.error(Diagnostic::new(block.brace_token.span.join(), "this block is empty")),
+            None => {
+                return self.error(
+                    Diagnostic::new(block.brace_token.span.join(), "this block is empty")
+                        .help("end it with an expression"),
+                );
+            }
         };
         for statement in before {
             self.statement(statement);
@@ -34,7 +39,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             other => {
                 self.statement(other);
-                self.error(Diagnostic::new(Place::of(other), "the block ends without a value").help("end it with an expression"))
+                self.error(
+                    Diagnostic::new(Place::of(other), "the block ends without a value")
+                        .help("end it with an expression"),
+                )
             }
         }
     }
@@ -61,7 +69,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         };
         let value = match &local.init {
             Some(init) if init.diverge.is_none() => self.elaborate(&init.expr),
-            _ => self.error(Diagnostic::new(Place::of(local), "a `let` has a value and no `else`")),
+            _ => self.error(
+                Diagnostic::new(Place::of(local), "a `let` has a value and no `else`")
+                    .help("write `let name = value;`"),
+            ),
         };
         if let Some(pattern) = pattern {
             self.bind(&pattern, value, "a `let`");
@@ -73,7 +84,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let diagnostics = &mut self.context.diagnostics;
         match Binding::of(pattern, value, diagnostics) {
             Some(bindings) => bindings.into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics)),
-            None => Binding::unknown(pattern).into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics)),
+            None => {
+                Binding::unknown(pattern).into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics))
+            }
         }
     }
 }

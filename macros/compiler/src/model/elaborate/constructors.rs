@@ -26,6 +26,7 @@ enum Constructor {
 }
 
 /// Constructors with their number of arguments; `new` has one for each entry.
+#[rustfmt::skip]
 const CONSTRUCTORS: [(&str, usize, Constructor); 9] = [
     ("new",           0, Constructor::New),
     ("zeros",         0, Constructor::Zeros),
@@ -39,6 +40,7 @@ const CONSTRUCTORS: [(&str, usize, Constructor); 9] = [
 ];
 
 /// Constructors by other names.
+#[rustfmt::skip]
 const SYNONYMS: [(&str, &str); 6] = [
     ("x_axis", "x"), ("y_axis", "y"), ("z_axis", "z"), ("from_row_slice", "new"), ("zero", "zeros"), ("from_vec", "new"),
 ];
@@ -99,8 +101,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.entries(call, method, shape, call.args.iter().collect());
         }
         if call.args.len() != arity {
-            let message = format!("`{}` has {arity} arguments, not {}", spell(&call.func), call.args.len());
-            return self.error(Diagnostic::new(method.span(), message));
+            let plural = if arity == 1 { "" } else { "s" };
+            let message = format!("`{}` has {arity} argument{plural}, not {}", spell(&call.func), call.args.len());
+            let help = format!("write `{}({})`", spell(&call.func), if arity == 0 { "" } else { "…" });
+            return self.error(Diagnostic::new(method.span(), message).help(help));
         }
         let graph = self.graph();
         match constructor {
@@ -109,27 +113,38 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Constructor::Axis(index) if shape.is_column() && index < shape.rows => {
                 Some(Value::Matrix(graph.unit(shape, index, 0)))
             }
-            Constructor::FromDiagonal if shape.is_square() => self.from_diagonal(call, shape),
-            Constructor::FromColumns => self.from_parts(call, shape, Shape::new(shape.rows, 1), shape.columns),
-            Constructor::FromRows => self.from_parts(call, shape, Shape::new(1, shape.columns), shape.rows),
+            Constructor::FromDiagonal if shape.is_square() => self.diagonal(call, shape),
+            Constructor::FromColumns => self.joined(call, shape, Shape::new(shape.rows, 1), shape.columns),
+            Constructor::FromRows => self.joined(call, shape, Shape::new(1, shape.columns), shape.rows),
             _ => {
-                let error = Diagnostic::new(method.span(), format!("`{}` does not exist: the type is {shape}", spell(&call.func)));
-                self.error(error)
+                let error = Diagnostic::new(
+                    method.span(),
+                    format!("`{}` does not exist: the type is {shape}", spell(&call.func)),
+                );
+                self.error(
+                    error.note("`identity` and `from_diagonal` are of square matrices, `x`, `y` and `z` of vectors"),
+                )
             }
         }
     }
 
-    fn from_diagonal(&mut self, call: &ExprCall, shape: Shape) -> Option<Value<'g>> {
+    fn diagonal(&mut self, call: &ExprCall, shape: Shape) -> Option<Value<'g>> {
         let diagonal = self.matrix(&call.args[0])?;
         if diagonal.shape() != Shape::vector(shape.rows) {
-            let message = format!("`{}` is {}, but the diagonal is {}x1", spell(strip(&call.args[0])), diagonal.shape(), shape.rows);
-            return self.error(Diagnostic::new(Place::of(&call.args[0]), message));
+            let message = format!(
+                "`{}` is {}, but the diagonal is {}x1",
+                spell(strip(&call.args[0])),
+                diagonal.shape(),
+                shape.rows
+            );
+            let help = format!("write `{}(&vector![…])` with {} entries", spell(&call.func), shape.rows);
+            return self.error(Diagnostic::new(Place::of(&call.args[0]), message).help(help));
         }
         self.build(call, &[diagonal], Growth::Sum, || diagonal.diagonal_matrix()).map(Value::Matrix)
     }
 
     /// A matrix from its columns or rows.
-    fn from_parts(&mut self, call: &ExprCall, shape: Shape, part: Shape, count: usize) -> Option<Value<'g>> {
+    fn joined(&mut self, call: &ExprCall, shape: Shape, part: Shape, count: usize) -> Option<Value<'g>> {
         let Value::Array(parts) = self.elaborate(&call.args[0])? else {
             let error = Diagnostic::new(Place::of(&call.args[0]), format!("`{}` takes an array", spell(&call.func)));
             return self.error(error.help(format!("write `{}(&[a, b])`", spell(&call.func))));
@@ -138,13 +153,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
             parts.iter().map(|value| value.matrix().filter(|matrix| matrix.shape() == part)).collect();
         match matrices {
             Some(matrices) if matrices.len() == count => {
-                let entry = |(i, j): (usize, usize)| if part.columns == shape.columns { matrices[i].entry(0, j) } else { matrices[j].entry(i, 0) };
+                let entry = |(i, j): (usize, usize)| {
+                    if part.columns == shape.columns { matrices[i].entry(0, j) } else { matrices[j].entry(i, 0) }
+                };
                 let entries = shape.positions().map(entry).collect();
                 self.stack(call, shape, entries)
             }
             _ => {
                 let message = format!("`{}` takes {count} parts, each {part}", spell(&call.func));
-                self.error(Diagnostic::new(Place::of(&call.args[0]), message))
+                let help = format!("write `{}(&[…])` with {count} of them", spell(&call.func));
+                self.error(Diagnostic::new(Place::of(&call.args[0]), message).help(help))
             }
         }
     }
@@ -153,14 +171,15 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn entries(&mut self, at: &ExprCall, method: &Ident, shape: Shape, entries: Vec<&Syntax>) -> Option<Value<'g>> {
         if entries.len() != shape.len() {
             let message = format!("`{}` has {} entries, not {}", spell(&at.func), shape.len(), entries.len());
-            return self.error(Diagnostic::new(method.span(), message));
+            return self.error(Diagnostic::new(method.span(), message).note("entries are given row by row"));
         }
         let found: Vec<Option<Expr<'g>>> = entries.into_iter().map(|entry| self.scalar(entry)).collect();
         let found: Vec<Expr<'g>> = found.into_iter().collect::<Option<_>>()?;
         self.stack(at, shape, found)
     }
 
-    fn stack(&mut self, at: &dyn quote::ToTokens, shape: Shape, entries: Vec<Expr<'g>>) -> Option<Value<'g>> {
+    /// A matrix of these scalars.
+    pub(super) fn stack(&mut self, at: &dyn quote::ToTokens, shape: Shape, entries: Vec<Expr<'g>>) -> Option<Value<'g>> {
         let graph = self.graph();
         self.build(at, &entries.clone(), Growth::Product, || graph.stack(shape, entries)).map(Value::Matrix)
     }
@@ -182,66 +201,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if path.path.segments.iter().any(|segment| segment.ident == "Quaternion") {
             return self.error(Diagnostic::later(Place::of(&call.func), "a quaternion"));
         }
-        let error = Diagnostic::new(Place::of(&call.func), format!("the function `{}` is not known in the {}", spell(&call.func), self.key));
+        let error = Diagnostic::new(
+            Place::of(&call.func),
+            format!("the function `{}` is not known in the {}", spell(&call.func), self.key),
+        );
         let method = super::tables::METHODS.iter().any(|(method, ..)| *method == name);
         self.error(match call.args.first() {
-            Some(first) if method => error.help(format!("write `{}.{name}()`", super::operators::parenthesized(strip(first)))),
+            Some(first) if method => {
+                error.help(format!("write `{}.{name}()`", super::operators::parenthesized(strip(first))))
+            }
             _ => error.help("write its formula here").note("a macro cannot look into functions"),
         })
     }
-
-    /// `vector![…]` and `matrix![…]`.
-    pub(super) fn macro_call(&mut self, written: &ExprMacro) -> Option<Value<'g>> {
-        self.macro_tokens(&written.mac)
-    }
-
-    pub(super) fn macro_tokens(&mut self, written: &Macro) -> Option<Value<'g>> {
-        let name = written.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-        match name.as_str() {
-            "vector" => self.rows(written, true),
-            "matrix" => self.rows(written, false),
-            _ => {
-                let error = Diagnostic::new(Place::of(&written.path), format!("unknown macro `{name}!` in the {}", self.key));
-                self.error(error.help("the macros are `vector![a, b, c]` and `matrix![a, b; c, d]`"))
-            }
-        }
-    }
-
-    fn rows(&mut self, written: &Macro, vector: bool) -> Option<Value<'g>> {
-        let rows = match read_rows(written.tokens.clone(), vector) {
-            Ok(rows) => rows,
-            Err(error) => return self.error(error.into()),
-        };
-        let columns = rows.first().map_or(0, Vec::len);
-        if columns == 0 || rows.iter().any(|row| row.len() != columns) || rows.len().max(columns) > LARGEST {
-            let error = Diagnostic::new(Place::of(written), "the rows have no common length between 1 and 64");
-            return self.error(error);
-        }
-        let shape = if vector { Shape::vector(columns) } else { Shape::new(rows.len(), columns) };
-        let found: Vec<Option<Expr<'g>>> = rows.iter().flatten().map(|entry| self.scalar(entry)).collect();
-        let found: Vec<Expr<'g>> = found.into_iter().collect::<Option<_>>()?;
-        self.stack(written, shape, found)
-    }
-}
-
-/// Rows separated by semicolons, entries by commas.
-fn read_rows(tokens: TokenStream, single: bool) -> syn::Result<Vec<Vec<Syntax>>> {
-    let parser = |stream: ParseStream| {
-        let mut rows = vec![Vec::new()];
-        while !stream.is_empty() {
-            let row: &mut Vec<Syntax> = rows.last_mut().ok_or_else(|| stream.error("a row"))?;
-            row.push(stream.parse()?);
-            match single || !stream.peek(Token![;]) {
-                true if stream.is_empty() => {}
-                true => drop(stream.parse::<Token![,]>()?),
-                false => {
-                    stream.parse::<Token![;]>()?;
-                    rows.push(Vec::new());
-                }
-            }
-        }
-        rows.retain(|row| !row.is_empty());
-        Ok(rows)
-    };
-    parser.parse2(tokens)
 }

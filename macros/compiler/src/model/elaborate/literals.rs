@@ -18,19 +18,20 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Lit::Float(number) => (number.base10_digits(), number.suffix()),
             other => {
                 let error = Diagnostic::new(Place::of(other), "the only literals are numbers");
-                return self.error(error);
+                return self.error(error.help("remove it"));
             }
         };
         if !suffix.is_empty() {
             let error = Diagnostic::new(Place::of(literal), format!("the suffix `{suffix}` has no meaning here"));
             let help = format!("write `{}`", digits);
-            return self.error(error.help(help).note("numbers are exact; the scalar of the system is that of its fields"));
+            return self
+                .error(error.help(help).note("numbers are exact; the scalar of the system is that of its fields"));
         }
         match decimal(digits) {
             Some(value) => Some(Value::Matrix(self.graph().number(value))),
             None => {
                 let error = Diagnostic::new(Place::of(literal), "this number is beyond the range of `f64`");
-                self.error(error)
+                self.error(error.help("choose units in which it is smaller"))
             }
         }
     }

@@ -4,9 +4,13 @@ mod access;
 mod block;
 mod constructors;
 mod literals;
+mod macros;
 mod methods;
+mod mismatch;
 mod names;
 mod operators;
+mod parts;
+mod powers;
 mod refused;
 mod sequences;
 mod tables;
@@ -19,10 +23,10 @@ use clebsch_symbolic::{Expr, Graph, Shape};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
-use super::scope::Scope;
-use super::fields::Fields;
-use super::value::Value;
 use super::Constant;
+use super::fields::Fields;
+use super::scope::Scope;
+use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::spell;
 
@@ -97,7 +101,11 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             // one message is enough
             let first = self.work == WORK + 1;
             let message = format!("the {} has more than {WORK} operations", self.key);
-            return if first { self.error(Diagnostic::new(Place::of(syntax), message)) } else { None };
+            return match first {
+                true => self
+                    .error(Diagnostic::new(Place::of(syntax), message).note("ranges are written out at compile time")),
+                false => None,
+            };
         }
         if self.depth == DEPTH {
             let message = format!("more than {DEPTH} operations inside each other");
@@ -168,7 +176,9 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             return Some(expr);
         }
         let message = format!("`{}` is {}, where a scalar is needed", spell(syntax), expr.shape());
-        self.error(Diagnostic::new(Place::of(syntax), message))
+        let entry = if expr.shape().is_column() { "[0]" } else { "[(0, 0)]" };
+        let help = format!("take an entry, as in `{}{entry}`", operators::parenthesized(syntax));
+        self.error(Diagnostic::new(Place::of(syntax), message).help(help))
     }
 
     fn size(&self, expr: Expr<'g>) -> Size {

@@ -4,8 +4,8 @@ use clebsch_symbolic::{Property, Role, Shape};
 use syn::ext::IdentExt;
 use syn::{ExprPath, Ident, Path};
 
-use super::super::scope::Missing;
 use super::super::Constant;
+use super::super::scope::Missing;
 use super::super::value::Value;
 use super::Elaborator;
 use crate::diagnostic::{Diagnostic, Place, nearest};
@@ -14,7 +14,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
     pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
         if path.qself.is_some() {
-            return self.error(Diagnostic::new(Place::of(path), "a type in angle brackets has no meaning here"));
+            return self.error(
+                Diagnostic::new(Place::of(path), "a type in angle brackets has no meaning here")
+                    .help("write the path of a constant, or a field"),
+            );
         }
         match path.path.get_ident() {
             Some(ident) => self.name(ident),
@@ -46,7 +49,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn constant(&mut self, path: &Path) -> Option<Value<'g>> {
         if path.segments.iter().any(|segment| !segment.arguments.is_empty()) {
             let error = Diagnostic::new(Place::of(path), "a constant has no generic arguments");
-            return self.error(error);
+            return self.error(error.help("write the path of a scalar constant"));
         }
         let known = self.context.constants.iter().position(|constant| constant.path == *path);
         let index = known.unwrap_or(self.context.constants.len());

@@ -4,6 +4,7 @@ use clebsch_symbolic::{Expr, Rational, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
 use super::super::value::Value;
+use super::mismatch::{no_product, unequal_shapes};
 use super::{Elaborator, Growth};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::spell;
@@ -63,7 +64,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn refused_operator(&mut self, operator: &BinOp) -> Option<Value<'g>> {
         let text = crate::parse::spell_tokens(operator);
-        let error = Diagnostic::new(Place::of(operator), format!("the operator `{}` has no meaning in the {}", text.trim(), self.key));
+        let error = Diagnostic::new(
+            Place::of(operator),
+            format!("the operator `{}` has no meaning in the {}", text.trim(), self.key),
+        );
         self.error(match operator {
             BinOp::Eq(_) | BinOp::Le(_) | BinOp::Ge(_) | BinOp::Lt(_) | BinOp::Gt(_) | BinOp::Ne(_) => {
                 error.note("an equation or an inequality stands only where a key asks for one")
@@ -121,9 +125,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let error = match shape.is_scalar() {
             true => Diagnostic::new(Place::of(other), format!("`I` is an identity matrix, but `{text}` is a scalar"))
                 .help("write `1` for the number, or multiply the scalar by `I`"),
-            false => Diagnostic::new(Place::of(other), format!("`I` is square, but `{text}` is {shape}: they cannot be added"))
-                .help("leave `I` out")
-                .note("the identity of a group of translations is the zero vector"),
+            false => Diagnostic::new(
+                Place::of(other),
+                format!("`I` is square, but `{text}` is {shape}: they cannot be added"),
+            )
+            .help("leave `I` out")
+            .note("the identity of a group of translations is the zero vector"),
         };
         self.error(error)
     }
@@ -156,16 +163,24 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let text = spell(&link.right);
             let message = format!("`{text}` is {}: only scalars divide", divisor.shape());
             let error = Diagnostic::new(Place::of(&link.right), message);
-            let help = divisor.shape().is_square().then(|| format!("multiply by `{}.inverse()`", parenthesized(&link.right)));
-            return self.error(error.maybe_help(help));
+            let help =
+                divisor.shape().is_square().then(|| format!("multiply by `{}.inverse()`", parenthesized(&link.right)));
+            return self.error(match help {
+                Some(help) => error.help(help),
+                None => error.note("a quotient is a product with a reciprocal, which only scalars have"),
+            });
         }
         if divisor.is_zero() {
             let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-            return self.error(Diagnostic::new(Place::of(&link.right), message));
+            return self.error(Diagnostic::new(Place::of(&link.right), message).note("it simplifies to 0"));
         }
         match left {
-            Value::Identity(scale) => self.build(at, &[scale, divisor], Growth::Sum, || scale / divisor).map(Value::Identity),
-            Value::Matrix(left) => self.build(at, &[left, divisor], Growth::Product, || left / divisor).map(Value::Matrix),
+            Value::Identity(scale) => {
+                self.build(at, &[scale, divisor], Growth::Sum, || scale / divisor).map(Value::Identity)
+            }
+            Value::Matrix(left) => {
+                self.build(at, &[left, divisor], Growth::Product, || left / divisor).map(Value::Matrix)
+            }
             // by construction: tuples and arrays were refused before
             _ => None,
         }
@@ -180,7 +195,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 Some(Value::Matrix(self.graph().number(left - floor * right)))
             }
             _ => {
-                let error = Diagnostic::new(Place::of(link), format!("`{}` is no remainder of whole numbers", spell_link(link)));
+                let error = Diagnostic::new(
+                    Place::of(link),
+                    format!("`{}` is no remainder of whole numbers", spell_link(link)),
+                );
                 self.error(error.note("`%` is for indices, as in `q[(i + 1) % 4]`"))
             }
         }
@@ -201,8 +219,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 self.error(error.help(format!("write `{}`", spell(&unary.expr))).note("every value is copied"))
             }
             _ => {
-                let error = Diagnostic::new(Place::of(&unary.op), format!("this operator has no meaning in the {}", self.key));
-                self.error(error)
+                let error =
+                    Diagnostic::new(Place::of(&unary.op), format!("this operator has no meaning in the {}", self.key));
+                self.error(error.note("the only sign is `-`"))
             }
         }
     }
@@ -215,57 +234,9 @@ fn spell_link(link: &ExprBinary) -> String {
 /// The text of an operand, in parentheses where a method needs them.
 pub(super) fn parenthesized(syntax: &Syntax) -> String {
     match syntax {
-        Syntax::Binary(_) | Syntax::Unary(_) | Syntax::Reference(_) | Syntax::Range(_) => format!("({})", spell(syntax)),
+        Syntax::Binary(_) | Syntax::Unary(_) | Syntax::Reference(_) | Syntax::Range(_) => {
+            format!("({})", spell(syntax))
+        }
         _ => spell(syntax),
     }
-}
-
-fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr, minus: bool) -> Diagnostic {
-    let (a, b) = (spell(&link.left), spell(&link.right));
-    let verb = if minus { "subtracted" } else { "added" };
-    let side = |expr: Expr| if expr.shape().is_scalar() { "a scalar".to_string() } else { expr.shape().to_string() };
-    let message = format!("`{a}` is {} and `{b}` is {}: they cannot be {verb}", side(left), side(right));
-    let error = Diagnostic::new(Place::of(link), message);
-    let (matrix, scalar) = (left.shape(), right.shape());
-    if right.shape().is_column() && left.shape().columns == right.shape().rows && !right.shape().is_scalar() {
-        return error.help(format!("multiply the vector, as in `{}`", applied(&link.left, &b)));
-    }
-    if left.shape().is_column() && right.shape().columns == left.shape().rows && !left.shape().is_scalar() {
-        return error.help(format!("multiply the vector, as in `{}`", applied(&link.right, &a)));
-    }
-    if left.shape() == right.shape().transposed() {
-        return error.help(format!("transpose one of them, as in `{}.transpose()`", parenthesized(&link.right)));
-    }
-    match (matrix.is_square(), scalar.is_scalar()) {
-        (true, true) if !matrix.is_scalar() => error.help(format!("multiply the scalar by the identity, as in `{} * I`", parenthesized(&link.right))),
-        _ => error,
-    }
-}
-
-/// A matrix applied to a vector, products from the right: `A * (B * v)`.
-fn applied(matrix: &Syntax, vector: &str) -> String {
-    match matrix {
-        Syntax::Binary(product) if matches!(product.op, BinOp::Mul(_)) => {
-            format!("{} * ({} * {vector})", spell(&product.left), spell(&product.right))
-        }
-        Syntax::Paren(inner) => applied(&inner.expr, vector),
-        Syntax::Binary(_) => format!("({}) * {vector}", spell(matrix)),
-        _ => format!("{} * {vector}", spell(matrix)),
-    }
-}
-
-fn no_product(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
-    let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));
-    let message =
-        format!("`{}` is {} and `{}` is {}: they cannot be multiplied", spell(&link.left), left.shape(), spell(&link.right), right.shape());
-    let error = Diagnostic::new(Place::of(link), message);
-    let (l, r) = (left.shape(), right.shape());
-    match () {
-        () if l == r && l.is_column() => error.help(format!("write `{a}.dot(&{b})` for the scalar product, `{a}.cross(&{b})` for the cross product")),
-        () if l.is_column() && r.is_square() && r.rows == l.rows => error.help(format!("write the matrix first: `{b} * {a}`")),
-        () if l.rows == r.rows => error.help(format!("transpose the first: `{a}.transpose() * {b}`")),
-        () if l.columns == r.columns => error.help(format!("transpose the second: `{a} * {b}.transpose()`")),
-        () => error,
-    }
-    .note("a product needs as many columns on the left as there are rows on the right")
 }

@@ -8,6 +8,9 @@ use super::{Elaborator, Growth};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{Pattern, spell};
 
+/// The largest number in a range.
+const RANGE: usize = 1 << 32;
+
 impl<'g> Elaborator<'_, '_, 'g> {
     /// `[a, b]`.
     pub(super) fn array(&mut self, array: &ExprArray) -> Option<Value<'g>> {
@@ -28,7 +31,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `[a; 3]`.
     pub(super) fn repeat(&mut self, repeat: &ExprRepeat) -> Option<Value<'g>> {
         let value = self.elaborate(&repeat.expr);
-        let length = self.position(&repeat.len, ENTRIES + 1, "a length")?;
+        let length = self.position(&repeat.len, ENTRIES + 1, "lengths")?;
         Some(Value::Array(vec![value?; length]))
     }
 
@@ -38,13 +41,18 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let error = Diagnostic::new(Place::of(range), "a range has a start and an end");
             return self.error(error.help("write `0..3`"));
         };
-        let start = self.position(start, usize::MAX, "a range");
-        let end = self.position(end, usize::MAX, "a range");
+        let start = self.position(start, RANGE, "ends of ranges");
+        let end = self.position(end, RANGE, "ends of ranges");
         let (start, end) = start.zip(end)?;
         let end = if matches!(range.limits, RangeLimits::Closed(_)) { end.saturating_add(1) } else { end };
         if end.saturating_sub(start) > ENTRIES {
-            let message = format!("the range `{}` has {} terms, more than {ENTRIES}", spell(&Syntax::Range(range.clone())), end - start);
-            return self.error(Diagnostic::new(Place::of(range), message).note("ranges are written out at compile time"));
+            let message = format!(
+                "the range `{}` has {} terms, more than {ENTRIES}",
+                spell(&Syntax::Range(range.clone())),
+                end - start
+            );
+            return self
+                .error(Diagnostic::new(Place::of(range), message).note("ranges are written out at compile time"));
         }
         let graph = self.graph();
         Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).collect()))
@@ -94,8 +102,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return Some(Value::Matrix(self.graph().integer(0)));
         };
         if let Some(other) = terms.iter().find(|term| term.shape() != first.shape()) {
-            let message = format!("the terms of `{}` are {} and {}: they cannot be added", spell(&call.receiver), first.shape(), other.shape());
-            return self.error(Diagnostic::new(Place::of(&call.receiver), message));
+            let message = format!(
+                "the terms of `{}` are {} and {}: they cannot be added",
+                spell(&call.receiver),
+                first.shape(),
+                other.shape()
+            );
+            return self
+                .error(Diagnostic::new(Place::of(&call.receiver), message).note("only terms of one shape have a sum"));
         }
         let mut sum = first;
         for &term in &terms[1..] {

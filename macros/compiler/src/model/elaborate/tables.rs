@@ -49,6 +49,7 @@ pub(super) enum Special {
 }
 
 /// All methods with their number of arguments.
+#[rustfmt::skip]
 pub(super) const METHODS: [(&str, usize, Rule); 37] = [
     ("transpose",      0, Rule::Any(|a| a.transpose())),
     ("norm_squared",   0, Rule::Any(|a| a.norm_squared())),
@@ -90,6 +91,7 @@ pub(super) const METHODS: [(&str, usize, Rule); 37] = [
 ];
 
 /// Methods without a derivative everywhere: why, and what to write instead, with `…` for the receiver.
+#[rustfmt::skip]
 pub(super) const REFUSED: [(&str, &str, &str); 19] = [
     ("abs",        "has no derivative at 0",               "smooth it, `(… * … + self.width * self.width).sqrt()`"),
     ("signum",     "has no derivative at 0",               "smooth it, `(… / self.width).tanh()`"),
@@ -116,6 +118,7 @@ pub(super) const REFUSED: [(&str, &str, &str); 19] = [
 pub(super) const LATER: [&str; 5] = ["rotation", "translation", "scalar", "imag", "conjugate"];
 
 /// Methods by other names.
+#[rustfmt::skip]
 pub(super) const SYNONYMS: [(&str, &str); 24] = [
     ("magnitude", "norm()"),
     ("length", "norm()"),
@@ -144,5 +147,17 @@ pub(super) const SYNONYMS: [(&str, &str); 24] = [
 ];
 
 /// Methods that mathematics has no need of.
-pub(super) const NEEDLESS: [&str; 12] =
-    ["clone", "to_owned", "into", "into_inner", "as_ref", "iter", "collect", "unwrap", "clone_owned", "evaluate", "eval", "copied"];
+pub(super) const NEEDLESS: [&str; 12] = [
+    "clone",
+    "to_owned",
+    "into",
+    "into_inner",
+    "as_ref",
+    "iter",
+    "collect",
+    "unwrap",
+    "clone_owned",
+    "evaluate",
+    "eval",
+    "copied",
+];

@@ -1,0 +1,51 @@
+//! Where the formulas come from: typed citations with their full text.
+
+use std::fmt;
+
+/// A published source.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Reference {
+    /// The two theorems that every step is an instance of.
+    ClebschOptimalControl,
+    /// Discrete Legendre transforms and discrete Noether theorem.
+    DiscreteMechanics,
+    /// Hessians, momentum maps, coadjoint actions and their conventions.
+    MechanicsAndSymmetry,
+    /// The Cayley map as a chart, with the derivative used here.
+    LieGroupMethods,
+}
+
+impl fmt::Display for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Reference::ClebschOptimalControl => "N. Nordkvist, P. E. Crouch, A. M. Bloch, Discrete Clebsch Optimal Control, theorems 1 and 2",
+            Reference::DiscreteMechanics => {
+                "J. E. Marsden, M. West, Discrete mechanics and variational integrators, Acta Numerica 10 (2001) 357-514"
+            }
+            Reference::MechanicsAndSymmetry => "J. E. Marsden, T. S. Ratiu, Introduction to Mechanics and Symmetry, 2nd edition, Springer 1999",
+            Reference::LieGroupMethods => {
+                "A. Iserles, H. Z. Munthe-Kaas, S. P. Norsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000) 215-365"
+            }
+        })
+    }
+}
+
+/// The source of a formula, by its title.
+pub(super) fn of(title: &str) -> Option<Reference> {
+    let table = [
+        ("action", Reference::ClebschOptimalControl),
+        ("generator", Reference::MechanicsAndSymmetry),
+        ("momentum map", Reference::MechanicsAndSymmetry),
+        ("coadjoint action", Reference::MechanicsAndSymmetry),
+        ("cotangent lift", Reference::ClebschOptimalControl),
+        ("inertia", Reference::MechanicsAndSymmetry),
+        ("Hamiltonian", Reference::MechanicsAndSymmetry),
+        ("Legendre transform", Reference::DiscreteMechanics),
+        ("next Legendre transform", Reference::DiscreteMechanics),
+        ("kick", Reference::ClebschOptimalControl),
+        ("equation", Reference::LieGroupMethods),
+        ("Jacobian", Reference::LieGroupMethods),
+        ("momentum update", Reference::ClebschOptimalControl),
+    ];
+    table.iter().find(|(known, _)| *known == title).map(|(_, reference)| *reference)
+}
