@@ -1,6 +1,6 @@
 //! Where configurations and momenta lie: defects of rotations and directions, and sums that every system needs.
 
-use crate::{Scalar, Space};
+use crate::{Error, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The largest entry of |RᵀR − I|; +∞ for a reflection, whose determinant is negative.
@@ -78,9 +78,25 @@ pub fn from_increment<T: Scalar, const N: usize>(d: &SMatrix<T, N, N>) -> SMatri
     element
 }
 
+/// Whether a step whose angle θ has this sin²θ exists: below one, it does.
+///
+/// # Errors
+/// [`Error::Unsolvable`] with 1/|sin θ|, the fraction of the momentum for which it would; [`Error::NotFinite`].
+#[inline]
+pub fn check_sine_squared<T: Scalar>(sine_squared: T) -> Result<(), Error> {
+    if sine_squared < T::one() {
+        return Ok(());
+    }
+    if !sine_squared.is_finite() {
+        return Err(Error::NotFinite { name: "momentum" });
+    }
+    Err(Error::Unsolvable { solvable_fraction: sine_squared.sqrt().recip().to_f64(), step_size: None })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{kinetic_energy, length_defect, orthogonality_defect};
+    use super::{check_sine_squared, kinetic_energy, length_defect, orthogonality_defect};
+    use crate::Error;
     use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
     #[test]
@@ -89,6 +105,13 @@ mod tests {
         assert_eq!(orthogonality_defect(&rotation), 0.0);
         assert_eq!(orthogonality_defect(&-rotation), f64::INFINITY);
         assert_eq!(orthogonality_defect(&(rotation * 2.0)), 3.0);
+    }
+
+    #[test]
+    fn steps_beyond_a_quarter_turn_say_by_how_much() {
+        assert_eq!(check_sine_squared(0.99), Ok(()));
+        assert_eq!(check_sine_squared(4.0), Err(Error::Unsolvable { solvable_fraction: 0.5, step_size: None }));
+        assert_eq!(check_sine_squared(f64::NAN), Err(Error::NotFinite { name: "momentum" }));
     }
 
     #[test]

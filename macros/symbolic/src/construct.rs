@@ -31,7 +31,11 @@ impl<'g> Expr<'g> {
         match &*self.node() {
             Node::Sum(_) => self.linear(self.shape().transposed(), |plain| {
                 let word = plain.factor().word;
-                word.iter().rev().map(|&letter| graph.expr(letter).transpose_letter()).reduce(Expr::product).unwrap_or(plain)
+                word.iter()
+                    .rev()
+                    .map(|&letter| graph.expr(letter).transpose_letter())
+                    .reduce(Expr::product)
+                    .unwrap_or(plain)
             }),
             _ => self.transpose_letter(),
         }
@@ -131,7 +135,8 @@ impl<'g> Expr<'g> {
             false => {
                 let Term { coefficient, scalars, word } = self.factor();
                 let scale = graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]);
-                let plain = graph.collect(self.shape(), [Term { coefficient: Rational::one(), scalars: Vec::new(), word }]);
+                let plain =
+                    graph.collect(self.shape(), [Term { coefficient: Rational::one(), scalars: Vec::new(), word }]);
                 let value = match plain.is_identity() {
                     true => graph.integer(1),
                     false => self.atom_of(Node::Determinant(plain.id), Shape::scalar()),
@@ -280,7 +285,10 @@ impl<'g> Expr<'g> {
 
     /// The block of the given shape whose first entry is (row, column).
     pub fn block(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
-        assert!(row + shape.rows <= self.shape().rows && column + shape.columns <= self.shape().columns, "a block of `{self}`");
+        assert!(
+            row + shape.rows <= self.shape().rows && column + shape.columns <= self.shape().columns,
+            "a block of `{self}`"
+        );
         if shape == self.shape() {
             return self;
         }
@@ -295,6 +303,19 @@ impl<'g> Expr<'g> {
             Node::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
             Node::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
             Node::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
+            Node::Embed(inner, r, c) => {
+                let given = graph.shape(*inner);
+                let (last_row, last_column) = (row + shape.rows, column + shape.columns);
+                let inside =
+                    row >= *r && column >= *c && last_row <= r + given.rows && last_column <= c + given.columns;
+                let outside =
+                    last_row <= *r || last_column <= *c || row >= r + given.rows || column >= c + given.columns;
+                match (inside, outside) {
+                    (true, _) => graph.expr(*inner).block(row - r, column - c, shape),
+                    (_, true) => graph.zero(shape),
+                    _ => self.atom_of(Node::Block(self.id, row, column), shape),
+                }
+            }
             Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
                 let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
                 graph.literal(shape, shape.positions().map(one_at).collect())
@@ -305,7 +326,10 @@ impl<'g> Expr<'g> {
 
     /// The matrix of the given shape that is zero but for this block at (row, column).
     pub fn embed(self, shape: Shape, row: usize, column: usize) -> Expr<'g> {
-        assert!(row + self.shape().rows <= shape.rows && column + self.shape().columns <= shape.columns, "`{self}` in a {shape}");
+        assert!(
+            row + self.shape().rows <= shape.rows && column + self.shape().columns <= shape.columns,
+            "`{self}` in a {shape}"
+        );
         if shape == self.shape() {
             return self;
         }
@@ -343,7 +367,10 @@ impl<'g> Expr<'g> {
                 let powers: Vec<(Id, Exponent)> = scalars.iter().map(|&(id, e)| (id, e * exponent)).collect();
                 term.multiply_scalars(&powers);
             }
-            _ => match self.as_number().filter(|number| number.is_one() || (number.is_zero() && exponent > Exponent::zero())) {
+            _ => match self
+                .as_number()
+                .filter(|number| number.is_one() || (number.is_zero() && exponent > Exponent::zero()))
+            {
                 Some(number) => return graph.number(number),
                 None => term.multiply_scalars(&[(self.id, exponent)]),
             },
@@ -357,7 +384,9 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let value_at_zero = match function {
             Function::Cos | Function::Cosh | Function::Exp => Some(1),
-            Function::Sin | Function::Tan | Function::Asin | Function::Atan | Function::Sinh | Function::Tanh => Some(0),
+            Function::Sin | Function::Tan | Function::Asin | Function::Atan | Function::Sinh | Function::Tanh => {
+                Some(0)
+            }
             Function::Acos | Function::Ln => None,
         };
         match value_at_zero {
@@ -416,8 +445,10 @@ impl Graph {
 
     /// Of all rotations of a word and of its transpose, the first in the order of letters.
     fn least_trace(&self, word: Vec<Id>) -> Expr<'_> {
-        let rotations = |word: &[Id]| -> Vec<Vec<Id>> { (0..word.len()).map(|k| [&word[k..], &word[..k]].concat()).collect() };
-        let mut candidates: Vec<(Vec<Id>, Rational)> = rotations(&word).into_iter().map(|w| (w, Rational::one())).collect();
+        let rotations =
+            |word: &[Id]| -> Vec<Vec<Id>> { (0..word.len()).map(|k| [&word[k..], &word[..k]].concat()).collect() };
+        let mut candidates: Vec<(Vec<Id>, Rational)> =
+            rotations(&word).into_iter().map(|w| (w, Rational::one())).collect();
         if let Some((sign, reversed)) = self.transposed_word(&word) {
             candidates.extend(rotations(&reversed).into_iter().map(|w| (w, sign.clone())));
         }

@@ -108,7 +108,8 @@ impl<K: Number> Matrix<K> {
         if other.shape.is_scalar() {
             return self.scale(other.entries[0]);
         }
-        let product = |(i, j)| (0..self.shape.columns).fold(zero(), |sum: K, k| sum.add(self.at(i, k).multiply(other.at(k, j))));
+        let product =
+            |(i, j)| (0..self.shape.columns).fold(zero(), |sum: K, k| sum.add(self.at(i, k).multiply(other.at(k, j))));
         Matrix::from_fn(Shape::new(self.shape.rows, other.shape.columns), product)
     }
 
@@ -205,7 +206,8 @@ impl<'g> Expr<'g> {
             Node::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
             Node::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
                 let inner = &known[a];
-                let inside = i >= *row && j >= *column && i < row + inner.shape.rows && j < column + inner.shape.columns;
+                let inside =
+                    i >= *row && j >= *column && i < row + inner.shape.rows && j < column + inner.shape.columns;
                 if inside { inner.at(i - row, j - column) } else { zero() }
             }),
             Node::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
@@ -223,7 +225,9 @@ impl<'g> Expr<'g> {
             }
             Node::Components(algebra, a) => {
                 let component = |entries: Vec<(usize, usize, i64)>| {
-                    let products = entries.into_iter().map(|(i, j, value)| known[a].at(i, j).multiply(K::from_rational(&crate::integer(value))));
+                    let products = entries
+                        .into_iter()
+                        .map(|(i, j, value)| known[a].at(i, j).multiply(K::from_rational(&crate::integer(value))));
                     products.fold(zero(), K::add)
                 };
                 Matrix::new(shape, algebra.sparse_basis().into_iter().map(component).collect())
@@ -250,4 +254,3 @@ impl Graph {
         expr.evaluate(&mut |symbol| Matrix::from_fn(symbol.shape(), |_| f64::NAN))
     }
 }
-

@@ -79,8 +79,13 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let transposed: Vec<Expr<'g>> = word.iter().map(|&letter| graph.expr(letter).transpose()).collect();
         for position in 0..word.len() {
-            let left = transposed[..position].iter().fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| t * p)));
-            let right = transposed[position + 1..].iter().rev().fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| p * t)));
+            let left = transposed[..position]
+                .iter()
+                .fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| t * p)));
+            let right = transposed[position + 1..]
+                .iter()
+                .rev()
+                .fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| p * t)));
             let with_left = left.map_or(adjoint, |l| l * adjoint);
             add(word[position], right.map_or(with_left, |r| with_left * r));
         }
@@ -150,7 +155,10 @@ impl<'g> Expr<'g> {
     fn push_forward_word(self, word: &[Id], tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let moved = |position: usize| {
-            let letters = word.iter().enumerate().map(|(k, letter)| if k == position { tangents[letter] } else { graph.expr(*letter) });
+            let letters = word
+                .iter()
+                .enumerate()
+                .map(|(k, letter)| if k == position { tangents[letter] } else { graph.expr(*letter) });
             letters.reduce(|a, b| a * b)
         };
         // by construction: a word has at least one letter
@@ -177,4 +185,3 @@ impl Function {
         }
     }
 }
-

@@ -1,6 +1,5 @@
 //! Linear parts: the matrix of a map that is linear in a vector, and the powers of a scalar in a sum.
 
-
 use crate::node::{Exponent, Term};
 use crate::{Expr, Rational, Shape};
 
@@ -14,7 +13,8 @@ impl<'g> Expr<'g> {
         for term in expanded.terms() {
             let whole = graph.collect(self.shape(), [term.clone()]);
             let Term { mut word, coefficient, scalars } = term;
-            let trailing = word.pop() == Some(vector.id) && !word.iter().any(|&letter| graph.expr(letter).depends_on(vector));
+            let trailing =
+                word.pop() == Some(vector.id) && !word.iter().any(|&letter| graph.expr(letter).depends_on(vector));
             let free = !scalars.iter().any(|&(base, _)| graph.expr(base).depends_on(vector));
             sum = sum
                 + match trailing && free {
@@ -48,5 +48,4 @@ impl<'g> Expr<'g> {
         let least = self.expand().terms().iter().map(exponent).min()?;
         Some(Rational::new((*least.numer()).into(), (*least.denom()).into()))
     }
-
 }

@@ -56,18 +56,30 @@ impl Printer<'_> {
 
     fn node(&self, id: Id) -> (String, Binding) {
         let atom = |text: String| (text, Binding::Atom);
-        let call = |name: &str, inner: Id| (format!("{name}{}", self.parenthesized(&self.print(inner, Binding::Sum))), Binding::Atom);
+        let call = |name: &str, inner: Id| {
+            (format!("{name}{}", self.parenthesized(&self.print(inner, Binding::Sum))), Binding::Atom)
+        };
         let latex = self.style == Style::Latex;
         match &*self.graph.node(id) {
             Node::Symbol(symbol) => atom(self.symbol(&self.graph.symbol_data(*symbol).name)),
             Node::Pi => atom(if latex { "\\pi".into() } else { "π".into() }),
             Node::Sum(terms) => self.sum(terms, self.graph.shape(id)),
             Node::Literal(entries) => atom(self.rows(id, entries.iter().map(|entry| self.rational(entry)).collect())),
-            Node::Stack(entries) => atom(self.rows(id, entries.iter().map(|&entry| self.print(entry, Binding::Sum)).collect())),
+            Node::Stack(entries) => {
+                atom(self.rows(id, entries.iter().map(|&entry| self.print(entry, Binding::Sum)).collect()))
+            }
             Node::Word(word) => (self.word(word), Binding::Product),
-            Node::Trace(word) => atom(format!("{}{}", if latex { "\\operatorname{tr}" } else { "tr" }, self.parenthesized(&self.word(word)))),
-            Node::Transpose(a) => atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\mathsf T}" } else { "ᵀ" })),
-            Node::Inverse(a) => atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{-1}" } else { "⁻¹" })),
+            Node::Trace(word) => atom(format!(
+                "{}{}",
+                if latex { "\\operatorname{tr}" } else { "tr" },
+                self.parenthesized(&self.word(word))
+            )),
+            Node::Transpose(a) => {
+                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\mathsf T}" } else { "ᵀ" }))
+            }
+            Node::Inverse(a) => {
+                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{-1}" } else { "⁻¹" }))
+            }
             Node::Determinant(a) => call(if latex { "\\det" } else { "det" }, *a),
             Node::Function(function, a) => call(&format!("{}{}", if latex { "\\" } else { "" }, function.name()), *a),
             Node::Block(a, row, column) => atom(self.block(*a, *row, *column, self.graph.shape(id))),
@@ -78,7 +90,9 @@ impl Printer<'_> {
             }
             Node::DiagonalMatrix(a) => call(if latex { "\\operatorname{diag}" } else { "diag" }, *a),
             Node::Diagonal(a) => call(if latex { "\\operatorname{diagonal}" } else { "diagonal" }, *a),
-            Node::Wedge(_, a) => atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\wedge}" } else { "^" })),
+            Node::Wedge(_, a) => {
+                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\wedge}" } else { "^" }))
+            }
             Node::Components(_, a) => {
                 let inner = self.print(*a, Binding::Sum);
                 atom(if latex { format!("\\langle {inner}, E \\rangle") } else { format!("⟨{inner}, E⟩") })
@@ -105,7 +119,9 @@ impl Printer<'_> {
     }
 
     fn block(&self, inner: Id, row: usize, column: usize, shape: Shape) -> String {
-        let range = |start: usize, length: usize| if length == 1 { start.to_string() } else { format!("{start}..{}", start + length) };
+        let range = |start: usize, length: usize| {
+            if length == 1 { start.to_string() } else { format!("{start}..{}", start + length) }
+        };
         let vector = self.graph.shape(inner).is_column();
         let index = match vector {
             true => range(row, shape.rows),
@@ -137,7 +153,8 @@ impl Printer<'_> {
             };
             text += &self.term(term, shape);
         }
-        let binding = if terms.len() > 1 || terms[0].coefficient.is_negative() { Binding::Sum } else { Binding::Product };
+        let binding =
+            if terms.len() > 1 || terms[0].coefficient.is_negative() { Binding::Sum } else { Binding::Product };
         (self.minus(text), binding)
     }
 

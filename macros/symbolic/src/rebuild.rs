@@ -12,11 +12,21 @@ impl Node {
     pub(crate) fn children(&self) -> Vec<Id> {
         match self {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => Vec::new(),
-            Node::Sum(terms) => terms.iter().flat_map(|t| t.scalars.iter().map(|s| s.0).chain(t.word.iter().copied())).collect(),
+            Node::Sum(terms) => {
+                terms.iter().flat_map(|t| t.scalars.iter().map(|s| s.0).chain(t.word.iter().copied())).collect()
+            }
             Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) => ids.clone(),
             Node::Hadamard(a, b) => vec![*a, *b],
-            Node::Transpose(a) | Node::Inverse(a) | Node::Determinant(a) | Node::Function(_, a) | Node::Block(a, _, _) => vec![*a],
-            Node::Embed(a, _, _) | Node::DiagonalMatrix(a) | Node::Diagonal(a) | Node::Wedge(_, a) | Node::Components(_, a) => {
+            Node::Transpose(a)
+            | Node::Inverse(a)
+            | Node::Determinant(a)
+            | Node::Function(_, a)
+            | Node::Block(a, _, _) => vec![*a],
+            Node::Embed(a, _, _)
+            | Node::DiagonalMatrix(a)
+            | Node::Diagonal(a)
+            | Node::Wedge(_, a)
+            | Node::Components(_, a) => {
                 vec![*a]
             }
         }
@@ -75,7 +85,10 @@ impl<'g> Expr<'g> {
         match &*node {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => self,
             Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| {
-                let powers = term.scalars.iter().map(|(base, e)| images[base].power(Rational::new((*e.numer()).into(), (*e.denom()).into())));
+                let powers = term
+                    .scalars
+                    .iter()
+                    .map(|(base, e)| images[base].power(Rational::new((*e.numer()).into(), (*e.denom()).into())));
                 let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
                 let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
                 sum + scale * word
@@ -112,7 +125,9 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
             Node::Function(..) => self,
-            Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| sum + graph.expand_term(term, self.shape(), images)),
+            Node::Sum(terms) => terms
+                .iter()
+                .fold(graph.zero(self.shape()), |sum, term| sum + graph.expand_term(term, self.shape(), images)),
             Node::Word(word) => graph.expand_word(word, images, Shape::scalar()),
             Node::Trace(word) => {
                 let n = graph.shape(word[0]).rows;
@@ -127,7 +142,8 @@ impl Graph {
     fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
         let mut scale = self.number(term.coefficient.clone());
         for (base, exponent) in &term.scalars {
-            scale = self.distribute(scale, self.expanded_power(self.expr(*base), images[base], *exponent), Shape::scalar());
+            scale =
+                self.distribute(scale, self.expanded_power(self.expr(*base), images[base], *exponent), Shape::scalar());
         }
         let word = match term.word.is_empty() {
             true => self.identity(shape.rows),
@@ -140,7 +156,9 @@ impl Graph {
     /// must not become x² − 2xy + y², which cancels.
     fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
         match exponent.is_integer().then(|| exponent.to_integer().to_u32()).flatten() {
-            Some(count) if count <= 16 => (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar())),
+            Some(count) if count <= 16 => {
+                (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar()))
+            }
             _ => base.power(Rational::new((*exponent.numer()).into(), (*exponent.denom()).into())),
         }
     }

@@ -153,7 +153,8 @@ impl Graph {
         }
         let single = term.word.len() == 1 && term.scalars.is_empty();
         if single && let Node::Sum(terms) = &*self.node(term.word[0]) {
-            let scaled = terms.iter().map(|inner| Term { coefficient: &inner.coefficient * &term.coefficient, ..inner.clone() });
+            let scaled =
+                terms.iter().map(|inner| Term { coefficient: &inner.coefficient * &term.coefficient, ..inner.clone() });
             return self.collect(shape, scaled);
         }
         self.collect(shape, [term])
@@ -199,8 +200,12 @@ impl Graph {
             return Some(self.identity(self.shape(left).rows));
         }
         match (&*self.node(left), &*self.node(right)) {
-            (Node::Literal(a), Node::Literal(b)) => Some(self.multiply_literals(a, self.shape(left), b, self.shape(right))),
-            (Node::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => Some(self.integer(1)),
+            (Node::Literal(a), Node::Literal(b)) => {
+                Some(self.multiply_literals(a, self.shape(left), b, self.shape(right)))
+            }
+            (Node::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => {
+                Some(self.integer(1))
+            }
             _ => None,
         }
         .filter(|product| !product.shape().is_scalar() || product.as_number().is_none())
@@ -223,7 +228,9 @@ impl Graph {
         let mut segments = vec![Vec::new()];
         for letter in word {
             let starts_with_one = self.shape(letter).rows == 1;
-            if starts_with_one && segments.last().is_some_and(|segment| !segment.is_empty()) || starts_with_one && segments.len() == 1 {
+            if starts_with_one && segments.last().is_some_and(|segment| !segment.is_empty())
+                || starts_with_one && segments.len() == 1
+            {
                 segments.push(Vec::new());
             }
             let ends_with_one = self.shape(letter).columns == 1;
@@ -256,7 +263,8 @@ impl Graph {
     }
 
     fn is_unit_square(&self, left: Id, right: Id) -> bool {
-        matches!(&*self.node(left), Node::Transpose(inner) if *inner == right) && self.has_property(right, Property::Unit)
+        matches!(&*self.node(left), Node::Transpose(inner) if *inner == right)
+            && self.has_property(right, Property::Unit)
     }
 
     /// The transposed letters in reverse order, with a sign; `None` if a letter's transpose is not plus or minus a letter.

@@ -89,7 +89,8 @@ fn at<'g>(scalar: Expr<'g>, f: Expr<'g>, a: Expr<'g>, e: f64) -> f64 {
     let base = |symbol: Expr<'g>| {
         Matrix::from_fn(symbol.shape(), |(i, j)| {
             let seed = symbol.as_symbol().map_or(0, |s| s.name.bytes().next().unwrap_or(0)) as f64;
-            let entry = |i: usize, j: usize| (seed * 1.7 + 2.3 * i as f64 + 3.1 * j as f64).sin() + (i == j) as u8 as f64;
+            let entry =
+                |i: usize, j: usize| (seed * 1.7 + 2.3 * i as f64 + 3.1 * j as f64).sin() + (i == j) as u8 as f64;
             let symmetric = symbol.as_symbol().is_some_and(|s| s.property == Property::Symmetric);
             if symmetric { entry(i, j) + entry(j, i) } else { entry(i, j) }
         })

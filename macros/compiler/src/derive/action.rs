@@ -33,7 +33,8 @@ pub(super) fn coadjoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Exp
 
 /// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
 pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
-    let inverses: Vec<_> = model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
+    let inverses: Vec<_> =
+        model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
     let images = model.action.iter().map(|image| image.substitute(&inverses));
     let pairing = images.zip(&symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
     // by construction: a configuration has at least one leaf
@@ -74,7 +75,9 @@ pub(crate) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>
             };
             let element: Vec<_> = symbols.algebra.iter().map(|other| (*other, direction(other))).collect();
             let images = generator.iter().map(|velocity| velocity.substitute(&element));
-            columns.push(images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect());
+            columns.push(
+                images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect(),
+            );
         }
     }
     columns

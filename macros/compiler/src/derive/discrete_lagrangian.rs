@@ -68,9 +68,12 @@ pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> Result<Discrete
     let kinetic = if couples(difference) { difference.expand() } else { difference };
     if let Some(leaf) = model.configurations.iter().find(|leaf| kinetic.depends_on(leaf.symbol)) {
         let written = &model.spans.kinetic;
-        let error = Diagnostic::new(written.place, format!("the cost couples `{}` and `{}`", leaf.name, model.factors[0].name))
-            .help("write a cost of the group element alone and put what depends on the configuration into the `potential`")
-            .note("costs that depend on configuration and group element together come with a later version of clebsch");
+        let error = Diagnostic::new(
+            written.place,
+            format!("the cost couples `{}` and `{}`", leaf.name, model.factors[0].name),
+        )
+        .help("write a cost of the group element alone and put what depends on the configuration into the `potential`")
+        .note("costs that depend on configuration and group element together come with a later version of clebsch");
         return Err(error.into());
     }
     let h = model.step_size;
@@ -127,4 +130,3 @@ pub(super) fn substeps<'g>(
     let halves = [*lagrangian, lagrangian.adjoint(model)];
     halves.iter().map(|part| (2, part.with_step(model.step_size, half))).collect()
 }
-

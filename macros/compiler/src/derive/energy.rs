@@ -22,7 +22,9 @@ pub(super) fn kinetic<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'
 fn along_exponential<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Vec<Expr<'g>> {
     let factors = model.factors.iter().zip(&symbols.algebra);
     let directions: Vec<_> = factors
-        .map(|(factor, xi)| (factor.symbol, factor.group.translate_left(factor.symbol, xi.wedge(factor.group.algebra()))))
+        .map(|(factor, xi)| {
+            (factor.symbol, factor.group.translate_left(factor.symbol, xi.wedge(factor.group.algebra())))
+        })
         .collect();
     let at_identity = identities(model);
     let mut derivative = cost;
@@ -39,9 +41,12 @@ fn check_rest<'g>(model: &Model<'g>, slope: Expr<'g>) -> Result<(), Diagnostics>
         return Ok(());
     }
     let f = &model.factors[0].name;
-    let error = Diagnostic::new(model.spans.kinetic.place, format!("the cost has a slope at `{f}` = I, so a body at rest would start to move"))
-        .help("use a cost with a minimum there, as in `(F - I).norm_squared() / (2 * h)`")
-        .note(format!("its derivative along exp(ε ξ) at the identity is {}", slope.expand()));
+    let error = Diagnostic::new(
+        model.spans.kinetic.place,
+        format!("the cost has a slope at `{f}` = I, so a body at rest would start to move"),
+    )
+    .help("use a cost with a minimum there, as in `(F - I).norm_squared() / (2 * h)`")
+    .note(format!("its derivative along exp(ε ξ) at the identity is {}", slope.expand()));
     Err(error.into())
 }
 
@@ -56,14 +61,20 @@ fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<(), Diagnost
     let f = &model.factors[0].name;
     let error = match power {
         Some(power) if power > 0 => error
-            .help(format!("divide by `{}`, as in `… / (2 * h)`", if power == 1 { "h".into() } else { format!("h.powi({power})") }))
+            .help(format!(
+                "divide by `{}`, as in `… / (2 * h)`",
+                if power == 1 { "h".into() } else { format!("h.powi({power})") }
+            ))
             .note(format!("with {f} = exp(h*xi) it is h^{} * …, so its Lagrangian vanishes as h goes to 0", power + 1)),
         Some(power) => error
             .help(format!("multiply by `{}`", if power == -1 { "h".into() } else { format!("h.powi({})", -power) }))
-            .note(format!("with {f} = exp(h*xi) it is h^{} * …, so its Lagrangian grows without bound as h goes to 0", power + 1)),
-        None => error
-            .help("divide a quadratic form of `F - I` by `2 * h`")
-            .note(format!("with {f} = exp(h*xi) its part of second order in xi is h * ({energy}), which still depends on h")),
+            .note(format!(
+                "with {f} = exp(h*xi) it is h^{} * …, so its Lagrangian grows without bound as h goes to 0",
+                power + 1
+            )),
+        None => error.help("divide a quadratic form of `F - I` by `2 * h`").note(format!(
+            "with {f} = exp(h*xi) its part of second order in xi is h * ({energy}), which still depends on h"
+        )),
     };
     Err(error.into())
 }
@@ -71,14 +82,16 @@ fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<(), Diagnost
 fn check_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> Result<(), Diagnostics> {
     let survives = |order: i64| {
         let derivative = derivatives[order as usize - 1];
-        !identity::vanishes(derivative) && derivative.least_exponent(model.step_size).is_some_and(|least| least <= integer(1 - order))
+        !identity::vanishes(derivative)
+            && derivative.least_exponent(model.step_size).is_some_and(|least| least <= integer(1 - order))
     };
     if !(survives(3) || survives(4)) {
         return Ok(());
     }
-    let error = Diagnostic::new(model.spans.kinetic.place, "the kinetic energy of this cost is not quadratic in the velocity")
-        .help("use a quadratic form of `F - I`, divided by `2 * h`")
-        .note("costs whose Lagrangian is not quadratic come with a later version of clebsch");
+    let error =
+        Diagnostic::new(model.spans.kinetic.place, "the kinetic energy of this cost is not quadratic in the velocity")
+            .help("use a quadratic form of `F - I`, divided by `2 * h`")
+            .note("costs whose Lagrangian is not quadratic come with a later version of clebsch");
     Err(error.into())
 }
 
@@ -171,9 +184,12 @@ pub(super) fn potential<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'
     match energy == scaled || identity::equal(&[energy], &[scaled]) {
         true => Ok(if energy.depends_on(h) { energy.substitute(&[(h, model.graph.integer(1))]) } else { energy }),
         false => {
-            let error = Diagnostic::new(model.spans.kinetic.place, "the part of the cost that depends on the configuration does not scale like an action")
-                .help("multiply a potential energy by `h`, as in `- h * self.weight * q.z`")
-                .note(format!("divided by h it is {}, which depends on h", -energy));
+            let error = Diagnostic::new(
+                model.spans.kinetic.place,
+                "the part of the cost that depends on the configuration does not scale like an action",
+            )
+            .help("multiply a potential energy by `h`, as in `- h * self.weight * q.z`")
+            .note(format!("divided by h it is {}, which depends on h", -energy));
             Err(error.into())
         }
     }

@@ -1,6 +1,6 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F K, denominators cleared, coupled factors together.
 
-use clebsch_symbolic::{Chart, Expr, Shape, identity};
+use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::Symbols;
 use crate::model::{Model, Side};
@@ -17,6 +17,18 @@ pub struct Equation<'g> {
     pub cleared: Vec<bool>,
     /// How it is solved.
     pub solution: Solution,
+    /// The closed form, where there is one.
+    pub closed_form: Option<ClosedForm<'g>>,
+}
+
+/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
+/// in one plane has sin θ = |a| and tan(θ/2) = |x|.
+#[derive(Copy, Clone)]
+pub struct ClosedForm<'g> {
+    /// x(μ).
+    pub coordinates: Expr<'g>,
+    /// |a|², which has to be below one.
+    pub sine_squared: Expr<'g>,
 }
 
 /// How an equation is solved.
@@ -24,6 +36,8 @@ pub struct Equation<'g> {
 pub enum Solution {
     /// The residual is affine: the predictor x = s·h·Σ⁻¹μ solves it.
     Explicit,
+    /// By a formula with one square root.
+    ClosedForm,
     /// By Newton's method from the predictor.
     Newton,
 }
@@ -49,11 +63,49 @@ pub(super) fn agreement<'g>(model: &Model<'g>, before: &[Expr<'g>], after: &[Exp
     (0..model.factors.len()).map(same).collect()
 }
 
+/// What an equation is derived from.
+pub(super) struct Sources<'a, 'g> {
+    pub(super) model: &'a Model<'g>,
+    pub(super) symbols: &'a Symbols<'g>,
+    pub(super) momentum_map: &'a [Expr<'g>],
+    pub(super) inertia: Expr<'g>,
+    /// The number of substeps in a step.
+    pub(super) parts: i64,
+}
+
 /// The equations of all factors, coupled ones in one.
-pub(super) fn equations<'g>(model: &Model<'g>, symbols: &Symbols<'g>, before: &[Expr<'g>]) -> Vec<Equation<'g>> {
-    let residuals: Vec<(Expr<'g>, bool)> = (0..model.factors.len()).map(|k| residual(model, symbols, before, k)).collect();
+pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, before: &[Expr<'g>]) -> Vec<Equation<'g>> {
+    let (model, symbols) = (sources.model, sources.symbols);
+    let residuals: Vec<(Expr<'g>, bool)> =
+        (0..model.factors.len()).map(|k| residual(model, symbols, before, k)).collect();
     let depends = |k: usize, j: usize| residuals[k].0.depends_on(symbols.charts[j]);
-    groups(model.factors.len(), depends).into_iter().map(|group| equation(model, symbols, &residuals, group)).collect()
+    let groups = groups(model.factors.len(), depends);
+    groups.into_iter().map(|group| equation(sources, before, &residuals, group)).collect()
+}
+
+/// The closed form for a factor in SO(n) with kinetic energy ½κ|ξ|² whose momenta turn one plane: n ≤ 3, or spheres.
+fn closed_form<'g>(sources: &Sources<'_, 'g>, before: &[Expr<'g>], k: usize) -> Option<ClosedForm<'g>> {
+    let (model, mu) = (sources.model, sources.symbols.momenta[k]);
+    let factor = &model.factors[k];
+    let Group::SpecialOrthogonal(n) = factor.group else { return None };
+    let algebra = factor.group.algebra();
+    let offset: usize = model.factors[..k].iter().map(|factor| factor.group.dimension()).sum();
+    let kappa = sources.inertia.entry(offset, offset);
+    let step = model.step_size / sources.parts;
+    let isotropic = kappa * factor.symbol.components(algebra) / (2 * step);
+    if !identity::equal(&[before[k].components(algebra)], &[isotropic]) {
+        return None;
+    }
+    let momentum = sources.momentum_map[k];
+    let matrix = momentum.wedge(algebra);
+    let one_plane = || identity::vanishes(matrix * matrix * matrix + momentum.dot(momentum) * matrix);
+    if n > 3 && !one_plane() {
+        return None;
+    }
+    let sine = step * mu / kappa;
+    let sine_squared = sine.dot(sine);
+    let one = model.graph.integer(1);
+    Some(ClosedForm { coordinates: sine / (one + (one - sine_squared).sqrt()), sine_squared })
 }
 
 /// ρ_k(x) = A (T* ∂_F K − M) Aᵀ in components, and whether A is anything but the identity.
@@ -61,13 +113,15 @@ fn residual<'g>(model: &Model<'g>, symbols: &Symbols<'g>, before: &[Expr<'g>], k
     let factor = &model.factors[k];
     let algebra = factor.group.algebra();
     let charts = model.factors.iter().zip(&symbols.charts);
-    let elements: Vec<_> = charts.map(|(factor, x)| (factor.symbol, factor.group.chart().element(factor.group, *x))).collect();
+    let elements: Vec<_> =
+        charts.map(|(factor, x)| (factor.symbol, factor.group.chart().element(factor.group, *x))).collect();
     let momentum = factor.group.momentum_matrix(symbols.momenta[k]);
     let plain = before[k].substitute(&elements).expand();
-    let cleared = factor.group.chart().clearing(factor.group, symbols.charts[k], factor.side == Side::Left).map(|clearing| {
-        let congruent = |matrix: Expr<'g>| (clearing * matrix * clearing.transpose()).expand().components(algebra);
-        congruent(plain) - congruent(momentum)
-    });
+    let cleared =
+        factor.group.chart().clearing(factor.group, symbols.charts[k], factor.side == Side::Left).map(|clearing| {
+            let congruent = |matrix: Expr<'g>| (clearing * matrix * clearing.transpose()).expand().components(algebra);
+            congruent(plain) - congruent(momentum)
+        });
     let plain = plain.components(algebra).expand() - symbols.momenta[k];
     match cleared {
         Some(cleared) if plain.has_inverse() && !cleared.has_inverse() => (cleared, true),
@@ -91,11 +145,12 @@ fn groups(count: usize, depends: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize
 }
 
 fn equation<'g>(
-    model: &Model<'g>,
-    symbols: &Symbols<'g>,
+    sources: &Sources<'_, 'g>,
+    before: &[Expr<'g>],
     residuals: &[(Expr<'g>, bool)],
     factors: Vec<usize>,
 ) -> Equation<'g> {
+    let (model, symbols) = (sources.model, sources.symbols);
     let dimension = factors.iter().map(|&k| model.factors[k].group.dimension()).sum();
     let shape = Shape::vector(dimension);
     let mut residual = model.graph.zero(shape);
@@ -106,9 +161,19 @@ fn equation<'g>(
     }
     let directions: Vec<_> = factors.iter().map(|&k| (symbols.charts[k], symbols.directions[k])).collect();
     let directional = residual.differential(&directions).expand();
-    let affine = !factors.iter().any(|&k| directional.depends_on(symbols.charts[k]) || directional.depends_on(symbols.momenta[k]));
+    let affine = !factors
+        .iter()
+        .any(|&k| directional.depends_on(symbols.charts[k]) || directional.depends_on(symbols.momenta[k]));
     let identity_charts = factors.iter().all(|&k| model.factors[k].group.chart() == Chart::Identity);
-    let solution = if affine && identity_charts { Solution::Explicit } else { Solution::Newton };
+    let closed_form = match factors.as_slice() {
+        [only] => closed_form(sources, before, *only),
+        _ => None,
+    };
+    let solution = match closed_form {
+        Some(_) => Solution::ClosedForm,
+        None if affine && identity_charts => Solution::Explicit,
+        None => Solution::Newton,
+    };
     let cleared = factors.iter().map(|&k| residuals[k].1).collect();
-    Equation { factors, residual, directional, cleared, solution }
+    Equation { factors, residual, directional, cleared, solution, closed_form }
 }

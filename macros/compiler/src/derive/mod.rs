@@ -19,7 +19,7 @@ use crate::model::Model;
 
 pub(crate) use action::generator_columns;
 pub use discrete_lagrangian::DiscreteLagrangian;
-pub use equation::{Equation, Solution};
+pub use equation::{ClosedForm, Equation, Solution};
 pub use print::Formula;
 pub use reference::Reference;
 pub use symbols::Symbols;
@@ -80,15 +80,18 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let kinetic_energy = energy::kinetic(&model, &symbols, cost)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost)?;
     let potential_energy = energy::potential(&model, &lagrangian)?;
+    let inertia = energy::inertia(&symbols, kinetic_energy);
+    let sources =
+        |parts| equation::Sources { model: &model, symbols: &symbols, momentum_map: &momentum_map, inertia, parts };
     let substeps = discrete_lagrangian::substeps(&model, &lagrangian)
         .into_iter()
-        .map(|(parts, lagrangian)| substep(&model, &symbols, &momentum_map, parts, lagrangian))
+        .map(|(parts, lagrangian)| substep(&sources(parts), lagrangian))
         .collect();
     Ok(Formulas {
         is_free: action::is_free(&model, &symbols, &generator),
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
-        inertia: energy::inertia(&symbols, kinetic_energy),
+        inertia,
         model,
         symbols,
         generator,
@@ -100,21 +103,16 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     })
 }
 
-fn substep<'g>(
-    model: &Model<'g>,
-    symbols: &Symbols<'g>,
-    momentum_map: &[Expr<'g>],
-    parts: i64,
-    lagrangian: DiscreteLagrangian<'g>,
-) -> Substep<'g> {
-    let impulse = |potential: Expr<'g>| action::impulse(model, symbols, momentum_map, potential);
+fn substep<'g>(sources: &equation::Sources<'_, 'g>, lagrangian: DiscreteLagrangian<'g>) -> Substep<'g> {
+    let model = sources.model;
+    let impulse = |potential: Expr<'g>| action::impulse(model, sources.symbols, sources.momentum_map, potential);
     let (before, after): (Vec<_>, Vec<_>) =
         (0..model.factors.len()).map(|k| equation::trivialisations(model, lagrangian.kinetic, k)).unzip();
     Substep {
-        parts,
+        parts: sources.parts,
         start: impulse(lagrangian.start),
         end: impulse(lagrangian.end),
-        equations: equation::equations(model, symbols, &before),
+        equations: equation::equations(sources, &before),
         unchanged: equation::agreement(model, &before, &after),
         lagrangian,
     }

@@ -64,7 +64,10 @@ impl<'g> Formulas<'g> {
 
     /// The letter of symbols that differ in their subscripts.
     fn letter(&self, symbols: &[Expr<'g>]) -> String {
-        symbols.first().map(|symbol| symbol.to_string().trim_end_matches(|c: char| ('₀'..='₉').contains(&c)).to_string()).unwrap_or_default()
+        symbols
+            .first()
+            .map(|symbol| symbol.to_string().trim_end_matches(|c: char| ('₀'..='₉').contains(&c)).to_string())
+            .unwrap_or_default()
     }
 
     /// All formulas, in the order of the derivation.
@@ -75,9 +78,21 @@ impl<'g> Formulas<'g> {
             Formula::new("generator", format!("{}_Q({q})", self.letter(&self.symbols.algebra)), &self.generator),
             self.formula_of_momentum_map(),
             self.formula_of_coadjoint(),
-            Formula::new("cotangent lift", format!("(TΦ_{f})^-* {} at {q}⁺", self.letter(&self.symbols.covectors)), &self.cotangent_lift),
-            Formula::new("inertia", format!("Σ{}", self.letter(&self.symbols.algebra)), &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>()),
-            Formula::new("kinetic energy", format!("T({})", self.letter(&self.symbols.algebra)), &[self.kinetic_energy]),
+            Formula::new(
+                "cotangent lift",
+                format!("(TΦ_{f})^-* {} at {q}⁺", self.letter(&self.symbols.covectors)),
+                &self.cotangent_lift,
+            ),
+            Formula::new(
+                "inertia",
+                format!("Σ{}", self.letter(&self.symbols.algebra)),
+                &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>(),
+            ),
+            Formula::new(
+                "kinetic energy",
+                format!("T({})", self.letter(&self.symbols.algebra)),
+                &[self.kinetic_energy],
+            ),
             self.formula_of_potential(),
             self.formula_of_hamiltonian(),
             Formula::new("discrete Lagrangian", format!("K(h, {f})"), &[self.lagrangian.kinetic]),
@@ -95,12 +110,20 @@ impl<'g> Formulas<'g> {
 
     /// J(q, p).
     pub fn formula_of_momentum_map(&self) -> Formula {
-        Formula::new("momentum map", format!("J({}, {})", self.q(), self.letter(&self.symbols.covectors)), &self.momentum_map)
+        Formula::new(
+            "momentum map",
+            format!("J({}, {})", self.q(), self.letter(&self.symbols.covectors)),
+            &self.momentum_map,
+        )
     }
 
     /// Ad*_F μ.
     pub fn formula_of_coadjoint(&self) -> Formula {
-        Formula::new("coadjoint action", format!("Ad*_{} {}", self.f(), self.letter(&self.symbols.momenta)), &self.coadjoint)
+        Formula::new(
+            "coadjoint action",
+            format!("Ad*_{} {}", self.f(), self.letter(&self.symbols.momenta)),
+            &self.coadjoint,
+        )
     }
 
     /// V(q).
@@ -127,9 +150,14 @@ impl<'g> Formulas<'g> {
     /// F⁺ℓd(q, F).
     pub fn formula_of_legendre_next(&self) -> Formula {
         let (kinetic, end) = self.legendre_next();
-        let mut formula = Formula::new("next Legendre transform", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
+        let mut formula =
+            Formula::new("next Legendre transform", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
         if let Some(end) = end {
-            formula.text.iter_mut().zip(readable(&end)).for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
+            formula
+                .text
+                .iter_mut()
+                .zip(readable(&end))
+                .for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
         }
         formula
     }
@@ -142,6 +170,7 @@ impl<'g> Formulas<'g> {
         for equation in &substep.equations {
             formulas.push(self.formula_of_equation(equation));
             formulas.push(self.formula_of_jacobian(equation));
+            formulas.extend(self.formula_of_solution(equation));
         }
         formulas.push(self.formula_of_update(substep));
         if let Some(end) = &substep.end {
@@ -162,6 +191,12 @@ impl<'g> Formulas<'g> {
         Formula::new("Jacobian", format!("Dρ({x})·{direction}"), &[equation.directional])
     }
 
+    /// x(μ), where there is a closed form.
+    pub fn formula_of_solution(&self, equation: &Equation<'g>) -> Option<Formula> {
+        let closed_form = equation.closed_form.as_ref()?;
+        Some(Formula::new("solution", self.letter(&self.symbols.charts), &[closed_form.coordinates]))
+    }
+
     fn formula_of_update(&self, substep: &Substep<'g>) -> Formula {
         let update = |k: usize| {
             let factor = &self.model.factors[k];
@@ -180,7 +215,10 @@ impl<'g> Formulas<'g> {
 /// Each expression as it is or expanded, whichever is shorter.
 fn readable<'g>(expressions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let length = |expression: &Expr<'g>| expression.to_string().chars().count();
-    expressions.iter().flat_map(|expression| [expression.expand(), *expression].into_iter().min_by_key(length)).collect()
+    expressions
+        .iter()
+        .flat_map(|expression| [expression.expand(), *expression].into_iter().min_by_key(length))
+        .collect()
 }
 
 fn tuple(names: impl Iterator<Item = String>) -> String {

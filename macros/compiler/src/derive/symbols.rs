@@ -68,6 +68,7 @@ fn fresh(letters: &[&'static str], taken: &[String]) -> &'static str {
 /// The letter alone if there is one of them, else with a subscript that counts from one.
 fn subscripted(letter: &str, index: usize, count: usize) -> String {
     let digits = (index + 1).to_string();
-    let subscript: String = digits.bytes().filter_map(|digit| char::from_u32('₀' as u32 + (digit - b'0') as u32)).collect();
+    let subscript: String =
+        digits.bytes().filter_map(|digit| char::from_u32('₀' as u32 + (digit - b'0') as u32)).collect();
     if count == 1 { letter.to_string() } else { format!("{letter}{subscript}") }
 }

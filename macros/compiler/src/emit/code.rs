@@ -69,8 +69,14 @@ impl Scope<'_, '_> {
     }
 
     fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
-        let all = self.model.parameters.iter().flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
-        let is_leaf = |symbol: clebsch_symbolic::Expr<'_>| symbol.as_symbol().is_some_and(|data| data.role == Role::Parameter(leaf));
+        let all = self
+            .model
+            .parameters
+            .iter()
+            .flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
+        let is_leaf = |symbol: clebsch_symbolic::Expr<'_>| {
+            symbol.as_symbol().is_some_and(|data| data.role == Role::Parameter(leaf))
+        };
         // by construction: the role of a parameter's symbol is that of one leaf
         let Some((parameter, leaf)) = all.into_iter().find(|(_, leaf)| is_leaf(leaf.symbol)) else { return quote!() };
         let mut field = parameter.field.clone();
@@ -126,7 +132,8 @@ impl Scope<'_, '_> {
                 quote!(#private::Scalar::sqrt(#x))
             }
             Code::Root(x, (numerator, denominator)) => {
-                let (x, exponent) = (self.code(x, false), self.number(&clebsch_symbolic::rational(*numerator, *denominator)));
+                let (x, exponent) =
+                    (self.code(x, false), self.number(&clebsch_symbolic::rational(*numerator, *denominator)));
                 quote!(#private::Scalar::powf(#x, #exponent))
             }
             Code::Function(function, x) => {
@@ -156,7 +163,8 @@ impl Scope<'_, '_> {
             let term = self.code(term, true);
             tokens.extend(quote!(#sign #factor #term));
         }
-        let single = terms.len() + usize::from(*constant != integer(0)) == 1 && terms.first().is_none_or(|(c, _)| *c > integer(0));
+        let single = terms.len() + usize::from(*constant != integer(0)) == 1
+            && terms.first().is_none_or(|(c, _)| *c > integer(0));
         if tight && !single { quote!((#tokens)) } else { tokens }
     }
 
@@ -168,7 +176,8 @@ impl Scope<'_, '_> {
             (ScalarType::Parameter(_), (Ok(0), Ok(1))) => quote!(<#scalar as #private::Zero>::zero()),
             (ScalarType::Parameter(_), (Ok(1), Ok(1))) => quote!(<#scalar as #private::One>::one()),
             (ScalarType::Parameter(_), (Ok(numerator), Ok(denominator))) => {
-                let (numerator, denominator) = (Literal::i64_unsuffixed(numerator), Literal::i64_unsuffixed(denominator));
+                let (numerator, denominator) =
+                    (Literal::i64_unsuffixed(numerator), Literal::i64_unsuffixed(denominator));
                 quote!(<#scalar as #private::Scalar>::from_ratio(#numerator, #denominator))
             }
             (ScalarType::Parameter(_), _) => {

@@ -34,7 +34,9 @@ impl Emitter<'_, '_> {
             step.solves.iter().enumerate().map(move |(number, solve)| (suffix, number, solve))
         });
         let implicit = solves.filter(|(_, _, solve)| solve.solution == Solution::Newton);
-        implicit.map(|(suffix, number, solve)| (format_ident!("orientation{suffix}_{}", number + 1), solve.components.clone()))
+        implicit.map(|(suffix, number, solve)| {
+            (format_ident!("orientation{suffix}_{}", number + 1), solve.components.clone())
+        })
     }
 
     /// The method `constants`.
@@ -44,10 +46,11 @@ impl Emitter<'_, '_> {
         let checks = self.checks();
         let inertia = code::body(&scope, &self.program.inertia, None);
         let locals = code::locals(&scope, &self.program.constants);
-        let fields = self.program.constant_names.iter().zip(&self.program.constants.outputs).map(|(name, (_, entries))| {
-            let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
-            quote!(#name: #value,)
-        });
+        let fields =
+            self.program.constant_names.iter().zip(&self.program.constants.outputs).map(|(name, (_, entries))| {
+                let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
+                quote!(#name: #value,)
+            });
         let orientations = self.implicit_solves().map(|(name, components)| {
             let entry = |i: &usize, j: &usize| {
                 let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
@@ -62,7 +65,11 @@ impl Emitter<'_, '_> {
                     .ok_or(#krate::Error::SingularKineticEnergy { condition: ::core::f64::INFINITY })?,
             }
         });
-        let documentation = docs::formulas("Checks the parameters and computes what no step changes.", &[], Some(&self.program.constants));
+        let documentation = docs::formulas(
+            "Checks the parameters and computes what no step changes.",
+            &[],
+            Some(&self.program.constants),
+        );
         quote! {
             #documentation
             fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
@@ -84,9 +91,10 @@ impl Emitter<'_, '_> {
         let private = &self.paths.private;
         let checks = self.model.parameters.iter().map(|parameter| {
             let (field, name) = (&parameter.field, &parameter.name);
-            let promises = parameter.promise.into_iter().flat_map(|promise| {
-                parameter.leaves.iter().map(move |leaf| (promise, code::accessor(&leaf.accessor)))
-            });
+            let promises = parameter
+                .promise
+                .into_iter()
+                .flat_map(|promise| parameter.leaves.iter().map(move |leaf| (promise, code::accessor(&leaf.accessor))));
             let promises = promises.map(|(promise, access)| match promise {
                 Promise::Symmetric => quote!(#private::check_symmetric(#name, &self.#field #access)?;),
                 Promise::Diagonal => quote!(#private::check_diagonal(#name, &self.#field #access)?;),

@@ -63,6 +63,9 @@ fn scheme(program: &Program<'_>) -> String {
             let names: Vec<&str> = equation.factors.iter().map(|&k| model.factors[k].name.as_str()).collect();
             let how = match equation.solution {
                 Solution::Explicit => "is linear in the chart: solved explicitly".to_string(),
+                Solution::ClosedForm => {
+                    "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
+                }
                 Solution::Newton if equation.cleared.iter().all(|cleared| *cleared) => {
                     "is solved by Newton's method in the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)".to_string()
                 }
@@ -89,7 +92,9 @@ fn left_out(program: &Program<'_>) -> String {
     } else {
         text += "Some motions fix the configuration: state() demands momenta in 𝔤_q^⊥.\n";
     }
-    if formulas.substeps.iter().all(|substep| substep.equations.len() == formulas.model.factors.len()) && formulas.model.factors.len() > 1 {
+    if formulas.substeps.iter().all(|substep| substep.equations.len() == formulas.model.factors.len())
+        && formulas.model.factors.len() > 1
+    {
         text += "The factors do not couple in the momentum equation: one small solve for each.\n";
     }
     text

@@ -26,6 +26,8 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
     let items = emitter.items();
     let generated = program.formulas.model.emit.generated.then(|| emitter.generated(&items));
     quote! {
+        // the lints of straight-line code are ours to mind, not the user's
+        #[allow(clippy::all, clippy::pedantic, unused_parens)]
         const _: () = {
             #items
         };
@@ -92,7 +94,8 @@ impl Generics {
         let predicates = generics.where_clause.as_ref().map(|clause| &clause.predicates).into_iter().flatten();
         let predicates: Vec<_> = predicates.collect();
         let (private, scalar) = (&paths.private, &paths.scalar);
-        let bound = matches!(model.item.scalar, crate::model::ScalarType::Parameter(_)).then(|| quote!(#scalar: #private::Scalar,));
+        let bound = matches!(model.item.scalar, crate::model::ScalarType::Parameter(_))
+            .then(|| quote!(#scalar: #private::Scalar,));
         Generics {
             parameters: quote!(#parameters),
             arguments: quote!(#(#arguments),*),
@@ -178,7 +181,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
         let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.steps.len() - 1]);
-        let (start, end) = (&self.program.formulas.substeps[0].start, &self.program.formulas.substeps[self.program.steps.len() - 1].end);
+        let (start, end) = (
+            &self.program.formulas.substeps[0].start,
+            &self.program.formulas.substeps[self.program.steps.len() - 1].end,
+        );
         start == end && first.start.is_some() && last.end.is_some()
     }
 

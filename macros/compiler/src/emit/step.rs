@@ -16,7 +16,10 @@ impl Emitter<'_, '_> {
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
         let parts = self.program.steps.iter().enumerate().map(|(index, step)| self.parts(index, step));
         let (shared, whole) = (self.shared_parts(), self.whole_steps());
-        let documentation = docs::lines(&["A system with the constants of a stepper: the parts of a step are its methods.".to_string()]);
+        let documentation =
+            docs::lines(
+                &["A system with the constants of a stepper: the parts of a step are its methods.".to_string()],
+            );
         quote! {
             #documentation
             struct Step<'clebsch, #parameters> #predicates {
@@ -64,7 +67,10 @@ impl Emitter<'_, '_> {
             formula.text = parts.iter().flatten().map(|part| part.to_string()).collect();
             self.part(title, &[formula], quote!(#name(&self, q: &#configuration) -> #momentum), kernel, None)
         };
-        let start = step.start.as_ref().map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, &substep.start));
+        let start = step
+            .start
+            .as_ref()
+            .map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, &substep.start));
         let end = step.end.as_ref().filter(|_| !step.end_is_start);
         let end = end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, &substep.end));
         let gradient = |name: Ident, title: &str, kernel: &Kernel| {
@@ -72,9 +78,13 @@ impl Emitter<'_, '_> {
             self.part(title, &[], signature, kernel, Some(&self.model.configuration))
         };
         let start_gradient = step.start_gradient.as_ref();
-        let start_gradient = start_gradient.map(|kernel| gradient(name("start_gradient"), "∂U₀(q), the kick of the covector at the start of a step.", kernel));
+        let start_gradient = start_gradient.map(|kernel| {
+            gradient(name("start_gradient"), "∂U₀(q), the kick of the covector at the start of a step.", kernel)
+        });
         let end_gradient = step.end_gradient.as_ref();
-        let end_gradient = end_gradient.map(|kernel| gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel));
+        let end_gradient = end_gradient.map(|kernel| {
+            gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel)
+        });
         let element = self.element_type();
         let update = step.update.as_ref().map(|kernel| {
             let (signature, formulas) = (name("update"), self.titled("momentum update"));
@@ -97,6 +107,7 @@ impl Emitter<'_, '_> {
             let target = self.part_of("mu", &solve.components);
             let equation = quote!(#equation { system: self.system, constants: self.constants });
             match solve.solution {
+                Solution::ClosedForm => quote!(let #solution = #equation.closed_form(&#target)?;),
                 Solution::Explicit => quote!(let #solution = #private::Equation::predict(&#equation, &#target);),
                 Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
             }
@@ -109,7 +120,8 @@ impl Emitter<'_, '_> {
             let (solution, position) = (format_ident!("x{}", number + 1), Literal::usize_unsuffixed(position));
             quote!(#solution[#position])
         });
-        let documentation = docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
+        let documentation =
+            docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
         let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
         quote! {
             #documentation
@@ -167,7 +179,8 @@ impl Emitter<'_, '_> {
         let (private, krate) = (&self.paths.private, &self.paths.krate);
         let (configuration, element, momentum, impulse) =
             (self.configuration_type(), self.element_type(), self.momentum_type(), self.impulse_type());
-        let euler_poincare = self.program.steps.iter().enumerate().map(|(index, step)| self.euler_poincare(index, step));
+        let euler_poincare =
+            self.program.steps.iter().enumerate().map(|(index, step)| self.euler_poincare(index, step));
         let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(0));
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(0, &self.program.steps[0], false));
@@ -308,10 +321,56 @@ impl Emitter<'_, '_> {
         let mut types = TokenStream::new();
         for (index, step) in self.program.steps.iter().enumerate() {
             for (number, solve) in step.solves.iter().enumerate() {
-                types.extend(self.equation(index, number, solve));
+                types.extend(match &solve.sine_squared {
+                    Some(sine_squared) => self.closed_form(index, number, solve, sine_squared),
+                    None => self.equation(index, number, solve),
+                });
             }
         }
         types
+    }
+
+    /// The type of an equation that is solved by a formula.
+    fn closed_form(&self, index: usize, number: usize, solve: &Solve, sine_squared: &Kernel) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let name = equation_name(self.program.suffix(index), number);
+        let mut scope = self.scope_of_step();
+        scope.components = solve.components.clone();
+        scope.momentum = "target";
+        let vector = self.paths.matrix(solve.dimension, 1);
+        let (locals, sine) = (code::locals(&scope, sine_squared), scope.code(&sine_squared.outputs[0].1[0], false));
+        let solution = code::body(&scope, &solve.predict, None);
+        let derived = &self.program.formulas.substeps[index].equations[number];
+        let documentation = docs::formulas(
+            "The momentum equation in the chart.",
+            &[self.program.formulas.formula_of_equation(derived)],
+            None,
+        );
+        let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
+        let solved = docs::formulas(
+            "The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.",
+            &solved,
+            Some(&solve.predict),
+        );
+        quote! {
+            #documentation
+            struct #name<'clebsch, #parameters> #predicates {
+                #[allow(dead_code)]
+                system: &'clebsch #ident<#arguments>,
+                constants: &'clebsch Constants #constants,
+            }
+
+            impl<'clebsch, #parameters> #name<'clebsch, #arguments> #predicates {
+                #solved
+                #[inline]
+                fn closed_form(&self, target: &#vector) -> ::core::result::Result<#vector, #krate::Error> {
+                    #private::check_sine_squared({ #locals #sine })?;
+                    ::core::result::Result::Ok({ #solution })
+                }
+            }
+        }
     }
 
     fn equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
@@ -324,16 +383,19 @@ impl Emitter<'_, '_> {
         let mut scope = self.scope_of_step();
         scope.components = solve.components.clone();
         scope.momentum = "target";
-        let (vector, jacobian) = (self.paths.matrix(solve.dimension, 1), quote!(#private::SMatrix<#scalar, #dimension, #dimension>));
+        let (vector, jacobian) =
+            (self.paths.matrix(solve.dimension, 1), quote!(#private::SMatrix<#scalar, #dimension, #dimension>));
         let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
         let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
-        let (prepare_locals, predict) = (code::locals(&scope, &solve.prepare), code::body(&scope, &solve.predict, None));
+        let (prepare_locals, predict) =
+            (code::locals(&scope, &solve.prepare), code::body(&scope, &solve.predict, None));
         let locals = code::locals(&scope, &solve.linearize);
         let square = Shape::square(solve.dimension);
         let residual = code::grid(&scope, solve.linearize.outputs[0].0, &solve.linearize.outputs[0].1);
         let rows = code::grid(&scope, square, &solve.linearize.outputs[1].1);
         let derived = &self.program.formulas.substeps[index].equations[number];
-        let formulas = [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
+        let formulas =
+            [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
         let documentation = docs::formulas("The momentum equation in the chart.", &formulas[..1], None);
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
         let orientation = (solve.solution == Solution::Newton).then(|| {

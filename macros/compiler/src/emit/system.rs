@@ -19,7 +19,8 @@ impl Emitter<'_, '_> {
         let (impulse, (_, constants_arguments)) = (self.impulse_type(), self.constants_generics());
         let order: u32 = if self.model.order == Order::First { 1 } else { 2 };
         let derivation = super::derivation(self.program);
-        let (constants, formulas, dynamics, checks) = (self.constants(), self.formulas(), self.dynamics(), self.space_checks());
+        let (constants, formulas, dynamics, checks) =
+            (self.constants(), self.formulas(), self.dynamics(), self.space_checks());
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Clebsch for #ident<#arguments> #predicates {
@@ -65,7 +66,9 @@ impl Emitter<'_, '_> {
     fn formulas(&self) -> TokenStream {
         let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
         let listing = formulas.listing();
-        let titled = |title: &str| -> Vec<Formula> { listing.iter().filter(|formula| formula.title == title).cloned().collect() };
+        let titled = |title: &str| -> Vec<Formula> {
+            listing.iter().filter(|formula| formula.title == title).cloned().collect()
+        };
         let methods = [
             self.method(
                 ("The action.", &titled("action")),
@@ -74,7 +77,10 @@ impl Emitter<'_, '_> {
                 Some(&self.model.configuration),
             ),
             self.method(
-                ("The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).", &[formulas.formula_of_momentum_map()]),
+                (
+                    "The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).",
+                    &[formulas.formula_of_momentum_map()],
+                ),
                 quote!(momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum),
                 &program.momentum_map,
                 None,
@@ -86,13 +92,19 @@ impl Emitter<'_, '_> {
                 None,
             ),
             self.method(
-                ("The discrete Legendre transform: the momentum N before the step that moves q by F.", &[formulas.formula_of_legendre()]),
+                (
+                    "The discrete Legendre transform: the momentum N before the step that moves q by F.",
+                    &[formulas.formula_of_legendre()],
+                ),
                 quote!(legendre(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre,
                 None,
             ),
             self.method(
-                ("The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.", &[formulas.formula_of_legendre_next()]),
+                (
+                    "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
+                    &[formulas.formula_of_legendre_next()],
+                ),
                 quote!(legendre_next(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre_next,
                 None,
@@ -120,7 +132,8 @@ impl Emitter<'_, '_> {
         let scope = self.scope_of_system();
         let locals = code::locals(&scope, &self.program.potential);
         let value = scope.code(&self.program.potential.outputs[0].1[0], false);
-        let potential = docs::formulas("The potential energy.", &[formulas.formula_of_potential()], Some(&self.program.potential));
+        let potential =
+            docs::formulas("The potential energy.", &[formulas.formula_of_potential()], Some(&self.program.potential));
         let kinetic = docs::formulas("The kinetic energy.", &[formulas.formula_of_hamiltonian()], None);
         quote! {
             #potential

@@ -64,8 +64,12 @@ impl<'a, 'g> Lowering<'a, 'g> {
             View::Symbol(symbol) => self.symbol(&symbol),
             View::Pi => one(self.scalars.pi()),
             View::Sum(terms) => self.terms(shape, terms),
-            View::Literal(entries) => Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() },
-            View::Stack(entries) => Grid { shape, entries: entries.into_iter().map(|entry| self.grid(entry).entries[0]).collect() },
+            View::Literal(entries) => {
+                Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() }
+            }
+            View::Stack(entries) => {
+                Grid { shape, entries: entries.into_iter().map(|entry| self.grid(entry).entries[0]).collect() }
+            }
             View::Word(word) => self.word(&word),
             View::Trace(word) => {
                 let product = self.word(&word);
@@ -94,7 +98,9 @@ impl<'a, 'g> Lowering<'a, 'g> {
             }
             View::Embed(a, row, column) => {
                 let (a, zero) = (self.grid(a), self.scalars.zero());
-                let inside = |i: usize, j: usize| i >= row && j >= column && i < row + a.shape.rows && j < column + a.shape.columns;
+                let inside = |i: usize, j: usize| {
+                    i >= row && j >= column && i < row + a.shape.rows && j < column + a.shape.columns
+                };
                 Grid::from_fn(shape, |(i, j)| if inside(i, j) { a.at(i - row, j - column) } else { zero })
             }
             View::Hadamard(a, b) => {
@@ -218,7 +224,8 @@ impl<'a, 'g> Lowering<'a, 'g> {
                 grids.push(self.scaled(&product, scale));
                 continue;
             }
-            let (constant, varying): (Vec<_>, Vec<_>) = term.scalars.iter().cloned().partition(|(base, _)| self.is_constant(*base));
+            let (constant, varying): (Vec<_>, Vec<_>) =
+                term.scalars.iter().cloned().partition(|(base, _)| self.is_constant(*base));
             let scale = self.monomial(&term.coefficient, &constant);
             let start = term.word.iter().position(|letter| self.is_constant(*letter)).unwrap_or(0);
             let length = term.word[start..].iter().take_while(|letter| self.is_constant(**letter)).count();
@@ -245,7 +252,8 @@ impl<'a, 'g> Lowering<'a, 'g> {
 
     /// Whether an expression is fixed once per stepper.
     fn is_constant(&self, expr: Expr<'g>) -> bool {
-        let once = |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::Auxiliary(_));
+        let once =
+            |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::Auxiliary(_));
         expr.symbols().into_iter().all(|symbol| symbol.as_symbol().is_some_and(|data| once(data.role)))
     }
 
@@ -324,7 +332,8 @@ impl<'a, 'g> Lowering<'a, 'g> {
     fn minor(&mut self, a: &Grid, row: usize, column: usize) -> Scalar {
         let n = a.shape.rows;
         let keep = |skip: usize| (0..n).filter(move |&k| k != skip);
-        let entries: Vec<_> = keep(row).flat_map(|i| keep(column).map(move |j| (i, j))).map(|(i, j)| a.at(i, j)).collect();
+        let entries: Vec<_> =
+            keep(row).flat_map(|i| keep(column).map(move |j| (i, j))).map(|(i, j)| a.at(i, j)).collect();
         let inner = Grid { shape: Shape::square(n - 1), entries };
         self.determinant(&inner, &(0..n - 1).collect::<Vec<_>>(), 0)
     }

@@ -85,9 +85,12 @@ pub enum Hoisting<'a> {
 
 /// Makes a kernel of grids of outputs.
 pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
-    let mut builder = Builder { scalars, hoisting, operations: Vec::new(), index: HashMap::new(), known: HashMap::new() };
-    let outputs: Vec<(Shape, Vec<Id>)> =
-        outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect())).collect();
+    let mut builder =
+        Builder { scalars, hoisting, operations: Vec::new(), index: HashMap::new(), known: HashMap::new() };
+    let outputs: Vec<(Shape, Vec<Id>)> = outputs
+        .iter()
+        .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
+        .collect();
     builder.share_pairs();
     builder.code(&outputs)
 }
@@ -185,7 +188,8 @@ impl Builder<'_, '_> {
     fn convert_sum(&mut self, mut constant: Rational, mut terms: Vec<(Scalar, Rational)>) -> Id {
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
-            let (slow, fast): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(term, _)| self.scalars.rate(*term) == rate);
+            let (slow, fast): (Vec<_>, Vec<_>) =
+                terms.into_iter().partition(|(term, _)| self.scalars.rate(*term) == rate);
             terms = fast;
             if slow.is_empty() {
                 continue;
@@ -218,7 +222,8 @@ impl Builder<'_, '_> {
         let mut factors: Vec<Scalar> = factors.iter().flat_map(repeated).collect();
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
-            let (slow, fast): (Vec<_>, Vec<_>) = factors.into_iter().partition(|factor| self.scalars.rate(*factor) == rate);
+            let (slow, fast): (Vec<_>, Vec<_>) =
+                factors.into_iter().partition(|factor| self.scalars.rate(*factor) == rate);
             factors = fast;
             if slow.is_empty() {
                 continue;
@@ -319,7 +324,9 @@ impl Builder<'_, '_> {
     fn is_shared(&self, id: Id) -> bool {
         match &self.operations[id] {
             Operation::Leaf(_) => false,
-            Operation::Sum(constant, terms) => !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1)),
+            Operation::Sum(constant, terms) => {
+                !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1))
+            }
             _ => true,
         }
     }
@@ -335,10 +342,13 @@ impl Builder<'_, '_> {
         match self.operations[id].clone() {
             Operation::Leaf(scalar) => self.leaf(scalar),
             Operation::Sum(constant, terms) => {
-                let terms = terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
+                let terms =
+                    terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
                 Code::Sum(constant, terms)
             }
-            Operation::Product(factors) => Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect()),
+            Operation::Product(factors) => {
+                Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
+            }
             Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),
             Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
             Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
@@ -350,7 +360,9 @@ impl Builder<'_, '_> {
         let rate = self.scalars.rate(scalar);
         match (&mut self.hoisting, self.scalars.node(scalar)) {
             (Hoisting::Terms(_, terms), _) if rate == Rate::Step => Code::Term(terms.index(scalar)),
-            (Hoisting::Terms(constants, _) | Hoisting::Constants(constants), _) if hoisted => Code::Constant(constants.index(scalar)),
+            (Hoisting::Terms(constants, _) | Hoisting::Constants(constants), _) if hoisted => {
+                Code::Constant(constants.index(scalar))
+            }
             (_, Node::Input(input)) => Code::Read(input.clone()),
             (_, Node::Pi) => Code::Pi,
             (_, Node::Sum(value, _)) => Code::Number(value.clone()),

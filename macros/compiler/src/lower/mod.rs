@@ -77,7 +77,13 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let after = match end {
         None => after,
         Some(end) => {
-            let moved: Vec<_> = formulas.model.configurations.iter().zip(&formulas.model.action).map(|(q, image)| (q.symbol, *image)).collect();
+            let moved: Vec<_> = formulas
+                .model
+                .configurations
+                .iter()
+                .zip(&formulas.model.action)
+                .map(|(q, image)| (q.symbol, *image))
+                .collect();
             after.iter().zip(end).map(|(kinetic, end)| *kinetic + end.substitute(&moved)).collect()
         }
     };
@@ -108,7 +114,10 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     };
     let operations = program.cost().total();
     if operations > LARGEST_PROGRAM {
-        return Err(too_large(&program.formulas, format!("{operations} scalar operations, {LARGEST_PROGRAM} is the most")));
+        return Err(too_large(
+            &program.formulas,
+            format!("{operations} scalar operations, {LARGEST_PROGRAM} is the most"),
+        ));
     }
     Ok(program)
 }
@@ -185,6 +194,10 @@ impl Program<'_> {
 
     /// Whether some equation is solved by Newton's method.
     pub fn is_implicit(&self) -> bool {
-        self.formulas.substeps.iter().flat_map(|substep| &substep.equations).any(|equation| equation.solution == Solution::Newton)
+        self.formulas
+            .substeps
+            .iter()
+            .flat_map(|substep| &substep.equations)
+            .any(|equation| equation.solution == Solution::Newton)
     }
 }

@@ -49,6 +49,14 @@ fn describe(scalars: &Scalars, scalar: Scalar) -> Option<String> {
 }
 
 fn numeral(coefficient: &Rational) -> Option<&'static str> {
-    let table = [(1, 2, "half"), (2, 1, "two"), (-1, 1, "minus"), (1, 4, "quarter"), (4, 1, "four"), (-1, 2, "minus_half"), (-2, 1, "minus_two")];
+    let table = [
+        (1, 2, "half"),
+        (2, 1, "two"),
+        (-1, 1, "minus"),
+        (1, 4, "quarter"),
+        (4, 1, "four"),
+        (-1, 2, "minus_half"),
+        (-2, 1, "minus_two"),
+    ];
     table.iter().find(|(n, d, _)| *coefficient == clebsch_symbolic::rational(*n, *d)).map(|(_, _, name)| *name)
 }

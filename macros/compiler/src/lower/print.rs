@@ -28,7 +28,8 @@ impl fmt::Display for Cost {
             (self.roots, "√"),
             (self.calls, "f"),
         ];
-        let text: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
+        let text: Vec<String> =
+            parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
         f.write_str(if text.is_empty() { "no operations".to_string() } else { text.join(" ") }.as_str())
     }
 }
@@ -55,7 +56,14 @@ impl Program<'_> {
             let named = |name: &str| format!("{name}{suffix}");
             kernels.extend(step.start.iter().map(|kernel| (named("start_kick"), kernel)));
             for (number, solve) in step.solves.iter().enumerate() {
-                let of = |name: &str| if step.solves.len() == 1 { named(name) } else { format!("{}_{}", named(name), number + 1) };
+                let of = |name: &str| {
+                    if step.solves.len() == 1 { named(name) } else { format!("{}_{}", named(name), number + 1) }
+                };
+                if let Some(sine_squared) = &solve.sine_squared {
+                    kernels.push((of("sine_squared"), sine_squared));
+                    kernels.push((of("closed_form"), &solve.predict));
+                    continue;
+                }
                 kernels.push((of("prepare"), &solve.prepare));
                 kernels.push((of("predict"), &solve.predict));
                 kernels.push((of("linearize"), &solve.linearize));
@@ -88,7 +96,8 @@ impl fmt::Display for Program<'_> {
                 writeln!(f, "    t{index} = {}", self.text(local, 0))?;
             }
             for (position, code) in kernel.outputs.iter().flat_map(|(_, entries)| entries).enumerate() {
-                let target = if name == "constants" { self.constant_names[position].clone() } else { position.to_string() };
+                let target =
+                    if name == "constants" { self.constant_names[position].clone() } else { position.to_string() };
                 writeln!(f, "    {target} = {}", self.text(code, 0))?;
             }
         }

@@ -140,7 +140,9 @@ impl Scalars {
         };
         for (scalar, coefficient) in terms {
             match self.node(scalar) {
-                Node::Sum(inner, parts) if parts.len() < 2 || coefficient == integer(1) || coefficient == integer(-1) => {
+                Node::Sum(inner, parts)
+                    if parts.len() < 2 || coefficient == integer(1) || coefficient == integer(-1) =>
+                {
                     total += inner * &coefficient;
                     parts.iter().for_each(|(part, factor)| add(*part, factor * &coefficient));
                 }
@@ -171,7 +173,9 @@ impl Scalars {
     pub fn factor(&self, scalar: Scalar) -> (Rational, Option<Scalar>) {
         match self.node(scalar) {
             Node::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
-            Node::Sum(constant, terms) if terms.len() == 1 && *constant == integer(0) => (terms[0].1.clone(), Some(terms[0].0)),
+            Node::Sum(constant, terms) if terms.len() == 1 && *constant == integer(0) => {
+                (terms[0].1.clone(), Some(terms[0].0))
+            }
             _ => (integer(1), Some(scalar)),
         }
     }
@@ -184,7 +188,9 @@ impl Scalars {
             let (number, rest) = self.factor(factor);
             coefficient *= number;
             match rest.map(|rest| (rest, self.node(rest))) {
-                Some((_, Node::Product(inner))) => inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e),
+                Some((_, Node::Product(inner))) => {
+                    inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e)
+                }
                 Some((rest, _)) => *powers.entry(rest).or_insert(0) += 1,
                 None => {}
             }

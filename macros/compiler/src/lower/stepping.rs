@@ -39,8 +39,10 @@ pub struct Solve {
     pub solution: Solution,
     /// What is computed once per solve, one output each.
     pub prepare: Kernel,
-    /// The starting point.
+    /// The starting point, or the solution where there is a formula for it.
     pub predict: Kernel,
+    /// |a|² of the closed form, which has to be below one.
+    pub sine_squared: Option<Kernel>,
     /// ρ(x) and Dρ(x).
     pub linearize: Kernel,
 }
@@ -50,17 +52,24 @@ pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mu
     formulas.substeps.iter().map(|substep| step(formulas, substep, scalars, hoisted)).collect()
 }
 
-fn step<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, scalars: &mut Scalars, hoisted: &mut Hoisted) -> StepKernels {
+fn step<'g>(
+    formulas: &Formulas<'g>,
+    substep: &Substep<'g>,
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> StepKernels {
     let gradients = |potential: Expr<'g>| -> Vec<Expr<'g>> {
         formulas.model.configurations.iter().map(|leaf| potential.gradient(leaf.symbol)).collect()
     };
-    let solves = substep.equations.iter().map(|equation| solve(formulas, substep, equation, scalars, hoisted)).collect();
+    let solves =
+        substep.equations.iter().map(|equation| solve(formulas, substep, equation, scalars, hoisted)).collect();
     let stacked = |parts: &Option<Vec<Expr<'g>>>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
         parts.as_ref().map(|parts| stack(scalars, hoisted, parts))
     };
     let start = stacked(&substep.start, scalars, hoisted);
     let end = stacked(&substep.end, scalars, hoisted);
-    let start_gradient = substep.start.as_ref().map(|_| separate(scalars, hoisted, &gradients(substep.lagrangian.start)));
+    let start_gradient =
+        substep.start.as_ref().map(|_| separate(scalars, hoisted, &gradients(substep.lagrangian.start)));
     let end_gradient = substep.end.as_ref().map(|_| separate(scalars, hoisted, &gradients(substep.lagrangian.end)));
     StepKernels {
         end_is_start: substep.start == substep.end,
@@ -93,11 +102,27 @@ fn solve<'g>(
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> Solve {
-    let predictor = predictor(formulas, substep, equation);
-    let predict = stack(scalars, hoisted, &predictor);
+    let predict = match &equation.closed_form {
+        Some(closed_form) => stack(scalars, hoisted, &[closed_form.coordinates]),
+        None => stack(scalars, hoisted, &predictor(formulas, substep, equation)),
+    };
+    let sine_squared =
+        equation.closed_form.as_ref().map(|closed_form| stack(scalars, hoisted, &[closed_form.sine_squared]));
+    if sine_squared.is_some() {
+        return Solve {
+            dimension: equation.residual.shape().rows,
+            components: components(formulas, equation),
+            solution: equation.solution,
+            prepare: kernel(scalars, &[], Hoisting::Nothing),
+            predict,
+            sine_squared,
+            linearize: kernel(scalars, &[], Hoisting::Nothing),
+        };
+    }
     let residual = grids(scalars, &[equation.residual]).remove(0);
     let dimension = residual.0.rows;
-    let columns: Vec<Expr<'g>> = directions(formulas, equation).iter().map(|direction| equation.directional.substitute(direction)).collect();
+    let columns: Vec<Expr<'g>> =
+        directions(formulas, equation).iter().map(|direction| equation.directional.substitute(direction)).collect();
     let columns: Vec<Vec<Scalar>> = grids(scalars, &columns).into_iter().map(|(_, entries)| entries).collect();
     let shape = Shape::square(dimension);
     let jacobian = shape.positions().map(|(i, j)| columns[j][i]).collect();
@@ -105,7 +130,15 @@ fn solve<'g>(
     let linearize = kernel(scalars, &[residual, (shape, jacobian)], Hoisting::Terms(hoisted, &mut terms));
     let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
     let prepare = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
-    Solve { dimension, components: components(formulas, equation), solution: equation.solution, prepare, predict, linearize }
+    Solve {
+        dimension,
+        components: components(formulas, equation),
+        solution: equation.solution,
+        prepare,
+        predict,
+        sine_squared,
+        linearize,
+    }
 }
 
 /// For each unknown of the equation, the replacement of the directions by the unit vector of that unknown.
@@ -150,12 +183,14 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
     };
     let inertia = block(formulas.inertia);
     let momenta: Vec<Expr<'g>> = equation.factors.iter().map(|&k| formulas.symbols.momenta[k]).collect();
-    let momentum: Vec<Expr<'g>> = momenta.iter().flat_map(|mu| (0..mu.shape().rows).map(move |i| mu.entry(i, 0))).collect();
+    let momentum: Vec<Expr<'g>> =
+        momenta.iter().flat_map(|mu| (0..mu.shape().rows).map(move |i| mu.entry(i, 0))).collect();
     let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
         true => (0..shape.rows).map(|i| momentum[i] / inertia.entry(i, i).expand()).collect(),
         false => {
             let inverse = block(inertia_inverse(formulas));
-            let row = |i: usize| (0..shape.rows).fold(graph.integer(0), |sum, j| sum + inverse.entry(i, j) * momentum[j]);
+            let row =
+                |i: usize| (0..shape.rows).fold(graph.integer(0), |sum, j| sum + inverse.entry(i, j) * momentum[j]);
             (0..shape.rows).map(row).collect()
         }
     };
@@ -215,7 +250,9 @@ fn update(formulas: &Formulas<'_>, substep: &Substep<'_>, scalars: &mut Scalars)
         .zip(&substep.unchanged)
         .map(|((factor, mu), unchanged)| match (unchanged, factor.side) {
             (true, _) => *mu,
-            (false, Side::Left) => factor.group.coadjoint(factor.group.inverse(factor.symbol), *mu).substitute(&elements).expand(),
+            (false, Side::Left) => {
+                factor.group.coadjoint(factor.group.inverse(factor.symbol), *mu).substitute(&elements).expand()
+            }
             (false, Side::Right) => factor.group.coadjoint(factor.symbol, *mu).substitute(&elements).expand(),
         })
         .collect();

@@ -37,10 +37,7 @@ impl<'g> Action<'_, 'g> {
             _ if self.factors.len() > 1 => "the group".to_string(),
             _ => self.factors[0].group.name(),
         };
-        Diagnostic::new(
-            Place::of(&self.closure.body),
-            format!("`{text}` is not an action of {group}"),
-        )
+        Diagnostic::new(Place::of(&self.closure.body), format!("`{text}` is not an action of {group}"))
     }
 
     pub(super) fn composition(&self, index: usize, composed: &[Expr<'g>]) -> String {

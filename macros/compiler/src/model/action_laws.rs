@@ -1,10 +1,10 @@
 //! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
 //! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
 
-use clebsch_symbolic::{Expr, Graph, Group, Role, identity};
+use clebsch_symbolic::{Expr, Graph, Role, identity};
 
-use super::{Configuration, Factor, Side, Space};
 use super::action_errors::ascii;
+use super::{Configuration, Factor, Side, Space};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::Closure;
 

@@ -4,24 +4,10 @@ use clebsch_symbolic::Expr;
 use syn::ext::IdentExt;
 
 use super::scope::{Missing, Scope, check_reserved};
+use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
 use super::value::Value;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
-use crate::parse::{Argument, Closure, Pattern, spell_type};
-
-/// What an argument stands for.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Slot {
-    Time,
-    Step,
-    Configuration,
-    Element,
-    Velocity,
-}
-
-/// The arguments of a closure, in order.
-const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
-const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
-const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::parse::{Argument, Closure, Pattern};
 
 /// The names that the action fixes, with their values.
 pub(super) struct Arguments<'d, 'g> {
@@ -65,7 +51,12 @@ pub(super) fn of_action<'d>(action: &'d Closure, diagnostics: &mut Diagnostics) 
     }
     let group = typed(element, "SO<3>", "the group", diagnostics);
     let space = typed(configuration, "Unit<Vector3>", "the space of configurations", diagnostics);
-    Some(TypedArguments { element: &element.pattern, group: group?, configuration: &configuration.pattern, space: space? })
+    Some(TypedArguments {
+        element: &element.pattern,
+        group: group?,
+        configuration: &configuration.pattern,
+        space: space?,
+    })
 }
 
 fn typed<'d>(
@@ -128,118 +119,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
         scope
     }
 
-    /// The pattern and the meaning of a slot; the velocity has none before it is introduced.
-    fn names(&self, slot: Slot) -> Option<(String, &'static str)> {
-        match slot {
-            Slot::Time => None,
-            Slot::Step => Some(("h".into(), "the step")),
-            Slot::Configuration => Some((self.configuration.spell(), "the configuration")),
-            Slot::Element => Some((self.element.spell(), "the group element")),
-            Slot::Velocity => Some(("omega".into(), "the velocity, any new name")),
-        }
-    }
-
-    fn pattern(&self, slot: Slot) -> Option<&'d Pattern> {
-        match slot {
-            Slot::Configuration => Some(self.configuration),
-            Slot::Element => Some(self.element),
-            _ => None,
-        }
-    }
-
-    /// The slot that each argument takes; `None` if there is an error, which is reported.
-    fn match_slots(&self, closure: &Closure, slots: &[Slot], diagnostics: &mut Diagnostics) -> Vec<Option<Slot>> {
-        let last = closure.arguments.len().wrapping_sub(1);
-        let mut taken: Vec<Option<Slot>> =
-            closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
-        if slots.contains(&Slot::Velocity)
-            && taken.last() == Some(&None)
-            && !self.is_foreign(&closure.arguments[last].pattern)
-        {
-            taken[last] = Some(Slot::Velocity);
-        }
-        for (position, argument) in closure.arguments.iter().enumerate() {
-            self.check_argument(closure, argument, position, &taken, slots, diagnostics);
-        }
-        self.check_order(closure, &taken, slots, diagnostics);
-        if slots.contains(&Slot::Velocity) && closure.arguments.is_empty() {
-            let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
-            diagnostics.push(error.help("write `|omega| …`"));
-        }
-        taken
-    }
-
-    fn find(&self, pattern: &Pattern, slots: &[Slot]) -> Option<Slot> {
-        slots.iter().copied().find(|&slot| match (slot, pattern) {
-            (Slot::Time, Pattern::Name(ident)) => ident == "t",
-            (Slot::Step, Pattern::Name(ident)) => ident == "h",
-            _ => self.pattern(slot).is_some_and(|known| known.matches(pattern)),
-        })
-    }
-
-    /// Whether a pattern has a meaning that this closure has no slot for.
-    fn is_foreign(&self, pattern: &Pattern) -> bool {
-        self.find(pattern, COST).is_some()
-    }
-
-    fn check_argument(
-        &self,
-        closure: &Closure,
-        argument: &Argument,
-        position: usize,
-        taken: &[Option<Slot>],
-        slots: &[Slot],
-        diagnostics: &mut Diagnostics,
-    ) {
-        let (name, place) = (argument.pattern.spell(), argument.pattern.place());
-        if let Some(ty) = &argument.ty {
-            diagnostics.push(
-                Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
-                    .help(format!("write `{name}` without `: {}`", spell_type(ty)))
-                    .note("types stand in the action, which introduces the spaces"),
-            );
-        }
-        match taken[position] {
-            Some(slot) if taken[..position].contains(&Some(slot)) => {
-                diagnostics
-                    .push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
-            }
-            Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
-            Some(Slot::Velocity) => {
-                argument.pattern.names().iter().for_each(|ident| {
-                    check_reserved(ident, "the velocity", diagnostics);
-                });
-            }
-            Some(_) => {}
-            None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
-        }
-    }
-
-    /// The arguments as they should be.
-    fn head(&self, taken: &[Option<Slot>], slots: &[Slot], meant: Option<Slot>, closure: &Closure) -> String {
-        let velocity = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
-        let wanted = slots
-            .iter()
-            .filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
-        let names: Vec<String> = wanted
-            .filter_map(|&slot| match (slot, velocity) {
-                (Slot::Velocity, Some(position)) => Some(closure.arguments[position].pattern.spell()),
-                _ => self.names(slot).map(|(name, _)| name),
-            })
-            .collect();
-        format!("|{}|", names.join(", "))
-    }
-
-    fn check_order(&self, closure: &Closure, taken: &[Option<Slot>], slots: &[Slot], diagnostics: &mut Diagnostics) {
-        let index = |slot: &Slot| slots.iter().position(|other| other == slot);
-        let order: Vec<usize> = taken.iter().flatten().filter_map(index).collect();
-        if !taken.contains(&None) && order.windows(2).any(|pair| pair[0] > pair[1]) {
-            let error =
-                Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
-            diagnostics.push(error.help(format!("write `{}`", self.head(taken, slots, None, closure))));
-        }
-    }
-
+    /// The scope in which arguments have the values of their slots, and what is left out has a reason.
     fn scope(
         &self,
         closure: &Closure,

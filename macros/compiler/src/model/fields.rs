@@ -8,10 +8,10 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
+use super::scalar::Agreement;
 use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::Value;
 use super::vectors::{hint, last_segment, vectors};
-use super::scalar::Agreement;
 use super::{Leaf, Parameter, Promise, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Declaration, Field, spell_type};
@@ -143,6 +143,7 @@ fn explain(field: &Field, error: Option<Diagnostic>) -> Diagnostic {
             Some("write `f64`".to_string())
         }
         "Unit" => Some("write `#[clebsch(unit)]` before the field, and the vector itself as its type".to_string()),
+        _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".to_string()),
         _ => hint(&name),
     };
     Diagnostic::new(

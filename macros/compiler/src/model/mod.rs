@@ -11,6 +11,7 @@ mod print;
 mod scalar;
 mod scope;
 mod sizes;
+mod slots;
 mod spaces;
 mod structure;
 mod types;
@@ -37,20 +38,27 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let generics = &declaration.generics;
     let groups = types.and_then(|types| spaces::read_groups(types.group, generics, &mut diagnostics));
     let spaces = types.and_then(|types| spaces::read_spaces(types.space, generics, &mut diagnostics));
-    let scalars: Vec<Option<&syn::Type>> = spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
+    let scalars: Vec<Option<&syn::Type>> =
+        spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
     let fields = fields::read(graph, declaration, &scalars, &mut diagnostics);
-    let (Some(TypedArguments { element, configuration, .. }), Some(groups), Some(spaces)) = (types, groups, spaces) else {
+    let (Some(TypedArguments { element, configuration, .. }), Some(groups), Some(spaces)) = (types, groups, spaces)
+    else {
         return diagnostics.propagate(()).and(Err(Diagnostics::new()));
     };
 
     let factors = factors(graph, element, &groups, &mut diagnostics);
     let configurations = configurations(graph, configuration, &spaces, &mut diagnostics);
-    let nested = |structure: &Structure, symbols: Option<Vec<Expr<'g>>>| symbols.map(|symbols| Value::nested(structure, &symbols));
+    let nested = |structure: &Structure, symbols: Option<Vec<Expr<'g>>>| {
+        symbols.map(|symbols| Value::nested(structure, &symbols))
+    };
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let arguments = Arguments {
         element,
         configuration,
-        element_value: nested(&groups.structure, factors.as_ref().map(|factors| factors.iter().map(|factor| factor.symbol).collect())),
+        element_value: nested(
+            &groups.structure,
+            factors.as_ref().map(|factors| factors.iter().map(|factor| factor.symbol).collect()),
+        ),
         configuration_value: nested(
             &spaces.structure,
             configurations.as_ref().map(|leaves| leaves.iter().map(|leaf| leaf.symbol).collect()),
@@ -114,7 +122,9 @@ fn factors<'g>(
 ) -> Option<Vec<Factor<'g>>> {
     let names = closures::leaf_names(pattern, &groups.structure, diagnostics)?;
     let mut factors = Vec::new();
-    for (&(group, ty), (name, accessor)) in groups.leaves.iter().zip(names.into_iter().zip(groups.structure.accessors())) {
+    for (&(group, ty), (name, accessor)) in
+        groups.leaves.iter().zip(names.into_iter().zip(groups.structure.accessors()))
+    {
         let role = Role::Element(factors.len());
         let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
         factors.push(Factor { group, symbol, name, side: Side::Left, accessor, span: spaces::span_of(ty) });

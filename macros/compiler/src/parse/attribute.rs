@@ -38,42 +38,30 @@ fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &mut Diag
     let _ = items.parse2(list.tokens.clone());
 }
 
-/// `key = value` and the comma after it.
-fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics) -> syn::Result<()> {
+/// `key = value` and the comma after it; after an error the rest of the item is still to be skipped.
+fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
     if key == "group" && !stream.peek(Token![=]) {
-        diagnostics.push(
-            Diagnostic::later(key.span(), "a group of one's own, `group NAME = …`,")
-                .help("the groups of this version are `SO<n>` and `Translation<n>`"),
-        );
-        skip_to_next_item(stream);
-        return Ok(());
+        let error = Diagnostic::later(key.span(), "a group of one's own, `group NAME = …`,");
+        return Err(error.help("the groups of this version are `SO<n>` and `Translation<n>`"));
     }
-    let Some(kind) = find(&key) else {
-        diagnostics.push(unknown_key(&key));
-        skip_to_next_item(stream);
-        return Ok(());
-    };
+    let kind = find(&key).ok_or_else(|| unknown_key(&key))?;
     if !keys.give(&key) {
-        diagnostics.push(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"));
-        skip_to_next_item(stream);
-        return Ok(());
+        return Err(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"));
     }
     if kind == Kind::Later {
-        diagnostics.push(Diagnostic::later(key.span(), format!("the key `{key}`")));
-        skip_to_next_item(stream);
-        return Ok(());
+        return Err(Diagnostic::later(key.span(), format!("the key `{key}`")));
     }
-    if !stream.peek(Token![=]) {
+    if stream.parse::<Token![=]>().is_err() {
         let error = Diagnostic::new(key.span(), format!("the key `{key}` has no value"));
-        diagnostics.push(error.help(format!("write `{key} = {}`", example(kind))));
-        skip_to_next_item(stream);
+        return Err(error.help(format!("write `{key} = {}`", example(kind))));
+    }
+    read_value(&key, kind, stream, keys, diagnostics)?;
+    if stream.is_empty() || stream.parse::<Token![,]>().is_ok() {
         return Ok(());
     }
-    stream.parse::<Token![=]>()?;
-    read_value(&key, kind, stream, keys, diagnostics)?;
-    end_of_item(&key, stream, diagnostics);
-    Ok(())
+    let error = Diagnostic::new(stream.span(), format!("expected a comma after the value of `{key}`"));
+    Err(error.help("separate the keys by commas"))
 }
 
 fn find(key: &Ident) -> Option<Kind> {
@@ -111,89 +99,70 @@ fn read_value(
     stream: ParseStream,
     keys: &mut Keys,
     diagnostics: &mut Diagnostics,
-) -> Result<(), syn::Error> {
+) -> Result<(), Diagnostic> {
+    // where a value is not of its key's kind, the error shows one that is
+    let expected = |what: &str| {
+        Diagnostic::new(stream.span(), format!("the value of `{key}` is {what}"))
+            .help(format!("write `{key} = {}`", example(kind)))
+    };
     match kind {
-        Kind::Closure(example) => {
-            if let Some(closure) = read_closure(key, example, stream, diagnostics)? {
+        Kind::Closure(_) => {
+            let opaque = stream.fork().parse::<Ident>().is_ok_and(|word| word == "opaque");
+            if opaque {
+                return Err(Diagnostic::later(stream.span(), format!("an opaque {key}, by methods of the struct,")));
+            }
+            if !(stream.peek(Token![|]) || stream.peek(Token![||]) || stream.peek(Token![move])) {
+                return Err(expected("a closure"));
+            }
+            let closure: ExprClosure = stream.parse()?;
+            if let Some(closure) = Closure::read(key, closure, diagnostics) {
                 keys.put(closure);
             }
         }
-        Kind::Order => keys.dials.order = read_order(stream, diagnostics)?,
+        Kind::Order => {
+            let literal: LitInt = stream.parse().map_err(|_| expected("a number"))?;
+            keys.dials.order = read_order(&literal, diagnostics);
+        }
         Kind::Discretization => {
-            let name = read_name(key, example(kind), stream)?;
+            let name = stream.call(Ident::parse_any).map_err(|_| expected("a name"))?;
             let value = choose(key, &name, &DISCRETIZATIONS, diagnostics);
             keys.dials.discretization = value.map(|value| Located { value, span: name.span() });
         }
         Kind::Emit => {
-            for name in read_names(key, stream)? {
-                if let Some(emit) = choose(key, &name, &EMITTED, diagnostics) {
-                    keys.dials.emit = emit;
-                }
+            if !stream.peek(syn::token::Bracket) {
+                return Err(expected("a list"));
             }
+            let chosen = read_names(stream)?.into_iter().filter_map(|name| choose(key, &name, &EMITTED, diagnostics));
+            keys.dials.emit = chosen.last().unwrap_or_default();
         }
-        Kind::Scalar => keys.dials.scalar = Some(read_name(key, example(kind), stream)?),
-        Kind::Crate => keys.dials.krate = Some(stream.call(Path::parse_mod_style)?),
+        Kind::Scalar => {
+            keys.dials.scalar = Some(stream.call(Ident::parse_any).map_err(|_| expected("a type"))?);
+        }
+        Kind::Crate => {
+            keys.dials.krate = Some(stream.call(Path::parse_mod_style).map_err(|_| expected("a path"))?);
+        }
         // by construction: keys that come later have no value read
         Kind::Later => {}
     }
     Ok(())
 }
 
-fn read_closure(
-    key: &Ident,
-    example: &str,
-    stream: ParseStream,
-    diagnostics: &mut Diagnostics,
-) -> Result<Option<Closure>, syn::Error> {
-    if stream.peek(syn::Ident) && stream.fork().parse::<Ident>().is_ok_and(|word| word == "opaque") {
-        let word: Ident = stream.parse()?;
-        diagnostics.push(Diagnostic::later(word.span(), format!("an opaque {key}, by methods of the struct,")));
-        skip_to_next_item(stream);
-        return Ok(None);
-    }
-    let starts_closure = stream.peek(Token![|]) || stream.peek(Token![||]) || stream.peek(Token![move]);
-    if !starts_closure {
-        let error = Diagnostic::new(stream.span(), format!("the {key} is a closure"));
-        diagnostics.push(error.help(format!("write `{key} = {example}`")));
-        skip_to_next_item(stream);
-        return Ok(None);
-    }
-    let closure: ExprClosure = stream.parse()?;
-    Ok(Closure::read(key, closure, diagnostics))
-}
-
-fn read_order(
-    stream: ParseStream,
-    diagnostics: &mut Diagnostics,
-) -> Result<Option<Located<crate::model::Order>>, syn::Error> {
-    let Ok(literal) = stream.parse::<LitInt>() else {
-        let error = Diagnostic::new(stream.span(), "the order is a number");
-        diagnostics.push(error.help("write `order = 2`"));
-        skip_to_next_item(stream);
-        return Ok(None);
-    };
+fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located<crate::model::Order>> {
     let span = literal.span();
     let number = literal.base10_parse::<i64>().ok();
     match ORDERS.iter().find(|&&(order, _)| Some(order) == number) {
-        Some(&(_, Some(value))) => return Ok(Some(Located { value, span })),
+        Some(&(_, Some(value))) => return Some(Located { value, span }),
         Some(_) => diagnostics.push(Diagnostic::later(span, format!("`order = {literal}`")).help("write `order = 2`")),
         None => diagnostics.push(
             Diagnostic::new(span, format!("there is no step of order {literal}"))
                 .help("write `order = 2`, or `order = 1` for the papers' step, drift then kick"),
         ),
     }
-    Ok(None)
+    None
 }
 
-fn read_name(key: &Ident, example: &str, stream: ParseStream) -> syn::Result<Ident> {
-    let message = format!("the value of `{key}` is a name\n\nhelp: write `{key} = {example}`");
-    stream.call(Ident::parse_any).map_err(|_| stream.error(message))
-}
-
-fn read_names(key: &Ident, stream: ParseStream) -> syn::Result<Punctuated<Ident, Token![,]>> {
-    if !stream.peek(syn::token::Bracket) {
-        return Err(stream.error(format!("the value of `{key}` is a list\n\nhelp: write `{key} = [generated]`")));
-    }
+/// `[a, b]`.
+fn read_names(stream: ParseStream) -> syn::Result<Punctuated<Ident, Token![,]>> {
     let names;
     bracketed!(names in stream);
     Punctuated::parse_terminated_with(&names, Ident::parse_any)
@@ -216,16 +185,6 @@ fn choose<T: Copy>(key: &Ident, name: &Ident, table: &[(&str, Option<T>)], diagn
         }
     }
     None
-}
-
-/// After a value there is a comma or nothing.
-fn end_of_item(key: &Ident, stream: ParseStream, diagnostics: &mut Diagnostics) {
-    if stream.is_empty() || stream.parse::<Token![,]>().is_ok() {
-        return;
-    }
-    let error = Diagnostic::new(stream.span(), format!("expected a comma after the value of `{key}`"));
-    diagnostics.push(error.help("separate the keys by commas"));
-    skip_to_next_item(stream);
 }
 
 /// Goes on behind the next comma that is followed by `key =`.

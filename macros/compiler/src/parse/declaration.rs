@@ -55,9 +55,10 @@ pub(super) fn assemble(
 ) -> Result<Declaration, Diagnostics> {
     // a closure that was given and could not be read has its own error
     let given = |name: &str| keys.was_given(name);
-    if !given("action") {
+    let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
+    if !given("action") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));
-    } else if !given("cost") && !given("lagrangian") {
+    } else if !nothing_readable && !given("cost") && !given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
     let kinetic = match (keys.cost, keys.lagrangian) {

@@ -1,11 +1,9 @@
 //! Vectors and matrices from their entries: `Vector3::new(…)`, `Matrix3::from_diagonal(…)`, `vector![…]`, `matrix![…; …]`.
 
 use clebsch_symbolic::{Expr, Shape};
-use proc_macro2::TokenStream;
-use syn::parse::{ParseStream, Parser};
-use syn::{Expr as Syntax, ExprCall, ExprMacro, ExprPath, GenericArgument, Generics, Ident, Macro, Token};
+use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident};
 
-use super::super::sizes::{LARGEST, size_argument};
+use super::super::sizes::size_argument;
 use super::super::value::Value;
 use super::super::vectors::{arguments, named_shape};
 use super::access::strip;
@@ -179,7 +177,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     /// A matrix of these scalars.
-    pub(super) fn stack(&mut self, at: &dyn quote::ToTokens, shape: Shape, entries: Vec<Expr<'g>>) -> Option<Value<'g>> {
+    pub(super) fn stack(
+        &mut self,
+        at: &dyn quote::ToTokens,
+        shape: Shape,
+        entries: Vec<Expr<'g>>,
+    ) -> Option<Value<'g>> {
         let graph = self.graph();
         self.build(at, &entries.clone(), Growth::Product, || graph.stack(shape, entries)).map(Value::Matrix)
     }

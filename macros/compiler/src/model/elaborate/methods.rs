@@ -172,7 +172,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
         }
     }
-
 }
 
 pub(super) fn no_real_value(call: &ExprMethodCall) -> Diagnostic {

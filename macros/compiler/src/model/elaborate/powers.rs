@@ -16,7 +16,12 @@ const EXPONENT: i64 = 64;
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A method of a matrix that has a function of its own.
-    pub(super) fn special_of_matrix(&mut self, special: Special, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
+    pub(super) fn special_of_matrix(
+        &mut self,
+        special: Special,
+        call: &ExprMethodCall,
+        a: Expr<'g>,
+    ) -> Option<Value<'g>> {
         match special {
             Special::Sqrt | Special::Powi | Special::Powf | Special::Recip if !a.shape().is_scalar() => {
                 self.error(wrong_receiver(Rule::Scalar(Function::Exp), call, a.shape()))

@@ -1,0 +1,194 @@
+//! Which argument stands for what: each is found by its name, and they keep their order.
+
+use super::arguments::Arguments;
+use super::scope::check_reserved;
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::{Argument, Closure, Pattern, spell_type};
+
+/// What an argument stands for.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(super) enum Slot {
+    Time,
+    Step,
+    Configuration,
+    Element,
+    Velocity,
+}
+
+/// The arguments of a cost, in order.
+pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
+/// The arguments of a Lagrangian, in order.
+pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
+/// The arguments of a potential, in order.
+pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+
+impl<'d> Arguments<'d, '_> {
+    /// The pattern and the meaning of a slot; the velocity has none before it is introduced.
+    fn names(&self, slot: Slot) -> Option<(String, &'static str)> {
+        match slot {
+            Slot::Time => None,
+            Slot::Step => Some(("h".into(), "the step")),
+            Slot::Configuration => Some((self.configuration.spell(), "the configuration")),
+            Slot::Element => Some((self.element.spell(), "the group element")),
+            Slot::Velocity => Some(("omega".into(), "the velocity a new name")),
+        }
+    }
+
+    /// The pattern that the action gives a slot.
+    pub(super) fn pattern(&self, slot: Slot) -> Option<&'d Pattern> {
+        match slot {
+            Slot::Configuration => Some(self.configuration),
+            Slot::Element => Some(self.element),
+            _ => None,
+        }
+    }
+
+    /// The slot that each argument takes; `None` if there is an error, which is reported.
+    pub(super) fn match_slots(
+        &self,
+        closure: &Closure,
+        slots: &[Slot],
+        diagnostics: &mut Diagnostics,
+    ) -> Vec<Option<Slot>> {
+        let last = closure.arguments.len().wrapping_sub(1);
+        let mut taken: Vec<Option<Slot>> =
+            closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
+        if slots.contains(&Slot::Velocity)
+            && taken.last() == Some(&None)
+            && !self.is_foreign(&closure.arguments[last].pattern)
+        {
+            taken[last] = Some(Slot::Velocity);
+        }
+        for (position, argument) in closure.arguments.iter().enumerate() {
+            self.check_argument(closure, argument, position, &taken, slots, diagnostics);
+        }
+        self.check_order(closure, &taken, slots, diagnostics);
+        if slots.contains(&Slot::Velocity) && closure.arguments.is_empty() {
+            let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
+            diagnostics.push(error.help("write `|omega| …`"));
+        }
+        taken
+    }
+
+    fn find(&self, pattern: &Pattern, slots: &[Slot]) -> Option<Slot> {
+        slots.iter().copied().find(|&slot| match (slot, pattern) {
+            (Slot::Time, Pattern::Name(ident)) => ident == "t",
+            (Slot::Step, Pattern::Name(ident)) => ident == "h",
+            _ => self.pattern(slot).is_some_and(|known| known.matches(pattern)),
+        })
+    }
+
+    /// Whether a pattern has a meaning that this closure has no slot for.
+    fn is_foreign(&self, pattern: &Pattern) -> bool {
+        self.find(pattern, COST).is_some()
+    }
+
+    fn check_argument(
+        &self,
+        closure: &Closure,
+        argument: &Argument,
+        position: usize,
+        taken: &[Option<Slot>],
+        slots: &[Slot],
+        diagnostics: &mut Diagnostics,
+    ) {
+        let (name, place) = (argument.pattern.spell(), argument.pattern.place());
+        if let Some(ty) = &argument.ty {
+            diagnostics.push(
+                Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
+                    .help(format!("write `{name}` without `: {}`", spell_type(ty)))
+                    .note("types stand in the action, which introduces the spaces"),
+            );
+        }
+        match taken[position] {
+            Some(slot) if taken[..position].contains(&Some(slot)) => {
+                diagnostics
+                    .push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
+            }
+            Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
+            Some(Slot::Velocity) => {
+                argument.pattern.names().iter().for_each(|ident| {
+                    check_reserved(ident, "the velocity", diagnostics);
+                });
+            }
+            Some(_) => {}
+            None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
+        }
+    }
+
+    /// The error for an argument that the action does not know.
+    fn unknown(
+        &self,
+        closure: &Closure,
+        argument: &Argument,
+        position: usize,
+        taken: &[Option<Slot>],
+        slots: &[Slot],
+    ) -> Diagnostic {
+        let (name, place, key) = (argument.pattern.spell(), argument.pattern.place(), &closure.key);
+        let error = if self.is_foreign(&argument.pattern) {
+            Diagnostic::new(place, format!("the {key} cannot depend on `{name}`"))
+        } else {
+            Diagnostic::new(place, format!("cannot find `{name}` in the {key}"))
+        };
+        let meant = self.meant(position, taken, slots);
+        let head = self.head(taken, slots, meant, closure);
+        let error = match meant.and_then(|slot| self.names(slot)) {
+            Some((_, meaning)) if meant == Some(Slot::Velocity) => {
+                error.help(format!("give {meaning}: write `{head}`"))
+            }
+            Some((known, meaning)) => error.help(format!("the action calls {meaning} `{known}`: write `{head}`")),
+            None => error.help(format!("write `{head}`")),
+        };
+        let listed = slots.iter().filter_map(|&slot| self.names(slot).map(|(name, meaning)| (slot, name, meaning)));
+        let listed: Vec<String> = listed
+            .map(|(slot, name, meaning)| match slot {
+                Slot::Step => format!("`{name}`"),
+                Slot::Velocity => "a new name (velocity)".to_string(),
+                _ => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
+            })
+            .collect();
+        let order = if listed.len() > 1 { ", in this order" } else { "" };
+        error.note(format!("arguments go by name: {}{order}", listed.join(", ")))
+    }
+
+    /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
+    fn meant(&self, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Option<Slot> {
+        let index = |slot: Slot| slots.iter().position(|&other| other == slot);
+        let unknown_behind = taken[position + 1..].iter().filter(|slot| slot.is_none()).count();
+        let limit = taken[position + 1..].iter().flatten().filter_map(|&slot| index(slot)).min().unwrap_or(slots.len());
+        let free = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) && !taken.contains(&Some(**slot));
+        slots[..limit].iter().rev().filter(free).nth(unknown_behind).copied()
+    }
+
+    /// The arguments as they should be.
+    pub(super) fn head(
+        &self,
+        taken: &[Option<Slot>],
+        slots: &[Slot],
+        meant: Option<Slot>,
+        closure: &Closure,
+    ) -> String {
+        let velocity = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
+        let wanted = slots
+            .iter()
+            .filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
+        let names: Vec<String> = wanted
+            .filter_map(|&slot| match (slot, velocity) {
+                (Slot::Velocity, Some(position)) => Some(closure.arguments[position].pattern.spell()),
+                _ => self.names(slot).map(|(name, _)| name),
+            })
+            .collect();
+        format!("|{}|", names.join(", "))
+    }
+
+    fn check_order(&self, closure: &Closure, taken: &[Option<Slot>], slots: &[Slot], diagnostics: &mut Diagnostics) {
+        let index = |slot: &Slot| slots.iter().position(|other| other == slot);
+        let order: Vec<usize> = taken.iter().flatten().filter_map(index).collect();
+        if !taken.contains(&None) && order.windows(2).any(|pair| pair[0] > pair[1]) {
+            let error =
+                Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
+            diagnostics.push(error.help(format!("write `{}`", self.head(taken, slots, None, closure))));
+        }
+    }
+}
