@@ -2,6 +2,11 @@
 
 #![allow(missing_docs)]
 
+/// The code of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
+
 /// The structs of the folder `fixtures/accept`.
 pub mod fixtures {
     macro_rules! fixtures {
@@ -12,3 +17,5 @@ pub mod fixtures {
         planar_pendulum principal_body rigid_body4 sided_pair sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
     }
 }
+
+pub mod oracle;

@@ -102,7 +102,7 @@ fn read_value(
 ) -> Result<(), Diagnostic> {
     // where a value is not of its key's kind, the error shows one that is
     let expected = |what: &str| {
-        Diagnostic::new(stream.span(), format!("the value of `{key}` is {what}"))
+        Diagnostic::new(stream.span(), format!("the value of `{key}` has to be {what}"))
             .help(format!("write `{key} = {}`", example(kind)))
     };
     match kind {

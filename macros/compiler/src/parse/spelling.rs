@@ -124,7 +124,9 @@ fn write(stream: TokenStream, text: &mut String) {
                 glued = false;
             }
             TokenTree::Punct(punct) => {
-                let (before, after) = spaces(punct.as_char());
+                // a colon that is no half of a path separator
+                let single = punct.as_char() == ':' && punct.spacing() == Spacing::Alone && !text.ends_with(':');
+                let (before, after) = if single { (false, true) } else { spaces(punct.as_char()) };
                 if before && !glued {
                     text.push(' ');
                 }

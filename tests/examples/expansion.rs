@@ -1,0 +1,14 @@
+//! Times the expansion of every accepted fixture with the compiler built as this program is:
+//! `cargo run -p clebsch-tests --example expansion [-- --json]`, as cargo builds macros by default without optimisation,
+//! or with `--release`.
+
+#[path = "../benches/steps/expansion.rs"]
+mod expansion;
+
+fn main() {
+    let expansions = expansion::all();
+    match std::env::args().any(|argument| argument == "--json") {
+        true => expansion::print_json(&expansions),
+        false => expansion::print(&expansions),
+    }
+}
