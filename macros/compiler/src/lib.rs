@@ -22,13 +22,17 @@ use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
+///
+/// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported.
 pub fn expand(item: TokenStream) -> TokenStream {
     let graph = Graph::new();
     match compile(&graph, item.clone()) {
         Ok(program) => emit::emit(&program),
         Err(errors) => {
+            let declaration = parse::parse(item).ok();
+            let outline = declaration.as_ref().and_then(model::outline);
+            let stub = declaration.zip(outline).map(|(declaration, outline)| emit::stub(&declaration, &outline));
             let errors = errors.to_compile_errors();
-            let stub = emit::stub(item);
             quote::quote!(#errors #stub)
         }
     }

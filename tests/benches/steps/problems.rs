@@ -6,6 +6,7 @@ use crate::hand4::Body4;
 use crate::runge_kutta::{RungeKutta, Swinging, Turning, Turning4};
 use crate::timing::interleaved;
 use crate::trial::{Drift, Trial, by_hand, derived};
+use clebsch::Clebsch;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::principal_body::PrincipalBody;
 use clebsch_tests::fixtures::rigid_body4::RigidBody4;

@@ -7,6 +7,7 @@ mod closures;
 mod elaborate;
 mod fields;
 mod groups;
+mod outline;
 mod print;
 mod scalar;
 mod scope;
@@ -18,6 +19,7 @@ mod types;
 mod value;
 mod vectors;
 
+pub use outline::{Outline, outline};
 pub use structure::Structure;
 pub use types::*;
 

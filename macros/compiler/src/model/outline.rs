@@ -1,0 +1,47 @@
+//! What a declaration with errors still says: the types that its integrator would have.
+
+use clebsch_symbolic::{Group, Shape};
+use quote::ToTokens;
+
+use super::{ScalarType, Structure, arguments, spaces};
+use crate::diagnostic::Diagnostics;
+use crate::parse::Declaration;
+
+/// The types of an integrator, without its mathematics.
+pub struct Outline {
+    /// How the factors nest.
+    pub element: Structure,
+    /// The groups of the factors.
+    pub groups: Vec<Group>,
+    /// How the leaves of the configuration nest.
+    pub configuration: Structure,
+    /// The shapes of the leaves of the configuration.
+    pub shapes: Vec<Shape>,
+    /// The scalar, as far as it can be told.
+    pub scalar: ScalarType,
+}
+
+/// The outline of a declaration whose action has readable types.
+pub fn outline(declaration: &Declaration) -> Option<Outline> {
+    let mut ignored = Diagnostics::new();
+    let types = arguments::of_action(&declaration.action, &mut ignored)?;
+    let groups = spaces::read_groups(types.group, &declaration.generics, &mut ignored)?;
+    let spaces = spaces::read_spaces(types.space, &declaration.generics, &mut ignored)?;
+    Some(Outline {
+        element: groups.structure,
+        groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
+        configuration: spaces.structure,
+        shapes: spaces.leaves.iter().map(|(space, _)| space.shape).collect(),
+        scalar: scalar(declaration),
+    })
+}
+
+/// The first type parameter, or `f32` where the dial or a field says so, or `f64`.
+fn scalar(declaration: &Declaration) -> ScalarType {
+    if let Some(parameter) = declaration.generics.type_params().next() {
+        return ScalarType::Parameter(parameter.ident.clone());
+    }
+    let named = declaration.dials.scalar.as_ref().is_some_and(|ident| ident == "f32");
+    let held = declaration.fields.iter().any(|field| field.ty.to_token_stream().to_string().contains("f32"));
+    if named || held { ScalarType::F32 } else { ScalarType::F64 }
+}
