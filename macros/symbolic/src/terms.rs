@@ -7,6 +7,9 @@ use num_traits::{One, ToPrimitive, Zero};
 use crate::node::{Exponent, Id, Node, Term};
 use crate::{Expr, Graph, Property, Rational, Shape, integer};
 
+/// The scalar powers and the word of a term: what like terms share.
+type Monomial = (Vec<(Id, Exponent)>, Vec<Id>);
+
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
         Term { coefficient, scalars: Vec::new(), word: Vec::new() }
@@ -31,7 +34,7 @@ impl Term {
 impl Graph {
     /// The sum of terms of one shape, like terms collected; a single plain letter is that letter.
     pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
-        let mut collected: BTreeMap<(Vec<(Id, Exponent)>, Vec<Id>), Rational> = BTreeMap::new();
+        let mut collected: BTreeMap<Monomial, Rational> = BTreeMap::new();
         for term in terms {
             *collected.entry((term.scalars, term.word)).or_insert_with(Rational::zero) += term.coefficient;
         }
@@ -141,12 +144,8 @@ impl Graph {
         if word.iter().any(|&letter| self.expr(letter).is_zero()) || term.coefficient.is_zero() {
             return self.zero(shape);
         }
-        let segments = self.split_at_scalars(word);
-        let scalar = shape.is_scalar();
-        let last = segments.len().saturating_sub(1);
-        for (position, segment) in segments.into_iter().enumerate() {
-            let inner = !segment.is_empty() && (scalar || (position > 0 && position < last));
-            match inner {
+        for segment in self.split_at_scalars(word) {
+            match self.word_shape(&segment).is_scalar() {
                 true => self.multiply_scalar(&mut term, self.scalar_word(segment)),
                 false => term.word.extend(segment),
             }
@@ -223,24 +222,23 @@ impl Graph {
         self.expr(id).as_symbol().is_some_and(|symbol| symbol.property == property)
     }
 
-    /// Cuts a word where an inner dimension is one; all segments but the first and the last are scalars.
+    /// Cuts a word where an inner dimension is one.
     fn split_at_scalars(&self, word: Vec<Id>) -> Vec<Vec<Id>> {
-        let mut segments = vec![Vec::new()];
+        let mut segments: Vec<Vec<Id>> = Vec::new();
         for letter in word {
-            let starts_with_one = self.shape(letter).rows == 1;
-            if starts_with_one && segments.last().is_some_and(|segment| !segment.is_empty())
-                || starts_with_one && segments.len() == 1
-            {
-                segments.push(Vec::new());
-            }
-            let ends_with_one = self.shape(letter).columns == 1;
-            // by construction: there is always a last segment
-            segments.last_mut().expect("segments are never empty").push(letter);
-            if ends_with_one {
-                segments.push(Vec::new());
+            match segments.last_mut() {
+                Some(segment) if self.shape(letter).rows != 1 => segment.push(letter),
+                _ => segments.push(vec![letter]),
             }
         }
         segments
+    }
+
+    /// The shape of the product of a word that is not empty.
+    fn word_shape(&self, word: &[Id]) -> Shape {
+        let rows = word.first().map_or(0, |&letter| self.shape(letter).rows);
+        let columns = word.last().map_or(0, |&letter| self.shape(letter).columns);
+        Shape::new(rows, columns)
     }
 
     /// The 1×1 product of a word, written in the one of its two readings that comes first.

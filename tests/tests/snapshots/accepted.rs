@@ -1,0 +1,83 @@
+//! Every stage of every accepted fixture.
+
+use std::fmt::Write;
+
+use clebsch_compiler::derive::{Formula, Formulas};
+use clebsch_compiler::lower::Program;
+use clebsch_compiler::{emit, parse};
+use insta::assert_snapshot;
+
+use crate::fixture::{Fixture, root, with_snapshots};
+
+/// A snapshot that is longer helps nobody; what is longer is shown by its operation counts.
+const MOST_LINES: usize = 150;
+
+/// Whose formulas are shown in LaTeX too.
+const IN_LATEX: [&str; 2] = ["heavy_top", "two_pendulums"];
+
+/// Whose generated code is shown: the shortest expansions, one implicit and one explicit.
+const GENERATED: [&str; 2] = ["free_particle", "planar_pendulum"];
+
+#[test]
+fn every_stage_of_every_accepted_fixture() {
+    for fixture in Fixture::all("accept") {
+        let name = &fixture.name;
+        let declaration = parse::parse(fixture.item()).unwrap_or_else(|errors| panic!("{name}:\n{errors}"));
+        fixture.with_program(|program| {
+            let formulas = &program.formulas;
+            fixture.snapshots("accept", || {
+                assert_snapshot!(format!("{name}.1_declaration"), declaration);
+                assert_snapshot!(format!("{name}.2_model"), formulas.model);
+                assert_snapshot!(format!("{name}.3_formulas"), formulas);
+                if IN_LATEX.contains(&name.as_str()) {
+                    assert_snapshot!(format!("{name}.3_formulas_latex"), latex(formulas));
+                }
+                assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
+                assert_snapshot!(format!("{name}.5_derivation"), emit::derivation(program));
+                if GENERATED.contains(&name.as_str()) {
+                    assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
+                }
+            });
+        });
+    }
+}
+
+/// Each formula as `symbol = expression` in LaTeX.
+fn latex(formulas: &Formulas<'_>) -> String {
+    let line =
+        |formula: Formula| format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex.join(" \\\\\n"));
+    formulas.listing().into_iter().map(line).collect()
+}
+
+/// The code of all kernels, or their operation counts where that is long.
+fn code_or_counts(program: &Program<'_>) -> String {
+    let code = program.to_string();
+    let lines = code.lines().count();
+    if lines <= MOST_LINES {
+        return code;
+    }
+    let mut text = format!("{lines} lines\n");
+    for (name, kernel) in program.kernels() {
+        // by construction: writing to a string does not fail
+        let _ = writeln!(text, "{name}: {}", kernel.cost());
+    }
+    text
+}
+
+#[test]
+fn no_snapshot_is_left_over() {
+    for folder in ["accept", "reject"] {
+        let names: Vec<String> = Fixture::all(folder).into_iter().map(|fixture| fixture.name).collect();
+        let left_over: Vec<_> = with_snapshots(folder).into_iter().filter(|name| !names.contains(name)).collect();
+        assert!(left_over.is_empty(), "delete the snapshots of {folder} whose fixtures are gone: {left_over:?}");
+    }
+}
+
+#[test]
+fn every_accepted_fixture_is_compiled() {
+    let library = std::fs::read_to_string(root().join("src/lib.rs")).expect("the library of this package");
+    let words: Vec<&str> = library.split_whitespace().collect();
+    let missing: Vec<_> = Fixture::all("accept").into_iter().map(|fixture| fixture.name).collect();
+    let missing: Vec<_> = missing.iter().filter(|name| !words.contains(&name.as_str())).collect();
+    assert!(missing.is_empty(), "add {missing:?} to the list of fixtures in tests/src/lib.rs");
+}

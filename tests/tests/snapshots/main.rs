@@ -1,0 +1,11 @@
+//! What the compiler makes of every fixture, stage by stage, and what it says about every mistake.
+//!
+//! Adding a file to `fixtures/accept` or `fixtures/reject` adds its snapshots. `INSTA_UPDATE=always` writes them, the diff is
+//! the review; with `CI=true` a difference fails and writes nothing.
+
+mod accepted;
+mod costs;
+mod determinism;
+mod fixture;
+mod place;
+mod rejected;
