@@ -124,11 +124,11 @@ impl Scope<'_, '_> {
                 factors.reduce(|product, factor| quote!(#product * #factor)).unwrap_or_else(|| self.number(&integer(1)))
             }
             Code::Reciprocal(x) => {
+                let one = self.number(&integer(1));
                 // `1 / a * b` would divide by a alone
-                let divisor = self.code(x, true);
-                let divisor =
-                    if matches!(**x, Code::Product(_) | Code::Sum(..)) { quote!((#divisor)) } else { divisor };
-                let (one, x) = (self.number(&integer(1)), divisor);
+                let compound = matches!(**x, Code::Product(_) | Code::Sum(..));
+                let x = self.code(x, !compound);
+                let x = if compound { quote!((#x)) } else { x };
                 if tight { quote!((#one / #x)) } else { quote!(#one / #x) }
             }
             Code::Root(x, (1, 2)) => {

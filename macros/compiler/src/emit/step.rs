@@ -176,7 +176,7 @@ impl Emitter<'_, '_> {
 
     /// The steps themselves, which only call their parts.
     fn whole_steps(&self) -> TokenStream {
-        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let krate = &self.paths.krate;
         let (configuration, element, momentum, impulse) =
             (self.configuration_type(), self.element_type(), self.momentum_type(), self.impulse_type());
         let euler_poincare =
@@ -196,9 +196,6 @@ impl Emitter<'_, '_> {
                 let (q, mu) = (*q, *mu);
                 #(#euler_poincare)*
                 #next_impulse
-                if !(#private::Space::is_finite(&q) && #private::Space::is_finite(&mu)) {
-                    return ::core::result::Result::Err(#krate::Error::NotFinite { name: "the next state" });
-                }
                 ::core::result::Result::Ok((q, mu, impulse))
             }
             #symmetric
@@ -260,7 +257,7 @@ impl Emitter<'_, '_> {
     }
 
     fn symmetric(&self) -> TokenStream {
-        let (private, krate, configuration) = (&self.paths.private, &self.paths.krate, self.configuration_type());
+        let (krate, configuration) = (&self.paths.krate, self.configuration_type());
         let substeps = self.program.steps.iter().enumerate().map(|(index, step)| {
             let suffix = self.program.suffix(index);
             let solve = format_ident!("solve{suffix}");
@@ -295,9 +292,6 @@ impl Emitter<'_, '_> {
             ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
                 let (q, p) = (*q, *p);
                 #(#substeps)*
-                if !(#private::Space::is_finite(&q) && #private::Space::is_finite(&p)) {
-                    return ::core::result::Result::Err(#krate::Error::NotFinite { name: "the next state" });
-                }
                 ::core::result::Result::Ok((q, p))
             }
         }
