@@ -8,7 +8,7 @@ pub use crate::linear::Orientation;
 pub use crate::orbit::{
     check_sine_squared, from_increment, kinetic_energy, largest, length_defect, orthogonality_defect,
 };
-pub use crate::parameters::{annihilator_defect, check_finite, check_symmetric, invert};
+pub use crate::parameters::{annihilator_defect, check_diagonal, check_finite, check_symmetric, check_unit, invert};
 pub use crate::{Clebsch, Error, Scalar, Space};
 pub use core;
 pub use nalgebra::{SMatrix, SVector};

@@ -27,6 +27,20 @@ pub enum Error {
         /// The largest defect that is taken for round-off.
         tolerance: f64,
     },
+    /// A field that is declared `#[clebsch(diagonal)]` has an entry off its diagonal.
+    NotDiagonal {
+        /// Name of the field.
+        field: &'static str,
+        /// Largest entry off the diagonal, in the unit of the field.
+        defect: f64,
+    },
+    /// A field that is declared `#[clebsch(unit)]` has another length.
+    NotUnit {
+        /// Name of the field.
+        field: &'static str,
+        /// Its length.
+        length: f64,
+    },
     /// The kinetic energy is degenerate for these parameters: momenta do not determine velocities.
     SingularKineticEnergy {
         /// Condition number of the inertia, infinite where it is exactly singular.
@@ -91,6 +105,16 @@ impl Display for Error {
                 f,
                 "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more than the \
                  round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove `#[clebsch(symmetric)]`"
+            ),
+            Self::NotDiagonal { field, defect } => write!(
+                f,
+                "`{field}` is declared diagonal, but has an entry of {defect:.3e} off its diagonal: set it to zero, or remove \
+                 `#[clebsch(diagonal)]`"
+            ),
+            Self::NotUnit { field, length } => write!(
+                f,
+                "`{field}` is declared a unit vector, but its length is {length}: pass {field}.normalize(), or remove \
+                 `#[clebsch(unit)]`"
             ),
             Self::SingularKineticEnergy { condition } => write!(
                 f,

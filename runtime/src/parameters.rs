@@ -27,6 +27,31 @@ pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &S
     Ok(())
 }
 
+/// Fails if `matrix` has an entry off its diagonal.
+///
+/// # Errors
+/// [`Error::NotDiagonal`].
+pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
+    let off_diagonal = SMatrix::<T, N, N>::from_fn(|i, j| if i == j { T::zero() } else { matrix[(i, j)] });
+    match off_diagonal.max_abs() {
+        defect if defect > T::zero() => Err(Error::NotDiagonal { field: name, defect: defect.to_f64() }),
+        _ => Ok(()),
+    }
+}
+
+/// Fails if the length of `vector` differs from one by more than round-off, √ε as for the input of configurations.
+///
+/// # Errors
+/// [`Error::NotUnit`].
+pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVector<T, N>) -> Result<(), Error> {
+    let entries: [T; N] = from_fn(|i| vector[i]);
+    let length = length(&entries);
+    match (length - T::one()).abs() > T::EPSILON.sqrt() {
+        true => Err(Error::NotUnit { field: name, length: length.to_f64() }),
+        false => Ok(()),
+    }
+}
+
 /// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
 ///
 /// Refused is a matrix whose condition number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for
@@ -101,9 +126,18 @@ fn length<T: Scalar, const M: usize>(vector: &[T; M]) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::{annihilator_defect, check_symmetric, invert};
+    use super::{annihilator_defect, check_diagonal, check_symmetric, check_unit, invert};
     use crate::Error;
     use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn promises_are_checked() {
+        assert_eq!(check_diagonal("j", &Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0))), Ok(()));
+        let tilted = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 1.0);
+        assert_eq!(check_diagonal("j", &tilted), Err(Error::NotDiagonal { field: "j", defect: 0.5 }));
+        assert_eq!(check_unit("e", &Vector3::new(0.6, 0.0, 0.8)), Ok(()));
+        assert_eq!(check_unit("e", &Vector3::new(0.0, 2.0, 0.0)), Err(Error::NotUnit { field: "e", length: 2.0 }));
+    }
 
     #[test]
     fn inertia_ratios_do_not_matter_but_degeneracy_does() {

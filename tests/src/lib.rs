@@ -14,7 +14,7 @@ pub mod fixtures {
     }
     fixtures! {
         annotated_body first_order_top flying_body free_particle free_rigid_body generic_body heavy_top neumann paper_pendulum
-        planar_pendulum principal_body rigid_body4 sided_pair sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
+        planar_pendulum principal_body promised_top rigid_body4 sided_pair sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
     }
 }
 
