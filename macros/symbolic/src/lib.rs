@@ -36,7 +36,7 @@ pub use expr::Expr;
 pub use graph::Graph;
 pub use group::{Chart, Group};
 pub use node::Function;
-pub use rational::{Rational, integer, rational};
+pub use rational::{One, Rational, Signed, Zero, integer, product, rational};
 pub use shape::Shape;
 pub use symbol::{Property, Role, Symbol};
 pub use view::{View, WordTerm};

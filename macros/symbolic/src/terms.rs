@@ -1,10 +1,12 @@
 //! The algebra of terms: sums collect like terms, products merge scalar powers and reduce words of letters.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use num_traits::{One, ToPrimitive, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
+use crate::rational::product;
 use crate::{Expr, Graph, Property, Rational, Shape, integer};
 
 /// The scalar powers and the word of a term: what like terms share.
@@ -36,7 +38,12 @@ impl Graph {
     pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
         let mut collected: BTreeMap<Monomial, Rational> = BTreeMap::new();
         for term in terms {
-            *collected.entry((term.scalars, term.word)).or_insert_with(Rational::zero) += term.coefficient;
+            match collected.entry((term.scalars, term.word)) {
+                Entry::Vacant(entry) => {
+                    entry.insert(term.coefficient);
+                }
+                Entry::Occupied(mut entry) => *entry.get_mut() += term.coefficient,
+            }
         }
         let terms: Vec<Term> = collected
             .into_iter()
@@ -87,7 +94,7 @@ impl<'g> Expr<'g> {
     pub(crate) fn sum(self, other: Expr<'g>, coefficient: Rational) -> Expr<'g> {
         assert_eq!(self.shape(), other.shape(), "a sum of `{self}` and `{other}`");
         let scaled = other.terms().into_iter().map(|mut term| {
-            term.coefficient *= &coefficient;
+            term.coefficient = product(&term.coefficient, &coefficient);
             term
         });
         self.graph.collect(self.shape(), self.terms().into_iter().chain(scaled))
@@ -96,7 +103,7 @@ impl<'g> Expr<'g> {
     /// coefficient · self, distributed over a sum.
     pub(crate) fn times(self, coefficient: &Rational) -> Expr<'g> {
         let terms = self.terms().into_iter().map(|mut term| {
-            term.coefficient *= coefficient;
+            term.coefficient = product(&term.coefficient, coefficient);
             term
         });
         self.graph.collect(self.shape(), terms)
@@ -129,7 +136,7 @@ impl Graph {
     /// The product of two terms as an expression of the given shape.
     pub(crate) fn multiply(&self, left: &Term, right: &Term, shape: Shape) -> Expr<'_> {
         let mut term = left.clone();
-        term.coefficient *= &right.coefficient;
+        term.coefficient = product(&left.coefficient, &right.coefficient);
         term.multiply_scalars(&right.scalars);
         let letters: Vec<Id> = std::mem::take(&mut term.word).into_iter().chain(right.word.iter().copied()).collect();
         self.with_word(term, letters, shape)
@@ -162,7 +169,7 @@ impl Graph {
     /// Multiplies a term by a scalar expression.
     pub(crate) fn multiply_scalar(&self, term: &mut Term, scalar: Expr<'_>) {
         let factor = scalar.factor();
-        term.coefficient *= factor.coefficient;
+        term.coefficient = product(&term.coefficient, &factor.coefficient);
         match scalar.is_zero() {
             true => term.coefficient = Rational::zero(),
             false => term.multiply_scalars(&factor.scalars),
@@ -174,7 +181,7 @@ impl Graph {
         if let Node::Sum(terms) = &*self.node(letter)
             && let [inner] = terms.as_slice()
         {
-            term.coefficient *= &inner.coefficient;
+            term.coefficient = product(&term.coefficient, &inner.coefficient);
             term.multiply_scalars(&inner.scalars);
             inner.word.iter().for_each(|&letter| self.push_letter(term, word, letter));
             return;

@@ -12,6 +12,8 @@ mod print;
 mod reference;
 mod symbols;
 
+use std::cell::OnceCell;
+
 use clebsch_symbolic::Expr;
 
 use crate::diagnostic::Diagnostics;
@@ -48,8 +50,16 @@ pub struct Formulas<'g> {
     pub potential_energy: Expr<'g>,
     /// The declared discrete Lagrangian.
     pub lagrangian: DiscreteLagrangian<'g>,
+    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂U₀).
+    pub legendre: Vec<Expr<'g>>,
+    /// F⁺ℓd(q, F) for each factor without its last kick: the other trivialisation of ∂_F K.
+    pub legendre_next: Vec<Expr<'g>>,
+    /// J(q, ∂U₁), the last kick of F⁺ℓd, to be taken at q⁺; `None` if there is none.
+    pub legendre_kick: Option<Vec<Expr<'g>>>,
     /// The substeps of a step: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
     pub substeps: Vec<Substep<'g>>,
+    /// All of it as text, made when it is first asked for.
+    listing: OnceCell<Vec<Formula>>,
 }
 
 /// One discrete Lagrangian with what a step of it needs.
@@ -87,7 +97,14 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         .into_iter()
         .map(|(parts, lagrangian)| substep(&sources(parts), lagrangian))
         .collect();
+    let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
+    let (legendre_kick, start) = (impulse(lagrangian.end), impulse(lagrangian.start));
+    let (legendre, legendre_next) = legendre(&model, &lagrangian, start);
     Ok(Formulas {
+        legendre,
+        legendre_next,
+        legendre_kick,
+        listing: OnceCell::new(),
         is_free: action::is_free(&model, &symbols, &generator),
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
@@ -118,29 +135,16 @@ fn substep<'g>(sources: &equation::Sources<'_, 'g>, lagrangian: DiscreteLagrangi
     }
 }
 
-impl<'g> Formulas<'g> {
-    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂U₀).
-    pub fn legendre(&self) -> Vec<Expr<'g>> {
-        self.transform(&self.lagrangian, true)
-    }
-
-    /// F⁺ℓd for each factor: the other trivialisation of ∂_F K, plus J(q⁺, ∂U₁) where q stands for q⁺.
-    pub fn legendre_next(&self) -> (Vec<Expr<'g>>, Option<Vec<Expr<'g>>>) {
-        let end = action::impulse(&self.model, &self.symbols, &self.momentum_map, self.lagrangian.end);
-        (self.transform(&self.lagrangian, false), end)
-    }
-
-    fn transform(&self, lagrangian: &DiscreteLagrangian<'g>, before: bool) -> Vec<Expr<'g>> {
-        let start = action::impulse(&self.model, &self.symbols, &self.momentum_map, lagrangian.start);
-        let component = |k: usize| {
-            let (minus, plus) = equation::trivialisations(&self.model, lagrangian.kinetic, k);
-            let algebra = self.model.factors[k].group.algebra();
-            match (&start, before) {
-                (Some(start), true) => minus.components(algebra) - start[k],
-                (None, true) => minus.components(algebra),
-                (_, false) => plus.components(algebra),
-            }
-        };
-        (0..self.model.factors.len()).map(component).collect()
-    }
+/// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.
+fn legendre<'g>(
+    model: &Model<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+    start: Option<Vec<Expr<'g>>>,
+) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let transforms = model.factors.iter().enumerate().map(|(k, factor)| {
+        let (before, after) = equation::trivialisations(model, lagrangian.kinetic, k);
+        let (before, after) = (before.components(factor.group.algebra()), after.components(factor.group.algebra()));
+        (start.as_ref().map_or(before, |start| before - start[k]), after)
+    });
+    transforms.unzip()
 }

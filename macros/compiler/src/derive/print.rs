@@ -71,7 +71,16 @@ impl<'g> Formulas<'g> {
     }
 
     /// All formulas, in the order of the derivation.
-    pub fn listing(&self) -> Vec<Formula> {
+    pub fn listing(&self) -> &[Formula] {
+        self.listing.get_or_init(|| self.list())
+    }
+
+    /// The formulas with a title.
+    pub fn titled(&self, title: &str) -> Vec<Formula> {
+        self.listing().iter().filter(|formula| formula.title == title).cloned().collect()
+    }
+
+    fn list(&self) -> Vec<Formula> {
         let (q, f) = (self.q(), self.f());
         let mut formulas = vec![
             Formula::new("action", format!("Φ_{f}({q})"), &self.model.action),
@@ -144,19 +153,18 @@ impl<'g> Formulas<'g> {
 
     /// F⁻ℓd(q, F).
     pub fn formula_of_legendre(&self) -> Formula {
-        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &readable(&self.legendre()))
+        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &readable(&self.legendre))
     }
 
     /// F⁺ℓd(q, F).
     pub fn formula_of_legendre_next(&self) -> Formula {
-        let (kinetic, end) = self.legendre_next();
         let mut formula =
-            Formula::new("next Legendre transform", format!("F⁺ℓd({}, {})", self.q(), self.f()), &kinetic);
-        if let Some(end) = end {
+            Formula::new("next Legendre transform", format!("F⁺ℓd({}, {})", self.q(), self.f()), &self.legendre_next);
+        if let Some(end) = &self.legendre_kick {
             formula
                 .text
                 .iter_mut()
-                .zip(readable(&end))
+                .zip(readable(end))
                 .for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
         }
         formula

@@ -87,16 +87,12 @@ impl Emitter<'_, '_> {
         });
         let element = self.element_type();
         let update = step.update.as_ref().map(|kernel| {
-            let (signature, formulas) = (name("update"), self.titled("momentum update"));
+            let (signature, formulas) = (name("update"), self.program.formulas.titled("momentum update"));
             let signature = quote!(#signature(&self, mu: &#momentum, d: &#element) -> #momentum);
             self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
         });
         let solve = self.solve(name("solve"), suffix, step);
         quote!(#start #end #start_gradient #end_gradient #solve #update)
-    }
-
-    fn titled(&self, title: &str) -> Vec<Formula> {
-        self.program.formulas.listing().into_iter().filter(|formula| formula.title == title).collect()
     }
 
     /// The chart coordinates of all factors, equation by equation.
@@ -159,14 +155,14 @@ impl Emitter<'_, '_> {
         );
         let advance = self.part(
             "The configuration that F = I + D moves q to.",
-            &self.titled("action"),
+            &self.program.formulas.titled("action"),
             quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
             &step.advance,
             Some(&self.model.configuration),
         );
         let lift = self.part(
             "The covector p carried along by F = I + D, at q⁺.",
-            &self.titled("cotangent lift"),
+            &self.program.formulas.titled("cotangent lift"),
             quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
             &self.program.cotangent_lift,
             Some(&self.model.configuration),

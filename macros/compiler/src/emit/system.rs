@@ -65,13 +65,9 @@ impl Emitter<'_, '_> {
 
     fn formulas(&self) -> TokenStream {
         let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
-        let listing = formulas.listing();
-        let titled = |title: &str| -> Vec<Formula> {
-            listing.iter().filter(|formula| formula.title == title).cloned().collect()
-        };
         let methods = [
             self.method(
-                ("The action.", &titled("action")),
+                ("The action.", &formulas.titled("action")),
                 quote!(act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration),
                 &program.act,
                 Some(&self.model.configuration),
@@ -79,14 +75,14 @@ impl Emitter<'_, '_> {
             self.method(
                 (
                     "The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).",
-                    &[formulas.formula_of_momentum_map()],
+                    &formulas.titled("momentum map"),
                 ),
                 quote!(momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum),
                 &program.momentum_map,
                 None,
             ),
             self.method(
-                ("The coadjoint action.", &[formulas.formula_of_coadjoint()]),
+                ("The coadjoint action.", &formulas.titled("coadjoint action")),
                 quote!(coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum),
                 &program.coadjoint,
                 None,
@@ -94,7 +90,7 @@ impl Emitter<'_, '_> {
             self.method(
                 (
                     "The discrete Legendre transform: the momentum N before the step that moves q by F.",
-                    &[formulas.formula_of_legendre()],
+                    &formulas.titled("Legendre transform"),
                 ),
                 quote!(legendre(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre,
@@ -103,7 +99,7 @@ impl Emitter<'_, '_> {
             self.method(
                 (
                     "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
-                    &[formulas.formula_of_legendre_next()],
+                    &formulas.titled("next Legendre transform"),
                 ),
                 quote!(legendre_next(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre_next,

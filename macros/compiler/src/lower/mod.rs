@@ -73,20 +73,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
     let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, expressions);
-    let (after, end) = formulas.legendre_next();
-    let after = match end {
-        None => after,
-        Some(end) => {
-            let moved: Vec<_> = formulas
-                .model
-                .configurations
-                .iter()
-                .zip(&formulas.model.action)
-                .map(|(q, image)| (q.symbol, *image))
-                .collect();
-            after.iter().zip(end).map(|(kinetic, end)| *kinetic + end.substitute(&moved)).collect()
-        }
-    };
+    let after = legendre_next(&formulas);
     let names = names::constants(&scalars, &hoisted);
     let constants = kernel::kernel(
         &mut scalars,
@@ -98,7 +85,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         act: outputs(&mut scalars, &formulas.model.action),
         momentum_map: stacked(&formulas.momentum_map, &mut scalars),
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),
-        legendre: stacked(&formulas.legendre(), &mut scalars),
+        legendre: stacked(&formulas.legendre, &mut scalars),
         legendre_next: stacked(&after, &mut scalars),
         potential: outputs(&mut scalars, &[formulas.potential_energy]),
         inertia: outputs(&mut scalars, &[formulas.inertia]),
@@ -120,6 +107,14 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         ));
     }
     Ok(program)
+}
+
+/// F⁺ℓd with its last kick at q⁺ = Φ_F(q).
+fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
+    let Some(kick) = &formulas.legendre_kick else { return formulas.legendre_next.clone() };
+    let leaves = formulas.model.configurations.iter().zip(&formulas.model.action);
+    let moved: Vec<_> = leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect();
+    formulas.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&moved)).collect()
 }
 
 fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {

@@ -1,8 +1,9 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 
-use clebsch_symbolic::{Function, Rational, Role, integer};
+use clebsch_symbolic::{Function, One, Rational, Role, Zero, integer, product};
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -128,30 +129,33 @@ impl Scalars {
 
     /// Whether it is the number zero.
     pub fn is_zero(&self, scalar: Scalar) -> bool {
-        self.as_number(scalar).is_some_and(|value| *value == integer(0))
+        self.as_number(scalar).is_some_and(Zero::is_zero)
     }
 
     /// constant + Σ coefficient · scalar; sums inside are merged where the coefficient is ±1.
     pub fn sum(&mut self, constant: Rational, terms: impl IntoIterator<Item = (Scalar, Rational)>) -> Scalar {
         let mut total = constant;
         let mut collected: BTreeMap<Scalar, Rational> = BTreeMap::new();
-        let mut add = |scalar: Scalar, coefficient: Rational| {
-            *collected.entry(scalar).or_insert_with(|| integer(0)) += coefficient;
+        let mut add = |scalar: Scalar, coefficient: Rational| match collected.entry(scalar) {
+            Entry::Vacant(entry) => {
+                entry.insert(coefficient);
+            }
+            Entry::Occupied(mut entry) => *entry.get_mut() += coefficient,
         };
         for (scalar, coefficient) in terms {
             match self.node(scalar) {
-                Node::Sum(inner, parts)
-                    if parts.len() < 2 || coefficient == integer(1) || coefficient == integer(-1) =>
-                {
-                    total += inner * &coefficient;
-                    parts.iter().for_each(|(part, factor)| add(*part, factor * &coefficient));
+                Node::Sum(inner, parts) if parts.len() < 2 || coefficient.is_one() || coefficient == integer(-1) => {
+                    if !inner.is_zero() {
+                        total += product(inner, &coefficient);
+                    }
+                    parts.iter().for_each(|(part, factor)| add(*part, product(factor, &coefficient)));
                 }
                 _ => add(scalar, coefficient),
             }
         }
-        let terms: Vec<_> = collected.into_iter().filter(|(_, coefficient)| *coefficient != integer(0)).collect();
+        let terms: Vec<_> = collected.into_iter().filter(|(_, coefficient)| !coefficient.is_zero()).collect();
         match terms.as_slice() {
-            [(only, coefficient)] if total == integer(0) && *coefficient == integer(1) => *only,
+            [(only, coefficient)] if total.is_zero() && coefficient.is_one() => *only,
             _ => {
                 let rate = self.rate_of(terms.iter().map(|(scalar, _)| *scalar));
                 self.intern(Node::Sum(total, terms), rate)
@@ -166,14 +170,14 @@ impl Scalars {
 
     /// coefficient · a.
     pub fn scale(&mut self, a: Scalar, coefficient: Rational) -> Scalar {
-        self.sum(integer(0), [(a, coefficient)])
+        if coefficient.is_one() { a } else { self.sum(integer(0), [(a, coefficient)]) }
     }
 
     /// A scalar as a number times the rest.
     pub fn factor(&self, scalar: Scalar) -> (Rational, Option<Scalar>) {
         match self.node(scalar) {
             Node::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
-            Node::Sum(constant, terms) if terms.len() == 1 && *constant == integer(0) => {
+            Node::Sum(constant, terms) if terms.len() == 1 && constant.is_zero() => {
                 (terms[0].1.clone(), Some(terms[0].0))
             }
             _ => (integer(1), Some(scalar)),
@@ -186,7 +190,7 @@ impl Scalars {
         let mut powers: BTreeMap<Scalar, u32> = BTreeMap::new();
         for factor in factors {
             let (number, rest) = self.factor(factor);
-            coefficient *= number;
+            coefficient = product(&coefficient, &number);
             match rest.map(|rest| (rest, self.node(rest))) {
                 Some((_, Node::Product(inner))) => {
                     inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e)
@@ -195,7 +199,7 @@ impl Scalars {
                 None => {}
             }
         }
-        if coefficient == integer(0) {
+        if coefficient.is_zero() {
             return self.zero();
         }
         self.cancel_reciprocals(&mut powers);
@@ -228,7 +232,7 @@ impl Scalars {
     pub fn reciprocal(&mut self, x: Scalar) -> Scalar {
         let (number, rest) = self.factor(x);
         // a reciprocal of the number zero stays symbolic: at run time it is an infinity that the finiteness checks report
-        let number = if number == integer(0) { integer(1) } else { number.recip() };
+        let number = if number.is_zero() { integer(1) } else { number.recip() };
         let Some(rest) = rest else {
             return self.number(number);
         };
