@@ -64,7 +64,8 @@ pub struct Work {
     pub linearizations: f64,
 }
 
-/// The work of `steps` steps. `rest` is a state in equilibrium, from where a step makes one linearisation, with M pivots to check.
+/// The work of `steps` steps. `rest` is a state in equilibrium, from where a step makes one linearisation and so checks one
+/// pivot for each unknown; no unknowns stand for an explicit step.
 pub fn work<S: Clebsch<Scalar = Counted>>(
     stepper: &Stepper<S>,
     start: State<S>,
@@ -81,7 +82,8 @@ pub fn work<S: Clebsch<Scalar = Counted>>(
         (OPERATIONS.get() as f64 / steps as f64, CHECKS.get() as f64 / steps as f64)
     };
     let ((operations, checks), (_, checks_at_rest)) = (count(start, steps), count(rest, 1));
-    Work { operations, linearizations: 1.0 + (checks - checks_at_rest) / unknowns as f64 }
+    let linearizations = if unknowns == 0 { 0.0 } else { 1.0 + (checks - checks_at_rest) / unknowns as f64 };
+    Work { operations, linearizations }
 }
 
 thread_local! {

@@ -92,7 +92,7 @@ fn pendulum(name: &'static str, gravity: f64, h: f64) -> Vec<Result> {
         let stepper =
             counted::SphericalPendulum { mass, length, gravity }.into_stepper(Counted(h)).expect("a pendulum");
         let state = |q, m| stepper.state(three(q), three(m)).expect("a state");
-        work(&stepper, state(position, momentum), state([0.0, 0.0, 1.0], [0.0; 3]), 3, 1000)
+        work(&stepper, state(position, momentum), state([0.0, 0.0, 1.0], [0.0; 3]), 0, 1000)
     };
     let trials = [derived(&stepper, start, 1.0), by_hand("rust_hand_map", hand), by_hand("rust_rk4", rk4)];
     results(name, h, 100, trials, work)

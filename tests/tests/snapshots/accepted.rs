@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use clebsch_compiler::derive::{Formula, Formulas};
 use clebsch_compiler::lower::Program;
+use clebsch_compiler::parse::Declaration;
 use clebsch_compiler::{emit, parse};
 use insta::assert_snapshot;
 
@@ -20,33 +21,32 @@ const GENERATED: [&str; 2] = ["free_particle", "planar_pendulum"];
 
 #[test]
 fn every_stage_of_every_accepted_fixture() {
-    for fixture in Fixture::all("accept") {
-        let name = &fixture.name;
-        let declaration = parse::parse(fixture.item()).unwrap_or_else(|errors| panic!("{name}:\n{errors}"));
-        fixture.with_program(|program| {
-            let formulas = &program.formulas;
-            fixture.snapshots("accept", || {
-                assert_snapshot!(format!("{name}.1_declaration"), declaration);
-                assert_snapshot!(format!("{name}.2_model"), formulas.model);
-                assert_snapshot!(format!("{name}.3_formulas"), formulas);
-                if IN_LATEX.contains(&name.as_str()) {
-                    assert_snapshot!(format!("{name}.3_formulas_latex"), latex(formulas));
-                }
-                assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
-                assert_snapshot!(format!("{name}.5_derivation"), emit::derivation(program));
-                if GENERATED.contains(&name.as_str()) {
-                    assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
-                }
-            });
-        });
+    Fixture::check_all("accept", |fixture| {
+        let declaration = parse::parse(fixture.item()).unwrap_or_else(|errors| panic!("{}:\n{errors}", fixture.name));
+        fixture.with_program(|program| fixture.snapshots("accept", || stages(&fixture.name, &declaration, program)));
+    });
+}
+
+fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
+    let formulas = &program.formulas;
+    assert_snapshot!(format!("{name}.1_declaration"), declaration);
+    assert_snapshot!(format!("{name}.2_model"), formulas.model);
+    assert_snapshot!(format!("{name}.3_formulas"), formulas);
+    if IN_LATEX.contains(&name) {
+        assert_snapshot!(format!("{name}.3_formulas_latex"), latex(formulas));
+    }
+    assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
+    assert_snapshot!(format!("{name}.5_derivation"), emit::derivation(program));
+    if GENERATED.contains(&name) {
+        assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
     }
 }
 
 /// Each formula as `symbol = expression` in LaTeX.
 fn latex(formulas: &Formulas<'_>) -> String {
     let line =
-        |formula: Formula| format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex.join(" \\\\\n"));
-    formulas.listing().into_iter().map(line).collect()
+        |formula: &Formula| format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex.join(" \\\\\n"));
+    formulas.listing().iter().map(line).collect()
 }
 
 /// The code of all kernels, or their operation counts where that is long.

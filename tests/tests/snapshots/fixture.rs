@@ -1,6 +1,7 @@
 //! The files of a folder of fixtures.
 
 use std::collections::BTreeSet;
+use std::panic::{RefUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clebsch_compiler::lower::Program;
@@ -26,6 +27,17 @@ impl Fixture {
             source: std::fs::read_to_string(&path).expect("a readable fixture"),
         };
         paths.into_iter().map(read).collect()
+    }
+
+    /// Checks all fixtures of a folder, so that one failure does not hide the next.
+    pub fn check_all(folder: &str, check: impl Fn(&Fixture) + RefUnwindSafe) {
+        let fails = |fixture: &Fixture| catch_unwind(|| check(fixture)).is_err();
+        let failed: Vec<String> = Fixture::all(folder).into_iter().filter(fails).map(|fixture| fixture.name).collect();
+        assert!(
+            failed.is_empty(),
+            "fixtures of {folder} that differ, see above: {failed:?}\n\
+             if the change is meant: INSTA_UPDATE=always cargo test -p clebsch-tests --test snapshots, and review the diff"
+        );
     }
 
     /// The item as the derive macro gets it: without its `#[derive]`, with the places of its tokens in this file.

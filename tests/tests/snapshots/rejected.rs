@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use clebsch_compiler::diagnostic::Diagnostics;
 use clebsch_compiler::{Graph, compile};
 use insta::assert_snapshot;
 
@@ -10,43 +11,43 @@ use crate::place::{Place, places};
 
 #[test]
 fn every_mistake_is_explained_at_its_place() {
-    let fixtures = Fixture::all("reject");
-    assert!(fixtures.len() >= 25, "mistakes that people really make are many more than {}", fixtures.len());
-    for fixture in fixtures {
-        let item = fixture.item();
-        let whole = Place::of(item.clone());
-        let graph = Graph::new();
-        let Err(errors) = compile(&graph, item) else { panic!("{} is accepted", fixture.name) };
+    Fixture::check_all("reject", |fixture| {
+        let errors = errors(fixture);
         let mut text = format!("{errors}\n");
         let places = places(errors.to_compile_errors());
-        assert_eq!(places.len(), errors.len(), "{}", fixture.name);
+        assert_eq!(places.len(), errors.len());
         for place in places {
-            assert!(place.is_inside(&whole), "{}: an error at {place:?} is outside of the item", fixture.name);
+            assert!(place.is_inside(&Place::of(fixture.item())), "an error at {place:?} is outside of the item");
             // by construction: writing to a string does not fail
             let _ = write!(text, "\n{}", place.marked(&fixture.source));
         }
         fixture.snapshots("reject", || assert_snapshot!(fixture.name.as_str(), text));
-    }
+    });
 }
 
 #[test]
+fn at_least_25_mistakes() {
+    assert!(Fixture::all("reject").len() >= 25, "people really make many more mistakes");
+}
+
+/// Each line is `error: …`, `help: …` or `note: …`, lower case and without a full stop.
+#[test]
 fn messages_keep_to_the_style() {
-    for fixture in Fixture::all("reject") {
-        let graph = Graph::new();
-        let Err(errors) = compile(&graph, fixture.item()) else { panic!("{} is accepted", fixture.name) };
-        for line in errors.to_string().lines().filter(|line| !line.is_empty()) {
-            let (kind, text) =
-                line.trim_start().split_once(": ").unwrap_or_else(|| panic!("{}: `{line}`", fixture.name));
-            assert!(["error", "help", "note"].contains(&kind), "{}: `{line}` is of no kind", fixture.name);
-            assert!(!text.ends_with('.'), "{}: `{line}` ends with a full stop", fixture.name);
-            let first = text.chars().next().unwrap_or('?');
-            let is_name =
-                text.split([' ', ',', ':']).next().is_some_and(|word| word.chars().skip(1).any(char::is_uppercase));
-            assert!(
-                !first.is_uppercase() || is_name || text[1..].starts_with([' ', '(', '<']),
-                "{}: `{line}` begins upper case",
-                fixture.name
-            );
+    Fixture::check_all("reject", |fixture| {
+        for line in errors(fixture).to_string().lines().map(str::trim).filter(|line| !line.is_empty()) {
+            let (kind, text) = line.split_once(": ").unwrap_or_else(|| panic!("`{line}` is of no kind"));
+            assert!(["error", "help", "note"].contains(&kind), "`{line}` is of no kind");
+            assert!(!text.ends_with('.'), "`{line}` ends with a full stop");
+            let mut letters = text.chars();
+            let is_capitalised =
+                letters.next().is_some_and(char::is_uppercase) && letters.next().is_some_and(char::is_lowercase);
+            assert!(!is_capitalised, "`{line}` begins with a capital");
         }
-    }
+    });
+}
+
+/// What the compiler says; a fixture that it accepts has no place here.
+fn errors(fixture: &Fixture) -> Diagnostics {
+    let graph = Graph::new();
+    compile(&graph, fixture.item()).err().unwrap_or_else(|| panic!("{} is accepted", fixture.name))
 }

@@ -1,0 +1,76 @@
+//! Every accepted fixture, stepped by a function that C could call, in a library that has no allocator.
+//!
+//! Unsafe code is not forbidden here, because the attribute that exports a name counts as unsafe; there is no other.
+
+#![no_std]
+#![deny(unsafe_op_in_unsafe_fn)]
+// the functions are there to be linked: what they take is the layout of Rust, and nobody calls them from C
+#![allow(improper_ctypes_definitions)]
+
+#[cfg(feature = "heap")]
+extern crate alloc;
+
+use clebsch::{Clebsch, Error, Stepper};
+
+mod fixtures;
+
+/// What a panic would call. The linked program has to be without it.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
+}
+
+/// Where a system starts, and where it arrives.
+pub struct Motion<S: Clebsch> {
+    step_size: S::Scalar,
+    steps: usize,
+    configuration: S::Configuration,
+    momentum: S::Momentum,
+    covector: S::Configuration,
+    element: S::Element,
+    matrix: S::MomentumMatrix,
+    energy: S::Scalar,
+}
+
+/// Everything that a stepper can do.
+fn integrate<S: Clebsch + Clone>(system: &S, motion: &mut Motion<S>) -> Result<(), Error> {
+    #[cfg(feature = "heap")]
+    let _ = alloc::vec::Vec::<u8>::with_capacity(motion.steps);
+    let stepper = system.stepper(motion.step_size)?;
+    euler_poincare(&stepper, motion)?;
+    symmetric(&stepper, motion)?;
+    formulas(&stepper, motion)
+}
+
+fn euler_poincare<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<(), Error> {
+    let start = stepper.state(motion.configuration, motion.momentum)?;
+    for state in stepper.trajectory(start).take(motion.steps) {
+        let state = state?;
+        motion.configuration = *state.configuration();
+        motion.momentum = *state.momentum();
+        motion.energy = stepper.energy(&state);
+    }
+    Ok(())
+}
+
+fn symmetric<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<(), Error> {
+    let mut state = stepper.cotangent_state(motion.configuration, motion.covector)?;
+    for _ in 0..motion.steps {
+        state = stepper.step_symmetric(&state)?;
+    }
+    motion.configuration = *state.configuration();
+    motion.covector = *state.covector();
+    Ok(())
+}
+
+fn formulas<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<(), Error> {
+    motion.element = stepper.inverse_legendre(&motion.configuration, &motion.momentum)?;
+    motion.momentum = stepper.legendre(&motion.configuration, &motion.element);
+    motion.momentum = stepper.legendre_next(&motion.configuration, &motion.element);
+    motion.momentum = stepper.coadjoint(&motion.element, &motion.momentum);
+    motion.matrix = stepper.momentum_matrix(&motion.momentum);
+    motion.momentum = stepper.momentum_components(&motion.matrix);
+    motion.configuration = stepper.act(&motion.element, &motion.configuration);
+    motion.momentum = stepper.momentum_map(&motion.configuration, &motion.covector);
+    Ok(())
+}

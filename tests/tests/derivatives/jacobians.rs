@@ -1,0 +1,99 @@
+//! Residuals and Jacobians of all implicit equations, and the formulas that replace them.
+
+use clebsch_compiler::Graph;
+use clebsch_compiler::derive::{Equation, Solution};
+use clebsch_compiler::lower::{Program, Solve};
+use clebsch_symbolic::Expr;
+use clebsch_tests::oracle::random::Random;
+
+use crate::assert_three;
+use crate::program::{Values, program};
+
+/// ρ and Dρ of every fixture: the formulas, the kernels that they were lowered to (generated code hides them), and differences.
+#[test]
+fn jacobians_of_all_implicit_equations() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/accept");
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("fixtures").map(|entry| entry.expect("a file").path()).collect();
+    files.sort();
+    assert!(files.len() >= 17, "only {} fixtures", files.len());
+    let random = &mut Random::new(105);
+    let (mut implicit, mut explicit) = (0, 0);
+    for file in files {
+        let graph = Graph::new();
+        let program = program(&graph, &std::fs::read_to_string(&file).expect("a readable file"));
+        let symbols = &program.formulas.symbols;
+        for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps) {
+            for (equation, solve) in substep.equations.iter().zip(&kernels.solves) {
+                let mut values = Values::random(&program, random);
+                let constants: Vec<f64> = values.run(&program.constants, &[], &[]).concat();
+                let terms: Vec<f64> = values.run(&solve.prepare, &constants, &[]).concat();
+                let code = values.run(&solve.linearize, &constants, &terms);
+                if equation.solution != Solution::Newton {
+                    assert_solved(&program, &mut values, equation, solve);
+                    explicit += 1;
+                    continue;
+                }
+                implicit += 1;
+                let residual = values.evaluate(equation.residual).entries;
+                let unknowns = equation.factors.iter().flat_map(|&k| {
+                    let length = values.get(symbols.charts[k]).len();
+                    (0..length).map(move |i| (k, i))
+                });
+                let unknowns: Vec<(usize, usize)> = unknowns.collect();
+                assert_eq!(unknowns.len(), solve.dimension);
+                for (column, &(k, i)) in unknowns.iter().enumerate() {
+                    // the direction that is one in this unknown and zero in all others
+                    for (&direction, other) in symbols.directions.iter().zip(0..) {
+                        let length = values.get(direction).len();
+                        let unit = |j| f64::from(u8::from((other, j) == (k, i)));
+                        values.set(direction, &(0..length).map(unit).collect::<Vec<_>>());
+                    }
+                    let formula = values.evaluate(equation.directional).entries;
+                    let rows = 0..solve.dimension;
+                    let entries: Vec<f64> = rows.clone().map(|row| code[1][row * solve.dimension + column]).collect();
+                    let mut at = |e: f64| moved(&mut values, equation, symbols.charts[k], i, e);
+                    let (a, b, c, d) = (at(1e-3), at(-1e-3), at(2e-3), at(-2e-3));
+                    let difference: Vec<f64> = rows.map(|r| (8.0 * (a[r] - b[r]) - (c[r] - d[r])) / 12e-3).collect();
+                    assert_three(&formula, &entries, &difference, &format!("Dρ of {}", file.display()));
+                }
+                assert_three(&residual, &code[0], &residual, "ρ");
+            }
+        }
+    }
+    println!("{implicit} implicit equations, {explicit} solved by a formula");
+    assert!(implicit >= 8 && explicit >= 8);
+}
+
+/// ρ where component `i` of a chart has moved by `e`.
+fn moved<'g>(values: &mut Values, equation: &Equation<'g>, chart: Expr<'g>, i: usize, e: f64) -> Vec<f64> {
+    let here = values.get(chart).to_vec();
+    let mut there = here.clone();
+    there[i] += e;
+    values.set(chart, &there);
+    let residual = values.evaluate(equation.residual).entries;
+    values.set(chart, &here);
+    residual
+}
+
+/// Where there is a formula for the solution, it solves the equation, for momenta that motions have.
+fn assert_solved<'g>(program: &Program<'g>, values: &mut Values, equation: &Equation<'g>, solve: &Solve) {
+    let formulas = &program.formulas;
+    for (k, mu) in formulas.symbols.momenta.iter().enumerate() {
+        // p small enough for sin θ < 1
+        let momentum: Vec<f64> = values.evaluate(formulas.momentum_map[k]).entries.iter().map(|m| m / 2.0).collect();
+        values.set(*mu, &momentum);
+    }
+    let constants: Vec<f64> = values.run(&program.constants, &[], &[]).concat();
+    let terms: Vec<f64> = values.run(&solve.prepare, &constants, &[]).concat();
+    let solution = values.run(&solve.predict, &constants, &terms).concat();
+    let mut at = 0;
+    for &k in &equation.factors {
+        let chart = formulas.symbols.charts[k];
+        let length = values.get(chart).len();
+        values.set(chart, &solution[at..at + length]);
+        at += length;
+    }
+    let residual = values.evaluate(equation.residual).entries;
+    assert!(residual.iter().all(|entry| entry.abs() < 1e-13), "{residual:?}");
+}

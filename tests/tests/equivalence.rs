@@ -1,0 +1,186 @@
+//! One motion, declared in two ways: both sides, both Lagrangians of a body, any scalar.
+
+#![allow(missing_docs)]
+
+use clebsch::Clebsch;
+use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
+use clebsch_tests::fixtures::generic_body::GenericBody;
+use clebsch_tests::fixtures::heavy_top::HeavyTop;
+use clebsch_tests::fixtures::principal_body::PrincipalBody;
+use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
+use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::oracle::random::Random;
+use nalgebra::{Matrix3, Vector3};
+
+const H: f64 = 0.02;
+
+/// Entries of order one, computed in different ways over 200 steps: round-off of 1e-16 a step, grown linearly.
+const NEAR: f64 = 1e-12;
+
+fn heavy_top(random: &mut Random) -> HeavyTop {
+    HeavyTop { mass_matrix: random.inertia(), weight: 1.3, center: random.vector() }
+}
+
+/// The heavy top with the inverse of F: a left action.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F.transpose(),
+    cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| self.weight * (R * self.center).z,
+)]
+pub struct LeftTop {
+    pub mass_matrix: Matrix3<f64>,
+    pub weight: f64,
+    pub center: Vector3<f64>,
+}
+
+/// A spherical pendulum with the inverse of F: a right action.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F.transpose() * q,
+    cost      = |h, F| self.inertia * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.gravity * q.z,
+)]
+pub struct RightPendulum {
+    pub inertia: f64,
+    pub gravity: f64,
+}
+
+/// Momenta change their sign with the side, and nothing else does.
+#[test]
+fn left_action_and_right_action_by_the_inverse_give_the_same_motion() {
+    let random = &mut Random::new(23);
+    let right = heavy_top(random);
+    let left = LeftTop { mass_matrix: right.mass_matrix, weight: right.weight, center: right.center };
+    assert!(HeavyTop::DERIVATION.contains("from the right") && LeftTop::DERIVATION.contains("from the left"));
+    let (right, left) = (right.stepper(H).expect("a top"), left.stepper(H).expect("a top"));
+    let (r, pi) = (random.attitude(), random.vector::<3>());
+    let starts = (right.state(r, pi).expect("a state"), left.state(r, -pi).expect("a state"));
+    for (right, left) in right.trajectory(starts.0).zip(left.trajectory(starts.1)).take(200) {
+        let (right, left) = (right.expect("a step"), left.expect("a step"));
+        assert_near(right.configuration(), left.configuration(), NEAR, "R");
+        assert_near(right.momentum(), &-left.momentum(), NEAR, "π");
+    }
+
+    let left = SphericalPendulum { mass: 1.0, length: 1.0, gravity: 9.81 }.stepper(H).expect("a pendulum");
+    let right = RightPendulum { inertia: 1.0, gravity: 9.81 }.stepper(H).expect("a pendulum");
+    let (q, n) = (Vector3::y(), Vector3::new(1.0, 0.0, 0.5));
+    let starts = (left.state(q, n).expect("a state"), right.state(q, -n).expect("a state"));
+    for (left, right) in left.trajectory(starts.0).zip(right.trajectory(starts.1)).take(200) {
+        let (left, right) = (left.expect("a step"), right.expect("a step"));
+        assert_near(left.configuration(), right.configuration(), NEAR, "q");
+        assert_near(left.momentum(), &-right.momentum(), NEAR, "N");
+    }
+}
+
+/// A body by its inertia tensor and cost, and by its principal moments and Lagrangian.
+#[test]
+fn moser_veselov_lagrangian_is_the_cost_of_the_mass_matrix() {
+    let random = &mut Random::new(24);
+    let moments = Vector3::new(1.0, 1.4, 2.1);
+    let cost = FreeRigidBody { inertia: Matrix3::from_diagonal(&moments) }.stepper(H).expect("a body");
+    let lagrangian = PrincipalBody { moments }.stepper(H).expect("a body");
+    let (r, pi) = (random.attitude(), random.vector::<3>() * 5.0);
+    let starts = (cost.state(r, pi).expect("a state"), lagrangian.state(r, pi).expect("a state"));
+    for (cost, lagrangian) in cost.trajectory(starts.0).zip(lagrangian.trajectory(starts.1)).take(200) {
+        let (cost, lagrangian) = (cost.expect("a step"), lagrangian.expect("a step"));
+        assert_near(cost.configuration(), lagrangian.configuration(), 1e-13, "R");
+        assert_near(cost.momentum(), lagrangian.momentum(), 1e-13, "π");
+    }
+}
+
+/// A rigid body by the velocity 2(F − I)(F + I)⁻¹/h.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    discretization = cayley,
+)]
+pub struct CayleyBody {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<f64>,
+}
+
+/// §11 of the theory: with F = cay(x), N = (Jx ± ½ x × Jx + ¼ x (x·Jx))/h before and after the step.
+#[test]
+fn cayley_lagrangian_has_its_explicit_momenta() {
+    let random = &mut Random::new(25);
+    for _ in 0..100 {
+        let inertia = random.inertia::<3>();
+        let body = CayleyBody { inertia };
+        let x = random.vector::<3>();
+        let f = clebsch_tests::oracle::rotation::cayley(&(clebsch_tests::oracle::rotation::hat(&x) / 2.0));
+        let (jx, r) = (inertia * x, random.attitude());
+        let momentum = |sign: f64| (jx + x.cross(&jx) * (sign / 2.0) + x * (x.dot(&jx) / 4.0)) / H;
+        // divided by h = 0.02
+        assert_near(&body.legendre(H, &r, &f), &momentum(1.0), 1e-12, "N");
+        assert_near(&body.legendre_next(H, &r, &f), &momentum(-1.0), 1e-12, "N⁺");
+    }
+}
+
+/// The declared scalar decides the accuracy and nothing else.
+#[test]
+fn generic_body_over_both_scalars() {
+    let random = &mut Random::new(26);
+    let top = heavy_top(random);
+    let double = GenericBody::<f64> { mass_matrix: top.mass_matrix, weight: top.weight, center: top.center };
+    let single = GenericBody::<f32> {
+        mass_matrix: top.mass_matrix.cast(),
+        weight: top.weight as f32,
+        center: top.center.cast(),
+    };
+    let (r, pi) = (random.attitude::<3>(), random.vector::<3>());
+    let steppers =
+        (top.stepper(H).expect("a top"), double.stepper(H).expect("a top"), single.stepper(H as f32).expect("a top"));
+    let mut states = (
+        steppers.0.state(r, pi).expect("a state"),
+        steppers.1.state(r, pi).expect("a state"),
+        steppers.2.state(r.cast(), pi.cast()).expect("a state"),
+    );
+    for _ in 0..200 {
+        states = (
+            steppers.0.step(&states.0).expect("a step"),
+            steppers.1.step(&states.1).expect("a step"),
+            steppers.2.step(&states.2).expect("a step"),
+        );
+    }
+    assert_near(states.0.configuration(), states.1.configuration(), NEAR, "f64 declared and generic");
+    // 200 steps of the unit round-off 6e-8, grown linearly
+    assert_near(&states.2.configuration().cast(), states.1.configuration(), 1e-4, "f32");
+    assert_near(&states.2.momentum().cast(), states.1.momentum(), 1e-4, "f32");
+}
+
+/// Half of V in the cost, at the start of the step, and half as a potential of order 1, at its end: that is order 2.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, R, F| {
+        let kinetic = (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h);
+        kinetic - h / 2 * self.weight * (R * self.center).z
+    },
+    potential = |R| self.weight * (R * self.center).z / 2,
+    order     = 1,
+)]
+pub struct SplitTop {
+    pub mass_matrix: Matrix3<f64>,
+    pub weight: f64,
+    pub center: Vector3<f64>,
+}
+
+/// A separable cost `|h, R, F|` is the sum of its parts.
+#[test]
+fn potential_inside_of_the_cost() {
+    let random = &mut Random::new(27);
+    let whole = heavy_top(random);
+    let split = SplitTop { mass_matrix: whole.mass_matrix, weight: whole.weight, center: whole.center };
+    let r = random.attitude::<3>();
+    assert!((whole.potential(&r) - split.potential(&r)).abs() < 1e-15, "both parts are the potential");
+    let (whole, split) = (whole.stepper(H).expect("a top"), split.stepper(H).expect("a top"));
+    let pi = random.vector::<3>();
+    let starts = (whole.state(r, pi).expect("a state"), split.state(r, pi).expect("a state"));
+    for (whole, split) in whole.trajectory(starts.0).zip(split.trajectory(starts.1)).take(200) {
+        let (whole, split) = (whole.expect("a step"), split.expect("a step"));
+        assert_near(whole.configuration(), split.configuration(), NEAR, "R");
+        assert_near(whole.momentum(), split.momentum(), NEAR, "π");
+    }
+}

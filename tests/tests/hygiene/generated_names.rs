@@ -1,0 +1,47 @@
+//! Structs and generics that have the names of generated items.
+
+use clebsch::Clebsch;
+use nalgebra::{Matrix3, Vector3};
+
+macro_rules! bodies {
+    ($($name:ident)*) => {$(
+        /// A body with a name that the expansion uses too.
+        #[derive(Clebsch, Clone, Debug)]
+        #[clebsch(
+            action     = |F: SO<3>, R: SO<3>| R * F,
+            lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+            discretization = moser_veselov,
+        )]
+        pub struct $name {
+            /// In kg·m².
+            #[clebsch(symmetric)]
+            pub inertia: Matrix3<f64>,
+        }
+    )*};
+}
+bodies!(Step Constants Equation1);
+
+/// Generics with the names of generated items.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| self.mass * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.mass * q.z,
+)]
+pub struct Generics<'clebsch, Step: clebsch::Scalar, Constants, const N: usize> {
+    /// In kg.
+    pub mass: Step,
+    /// Not read.
+    pub name: &'clebsch str,
+    /// Not read.
+    pub other: [Constants; N],
+}
+
+#[test]
+fn they_step() {
+    let inertia = Matrix3::identity();
+    crate::steps(&Step { inertia }, Matrix3::identity(), Vector3::zeros());
+    crate::steps(&Constants { inertia }, Matrix3::identity(), Vector3::zeros());
+    crate::steps(&Equation1 { inertia }, Matrix3::identity(), Vector3::zeros());
+    crate::steps(&Generics { mass: 1.0, name: "", other: ["", ""] }, Vector3::z(), Vector3::zeros());
+}

@@ -1,0 +1,42 @@
+//! Expansions that share a module with hostile names, with no prelude, with a re-exported runtime, under all lints.
+//!
+//! The same systems are included in each; that they compile is most of the test.
+
+#![deny(warnings)]
+#![warn(clippy::all, missing_docs, unused)]
+
+// TODO(emit): generated items do not avoid the names of the user's item yet
+// mod generated_names;
+mod hostile;
+mod named;
+#[no_implicit_prelude]
+mod no_prelude;
+mod reexported;
+
+use clebsch::Clebsch;
+use nalgebra::{Matrix3, Vector3};
+
+/// A step of a system that starts at rest.
+fn steps<S: Clebsch<Scalar = f64> + Clone>(system: &S, q: S::Configuration, mu: S::Momentum) {
+    let stepper = system.stepper(0.01).expect("good parameters");
+    let start = stepper.state(q, mu).expect("a good state");
+    stepper.step(&start).expect("a small step");
+}
+
+macro_rules! all_of {
+    ($($module:ident)*) => {$(
+        #[test]
+        fn $module() {
+            use $module::{Body, Lopsided, Pair, Pendulum, Top};
+            let (z, zero) = (Vector3::z(), Vector3::zeros());
+            let top = Top { mass_matrix: Matrix3::identity(), weight: 1.0, center: z };
+            steps(&top, Matrix3::identity(), zero);
+            assert!(Top::GENERATED.contains("linearize"));
+            steps(&Body { inertia: Matrix3::identity() }, Matrix3::identity(), zero);
+            steps(&Pair { mass: [1.0, 2.0], coupling: 3.0 }, ([z, z], zero), nalgebra::SVector::zeros());
+            steps(&Pendulum(1.0, 2.0), nalgebra::Vector2::y(), nalgebra::Vector1::zeros());
+            steps(&Lopsided { gravity: 9.81 }, z, zero);
+        }
+    )*};
+}
+all_of!(hostile no_prelude reexported);

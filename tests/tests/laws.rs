@@ -1,0 +1,174 @@
+//! Group laws, one line per group, at the identity, very near it and at random: what the derivation assumes of a group.
+
+#![allow(missing_docs)]
+
+use clebsch::Clebsch;
+use clebsch_symbolic::{Expr, Graph, Group, Matrix, Property, Role, Shape};
+use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::oracle::random::Random;
+use clebsch_tests::oracle::rotation::{components, skew};
+use nalgebra::{SMatrix, SVector};
+
+const H: f64 = 0.1;
+
+/// Sums of a few dozen products of numbers of order one, divided by h: some 1e-15 each.
+const NEAR: f64 = 1e-12;
+
+/// Sizes of group elements: the identity, where only 1e-9 is left of them, and far from it.
+const SIZES: [f64; 4] = [0.0, 1e-9, 0.3, 3.0];
+
+macro_rules! rotations {
+    ($module:ident: SO<$n:tt>, $m:literal) => {
+        mod $module {
+            use super::*;
+
+            /// Acting on itself from the right, with an inertia that singles out axes: no closed form.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                                action = |F: SO<$n>, R: SO<$n>| R * F,
+                                cost   = |h, F| (self.weights * (F - I) * (F - I).transpose()).trace() / (2 * h),
+                            )]
+            pub struct Right {
+                #[clebsch(symmetric)]
+                pub weights: SMatrix<f64, $n, $n>,
+            }
+
+            /// Acting on itself from the left, with the bi-invariant inertia.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(action = |F: SO<$n>, R: SO<$n>| F * R, cost = |h, F| (F - I).norm_squared() / (4 * h))]
+            pub struct Left;
+
+            #[test]
+            fn laws() {
+                let mut random = Random::new(70 + $n);
+                rotation_laws::<Right, $n, $m>(|random| Right { weights: random.inertia() }, true, &mut random);
+                rotation_laws::<Left, $n, $m>(|_| Left, false, &mut random);
+                chart_laws(Group::SpecialOrthogonal($n), &mut random);
+            }
+        }
+    };
+}
+
+rotations!(so2: SO<2>, 1);
+rotations!(so3: SO<3>, 3);
+rotations!(so4: SO<4>, 6);
+rotations!(so5: SO<5>, 10);
+
+fn rotation_laws<S, const N: usize, const M: usize>(system: impl Fn(&mut Random) -> S, right: bool, random: &mut Random)
+where
+    S: Clebsch<
+            Scalar = f64,
+            Configuration = SMatrix<f64, N, N>,
+            Element = SMatrix<f64, N, N>,
+            Momentum = SVector<f64, M>,
+            MomentumMatrix = SMatrix<f64, N, N>,
+        > + Clone,
+{
+    for size in SIZES.into_iter().flat_map(|size| [size; 20]) {
+        let system = system(random);
+        let (f, g) = (random.rotation::<N>(size), random.rotation::<N>(size));
+        let (q, p) = (random.attitude::<N>(), random.matrix::<N, N>());
+        let mu: SVector<f64, M> = random.vector();
+
+        // the action and its side
+        let product = if right { g * f } else { f * g };
+        assert_near(&system.act(&f, &system.act(&g, &q)), &system.act(&product, &q), NEAR, "Φ_FΦ_G");
+        assert_near(&system.act(&f.transpose(), &system.act(&f, &q)), &q, NEAR, "Φ_F⁻¹Φ_F");
+        assert_near(&system.act(&SMatrix::identity(), &q), &q, 0.0, "Φ_I");
+
+        // Ad* is an action of the opposite group, with no inverse inside
+        let twice = system.coadjoint(&g, &system.coadjoint(&f, &mu));
+        assert_near(&system.coadjoint(&(f * g), &mu), &twice, NEAR, "Ad*_FG = Ad*_G Ad*_F");
+        assert_near(&system.coadjoint(&f.transpose(), &system.coadjoint(&f, &mu)), &mu, NEAR, "Ad*_F⁻¹Ad*_F");
+
+        // J is equivariant under the cotangent lift, p ↦ pF^{-T} or F^{-T}p
+        let (moved, lifted) = (system.act(&f, &q), system.act(&f, &p));
+        let expected = if right { f } else { f.transpose() };
+        let momentum = system.coadjoint(&expected, &system.momentum_map(&q, &p));
+        assert_near(&system.momentum_map(&moved, &lifted), &momentum, NEAR, "J∘T*Φ = Ad*∘J");
+
+        // the representing matrix, its components, and the pairing ⟨M, ξ⟩ = Σ m_i ξ_i
+        let matrix = S::momentum_matrix(&mu);
+        assert_near(&matrix, &(skew::<N, M>(&mu) / 2.0), NEAR, "M = ½ Σ m_i E_i");
+        assert_near(&S::momentum_components(&matrix), &mu, NEAR, "m_i = ⟨M, E_i⟩");
+        assert_near(&components::<N, M>(&matrix), &mu, NEAR, "m_i = ⟨M, E_i⟩ by hand");
+        let xi: SVector<f64, M> = random.vector();
+        assert!((matrix.dot(&skew::<N, M>(&xi)) - mu.dot(&xi)).abs() < NEAR, "⟨M, ξ⟩ = Σ m_i ξ_i");
+
+        // without a potential both Legendre transforms are related by Ad*, and the near ones are inverted by the step's solve
+        let stepper = system.stepper(H).expect("a regular system");
+        let before = stepper.legendre(&q, &f);
+        let carried = stepper.coadjoint(&if right { f } else { f.transpose() }, &before);
+        assert_near(&stepper.legendre_next(&q, &f), &carried, 10.0 * NEAR, "F⁺ℓd = Ad* F⁻ℓd");
+        if size < 1.0 {
+            let found = stepper.inverse_legendre(&q, &before).expect("a solvable equation");
+            assert_near(&found, &f, NEAR, "(F⁻ℓd)⁻¹");
+            // relative accuracy near the identity: F − I is as small as the momentum
+            assert_near(&(stepper.legendre(&q, &found) / size.max(1e-300)), &(before / size.max(1e-300)), 1e-5, "F⁻ℓd");
+        }
+    }
+}
+
+/// Addition in R³, the same laws.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(action = |a: Translation<3>, x: Vector3| x + a, cost = |h, a| a.dot(&(self.mass * a)) / (2 * h))]
+pub struct Translations {
+    #[clebsch(symmetric)]
+    pub mass: SMatrix<f64, 3, 3>,
+}
+
+#[test]
+fn translations() {
+    let mut random = Random::new(80);
+    for size in SIZES.into_iter().flat_map(|size| [size; 20]) {
+        let system = Translations { mass: random.inertia() };
+        let (a, b) = (random.vector::<3>() * size, random.vector::<3>() * size);
+        let (x, p) = (random.vector::<3>(), random.vector::<3>());
+        assert_near(&system.act(&a, &system.act(&b, &x)), &system.act(&(a + b), &x), NEAR, "Φ_aΦ_b");
+        assert_near(&system.act(&-a, &system.act(&a, &x)), &x, NEAR, "Φ_−aΦ_a");
+        assert_near(&system.coadjoint(&a, &p), &p, 0.0, "Ad*");
+        assert_near(&system.momentum_map(&system.act(&a, &x), &p), &p, 0.0, "J");
+        assert_near(&Translations::momentum_components(&Translations::momentum_matrix(&p)), &p, 0.0, "components");
+        let stepper = system.stepper(H).expect("a regular mass");
+        let momentum = stepper.legendre(&x, &a);
+        assert_near(&stepper.legendre_next(&x, &a), &momentum, NEAR, "F⁺ℓd = F⁻ℓd");
+        assert_near(&stepper.inverse_legendre(&x, &momentum).expect("a solvable equation"), &a, NEAR, "(F⁻ℓd)⁻¹");
+    }
+    chart_laws(Group::Translation(3), &mut random);
+}
+
+/// The chart as the compiler has it, evaluated: in the group, I at 0, its increment without cancellation, its slope.
+fn chart_laws(group: Group, random: &mut Random) {
+    let graph = Graph::new();
+    let m = group.dimension();
+    let x = graph.symbol("x", Shape::vector(m), Role::Chart(0), Property::General);
+    let element = group.chart().element(group, x);
+    let (numerator, denominator) = group.chart().increment(group, x);
+    let increment = numerator / denominator;
+    let product = group.compose(group.inverse(element), element);
+    let (slope, per) = group.chart().slope_at_identity();
+    for size in SIZES.into_iter().flat_map(|size| [size; 5]) {
+        let values: Vec<f64> = (0..m).map(|_| size * random.number()).collect();
+        let at =
+            |expr: Expr<'_>| -> Matrix<f64> { expr.evaluate(&mut |_| Matrix::new(Shape::vector(m), values.clone())) };
+        let identity = graph.constant_value(group.identity(&graph));
+        assert_close(&at(product).entries, &identity.entries, NEAR, "F⁻¹F = I");
+        let difference: Vec<f64> = at(element).entries.iter().zip(&identity.entries).map(|(f, i)| f - i).collect();
+        let expected = match group {
+            Group::Translation(_) => values.clone(),
+            _ => difference,
+        };
+        assert_close(&at(increment).entries, &expected, NEAR, "F − I");
+        if size <= 1e-9 {
+            // x = slope · ξ for F = exp ξ, so that F − I = ξ + O(ξ²) with ξ = x/slope
+            let xi = at(x.wedge(group.algebra()) * graph.integer(per) / graph.integer(slope));
+            assert_close(&at(increment).entries, &xi.entries, 1e-16, "F − I = ξ + …");
+        }
+    }
+}
+
+#[track_caller]
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    let far = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(far <= tolerance && found.len() == expected.len(), "{what}: {far:.1e} apart");
+}
