@@ -1,5 +1,6 @@
 //! Where configurations and momenta lie: defects of rotations and directions, and sums that every system needs.
 
+use crate::linear::Orientation;
 use crate::{Error, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
@@ -13,40 +14,11 @@ pub fn orthogonality_defect<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> 
             defect = crate::space::larger(defect, (product - expected).abs());
         }
     }
-    if determinant_is_negative(r) { T::one() / T::zero() } else { defect }
-}
-
-/// The sign of the determinant, by elimination with partial pivoting.
-fn determinant_is_negative<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> bool {
-    let mut rows = *r;
-    let mut negative = false;
-    for k in 0..N {
-        let mut pivot = k;
-        for i in k + 1..N {
-            if rows[(i, k)].abs() > rows[(pivot, k)].abs() {
-                pivot = i;
-            }
-        }
-        if pivot != k {
-            rows.swap_rows(pivot, k);
-            negative = !negative;
-        }
-        let head = rows[(k, k)];
-        if head < T::zero() {
-            negative = !negative;
-        }
-        if head == T::zero() {
-            return false;
-        }
-        for i in k + 1..N {
-            let factor = rows[(i, k)] / head;
-            for j in k..N {
-                let entry = rows[(k, j)];
-                rows[(i, j)] -= factor * entry;
-            }
-        }
+    let rows = core::array::from_fn(|i| core::array::from_fn(|j| r[(i, j)]));
+    match Orientation::of::<T, N>(rows) {
+        Some(Orientation::Negative) => T::one() / T::zero(),
+        _ => defect,
     }
-    negative
 }
 
 /// ||q|² − 1|.

@@ -207,7 +207,6 @@ fn composed_steps_on_the_cotangent_bundle() {
 
 /// `legendre` is that of the declared cost with the whole step, and `inverse_legendre` its inverse.
 #[test]
-#[ignore = "known shortfall: inverse_legendre of a composed step solves for the element of its first half"]
 fn inverse_legendre_inverts_legendre_of_a_composed_step() {
     let stepper = top().stepper(0.05).expect("a top");
     let random = &mut Random::new(36);

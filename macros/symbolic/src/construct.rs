@@ -359,6 +359,9 @@ impl<'g> Expr<'g> {
         if exponent.is_zero() {
             return graph.integer(1);
         }
+        if self.is_zero() && exponent > Exponent::zero() {
+            return self;
+        }
         let Term { coefficient, scalars, word: _ } = self.factor();
         let mut term = Term::number(Rational::one());
         match Graph::small_integer(&exponent) {

@@ -103,8 +103,7 @@ impl Printer<'_> {
     fn symbol(&self, name: &str) -> String {
         match self.style {
             Style::Unicode => name.to_string(),
-            Style::Latex if name.chars().count() == 1 => name.to_string(),
-            Style::Latex => format!("\\mathrm{{{}}}", name.replace('_', "\\_")),
+            Style::Latex => latex_name(name),
         }
     }
 
@@ -219,6 +218,38 @@ impl Printer<'_> {
     fn rational(&self, value: &Rational) -> String {
         self.minus(value.to_string().replace('-', "−"))
     }
+}
+
+/// A name in LaTeX: Greek letters by their names, subscript digits as subscripts, words upright.
+fn latex_name(name: &str) -> String {
+    let greek = [
+        ('ξ', "\\xi"),
+        ('η', "\\eta"),
+        ('ζ', "\\zeta"),
+        ('μ', "\\mu"),
+        ('ν', "\\nu"),
+        ('λ', "\\lambda"),
+        ('δ', "\\delta"),
+        ('ε', "\\varepsilon"),
+        ('γ', "\\gamma"),
+        ('α', "\\alpha"),
+        ('β', "\\beta"),
+        ('Δ', "\\Delta"),
+        ('Σ', "\\Sigma"),
+    ];
+    let is_subscript = |c: char| ('₀'..='₉').contains(&c);
+    let base: String = name.chars().filter(|&c| !is_subscript(c)).collect();
+    let digits: String = name
+        .chars()
+        .filter(|&c| is_subscript(c))
+        .filter_map(|c| char::from_u32(c as u32 - '₀' as u32 + '0' as u32))
+        .collect();
+    let letter = greek.iter().find(|(c, _)| base == c.to_string()).map(|(_, text)| text.to_string());
+    let text = letter.unwrap_or_else(|| match base.chars().count() {
+        1 => base,
+        _ => format!("\\mathrm{{{}}}", base.replace('_', "\\_")),
+    });
+    if digits.is_empty() { text } else { format!("{text}_{{{digits}}}") }
 }
 
 /// An integer in superscript digits.

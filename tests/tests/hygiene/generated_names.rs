@@ -43,5 +43,7 @@ fn they_step() {
     crate::steps(&Step { inertia }, Matrix3::identity(), Vector3::zeros());
     crate::steps(&Constants { inertia }, Matrix3::identity(), Vector3::zeros());
     crate::steps(&Equation1 { inertia }, Matrix3::identity(), Vector3::zeros());
-    crate::steps(&Generics { mass: 1.0, name: "", other: ["", ""] }, Vector3::z(), Vector3::zeros());
+    let generics = Generics { mass: 1.0, name: "bob", other: ["", ""] };
+    crate::steps(&generics, Vector3::z(), Vector3::zeros());
+    assert_eq!((generics.name, generics.other), ("bob", ["", ""]));
 }

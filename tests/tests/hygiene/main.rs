@@ -5,8 +5,7 @@
 #![deny(warnings)]
 #![warn(clippy::all, missing_docs, unused)]
 
-// TODO(emit): generated items do not avoid the names of the user's item yet
-// mod generated_names;
+mod generated_names;
 mod hostile;
 mod named;
 #[no_implicit_prelude]

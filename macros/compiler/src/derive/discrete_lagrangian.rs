@@ -118,7 +118,7 @@ impl<'g> DiscreteLagrangian<'g> {
 }
 
 /// The discrete Lagrangians whose steps make one step: ℓd itself where it has the order asked for, else half a step of ℓd and
-/// half a step of its adjoint.
+/// half a step of its adjoint, and then ℓd itself again, whose Legendre transform is to be inverted.
 pub(super) fn substeps<'g>(
     model: &Model<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
@@ -128,5 +128,6 @@ pub(super) fn substeps<'g>(
     }
     let half = model.step_size / 2;
     let halves = [*lagrangian, lagrangian.adjoint(model)];
-    halves.iter().map(|part| (2, part.with_step(model.step_size, half))).collect()
+    let composed = halves.iter().map(|part| (2, part.with_step(model.step_size, half)));
+    composed.chain([(1, *lagrangian)]).collect()
 }

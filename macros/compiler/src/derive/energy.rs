@@ -107,9 +107,14 @@ fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) ->
         Lost::About(axis) => Diagnostic::new(model.spans.kinetic.place, format!("the cost does not fix the rotation about `{axis}`"))
             .note(format!("its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}"))
             .help(format!("use the chord of the group: `self.mass * ({name} - I).norm_squared() / (4 * h)`, which has the same motion")),
-        Lost::Basis(direction) => Diagnostic::new(model.spans.kinetic.place, format!("the cost does not depend on {direction}"))
-            .note(format!("its Hessian at the identity has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}"))
-            .help("add a term that does"),
+        Lost::Basis(directions) => Diagnostic::new(
+            model.spans.kinetic.place,
+            format!("the cost does not depend on {}", directions.join(" and ")),
+        )
+        .help(format!("add the chord of the group, as in `… + self.inertia * ({name} - I).norm_squared() / (4 * h)`"))
+        .note(format!(
+            "its Hessian at the identity has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}"
+        )),
         Lost::Other => Diagnostic::new(model.spans.kinetic.place, "the cost does not fix the group element")
             .note(format!("its Hessian at the identity has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}"))
             .help(format!("add a term such as `({name} - I).norm_squared() / (2 * h)`")),
@@ -120,7 +125,7 @@ fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) ->
 /// What a degenerate kinetic energy leaves undetermined.
 enum Lost {
     About(String),
-    Basis(String),
+    Basis(Vec<String>),
     Other,
 }
 
@@ -131,11 +136,9 @@ fn lost_direction<'g>(model: &Model<'g>, inertia: Expr<'g>) -> Lost {
             return Lost::About(leaf.name.clone());
         }
     }
-    let column = (0..dimension).find(|&j| identity::vanishes(inertia.block(0, j, Shape::vector(dimension))));
-    match column {
-        Some(j) => Lost::Basis(basis_direction(model, j)),
-        None => Lost::Other,
-    }
+    let is_lost = |j: &usize| identity::vanishes(inertia.block(0, *j, Shape::vector(dimension)));
+    let directions: Vec<String> = (0..dimension).filter(is_lost).map(|j| basis_direction(model, j)).collect();
+    if directions.is_empty() { Lost::Other } else { Lost::Basis(directions) }
 }
 
 /// The j-th basis element of all factors together, in words.

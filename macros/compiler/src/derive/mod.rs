@@ -56,7 +56,8 @@ pub struct Formulas<'g> {
     pub legendre_next: Vec<Expr<'g>>,
     /// J(q, ∂U₁), the last kick of F⁺ℓd, to be taken at q⁺; `None` if there is none.
     pub legendre_kick: Option<Vec<Expr<'g>>>,
-    /// The substeps of a step: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
+    /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
+    /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
     pub substeps: Vec<Substep<'g>>,
     /// All of it as text, made when it is first asked for.
     listing: OnceCell<Vec<Formula>>,
@@ -132,6 +133,13 @@ fn substep<'g>(sources: &equation::Sources<'_, 'g>, lagrangian: DiscreteLagrangi
         equations: equation::equations(sources, &before),
         unchanged: equation::agreement(model, &before, &after),
         lagrangian,
+    }
+}
+
+impl Formulas<'_> {
+    /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
+    pub fn parts(&self) -> usize {
+        if self.substeps.len() == 1 { 1 } else { 2 }
     }
 }
 

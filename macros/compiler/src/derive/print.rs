@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::{Equation, Formulas, Reference, Solution, Substep, reference};
 use crate::model::Side;
@@ -110,7 +110,7 @@ impl<'g> Formulas<'g> {
             self.formula_of_legendre(),
             self.formula_of_legendre_next(),
         ];
-        for substep in &self.substeps {
+        for substep in self.substeps.iter().take(self.parts()) {
             formulas.extend(self.formulas_of_substep(substep));
         }
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
@@ -142,13 +142,12 @@ impl<'g> Formulas<'g> {
 
     /// H(q, μ).
     pub fn formula_of_hamiltonian(&self) -> Formula {
-        let mut formula = self.formula_of_potential();
-        let potential = if self.potential_energy.is_zero() { String::new() } else { format!(" + {}", formula.text[0]) };
-        formula.title = "Hamiltonian";
+        let (graph, shape) = (self.model.graph, self.inertia.shape());
         let mu = self.letter(&self.symbols.momenta);
-        formula.symbol = format!("H({}, {mu})", self.q());
-        formula.text = vec![format!("½ {mu}·Σ⁻¹·{mu}{potential}")];
-        formula
+        let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Auxiliary(0), Property::General);
+        let inertia = graph.symbol("Σ", shape, Role::Auxiliary(1), Property::Symmetric);
+        let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
+        Formula::new("Hamiltonian", format!("H({}, {mu})", self.q()), &[kinetic + self.potential_energy])
     }
 
     /// F⁻ℓd(q, F).
@@ -166,6 +165,12 @@ impl<'g> Formulas<'g> {
                 .iter_mut()
                 .zip(readable(end))
                 .for_each(|(text, end)| *text = format!("{text} + [{end}] at {}⁺", self.q()));
+            let kicks = readable(end).into_iter().map(|end| end.latex());
+            formula
+                .latex
+                .iter_mut()
+                .zip(kicks)
+                .for_each(|(latex, end)| *latex += &format!(" + \\left[{end}\\right]_{{q^+}}"));
         }
         formula
     }

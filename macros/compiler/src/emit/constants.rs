@@ -14,12 +14,12 @@ impl Emitter<'_, '_> {
         let names = self.program.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = self.paths.matrix(self.dimension(), self.dimension());
-        let (generics, _) = self.constants_generics();
+        let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
         quote! {
             #documentation
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
-            pub struct Constants #generics {
+            pub struct #name #generics {
                 #(#names: #scalar,)*
                 #(#orientations: #private::Orientation,)*
                 inertia_inverse: #inverse,
@@ -43,7 +43,7 @@ impl Emitter<'_, '_> {
     pub(super) fn constants(&self) -> TokenStream {
         let (private, scalar, krate) = (&self.paths.private, &self.paths.scalar, &self.paths.krate);
         let scope = self.scope_of_system();
-        let checks = self.checks();
+        let (constants, checks) = (&self.names.constants, self.checks());
         let inertia = code::body(&scope, &self.program.inertia, None);
         let locals = code::locals(&scope, &self.program.constants);
         let fields =
@@ -77,7 +77,7 @@ impl Emitter<'_, '_> {
                 let inertia = { #inertia };
                 let inertia_inverse = #private::invert(&inertia)?;
                 #locals
-                ::core::result::Result::Ok(Constants {
+                ::core::result::Result::Ok(#constants {
                     #(#fields)*
                     #(#orientations)*
                     inertia_inverse,

@@ -45,7 +45,7 @@ fn frames(model: &Model<'_>) -> String {
 /// How a step goes and how accurate it is.
 fn scheme(program: &Program<'_>) -> String {
     let model = &program.formulas.model;
-    let order = match (model.order, program.steps.len()) {
+    let order = match (model.order, program.formulas.parts()) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
         (Order::Second, 1) if program.formulas.potential_energy.is_zero() => {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), so the step is of second order."
@@ -54,11 +54,12 @@ fn scheme(program: &Program<'_>) -> String {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), with −h/2·V at each end: half kick, drift, half kick, second order, one gradient a step."
         }
         (Order::Second, _) => {
-            "The discrete Lagrangian is not time-symmetric, K(h, F) ≠ −K(−h, F⁻¹): half a step is composed with half a step of its adjoint, which is of second order and costs two solves."
+            "The discrete Lagrangian is not time-symmetric, ℓd(q, F; h) ≠ −ℓd(Φ_F q, F⁻¹; −h): half a step is composed with half a step of its adjoint, which is of second order and costs two solves."
         }
     };
     let mut text = format!("{order}\n");
-    for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps) {
+    let mut told: Vec<String> = Vec::new();
+    for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts()) {
         for equation in &substep.equations {
             let names: Vec<&str> = equation.factors.iter().map(|&k| model.factors[k].name.as_str()).collect();
             let how = match equation.solution {
@@ -71,12 +72,15 @@ fn scheme(program: &Program<'_>) -> String {
                 }
                 Solution::Newton => "is solved by Newton's method in the chart".to_string(),
             };
-            let _ = writeln!(text, "The momentum equation for {} {how}.", names.join(", "));
+            told.push(format!("The momentum equation for {} {how}.\n", names.join(", ")));
         }
         if kernels.update.is_none() {
-            text += "Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n";
+            told.push("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
         }
     }
+    // both halves of a composed step tell the same
+    let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
+    text.extend(first.map(|(_, line)| line.as_str()));
     text
 }
 

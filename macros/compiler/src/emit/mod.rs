@@ -4,6 +4,7 @@ mod code;
 mod constants;
 mod derivation;
 mod docs;
+mod names;
 mod path;
 mod step;
 mod stub;
@@ -15,6 +16,7 @@ use quote::quote;
 use crate::lower::Program;
 use crate::model::Model;
 use code::{Scope, nested_type};
+use names::Names;
 use path::Paths;
 
 pub use derivation::derivation;
@@ -54,6 +56,7 @@ struct Emitter<'a, 'g> {
     model: &'a Model<'g>,
     paths: Paths,
     generics: Generics,
+    names: Names,
 }
 
 /// The user's generics in the forms that impls need.
@@ -109,7 +112,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let model = &program.formulas.model;
         let paths = Paths::new(&model.item);
         let generics = Generics::new(model, &paths);
-        Emitter { program, model, paths, generics }
+        Emitter { program, model, paths, generics, names: Names::new(model) }
     }
 
     fn items(&self) -> TokenStream {
@@ -180,10 +183,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
-        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.steps.len() - 1]);
+        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts() - 1]);
         let (start, end) = (
             &self.program.formulas.substeps[0].start,
-            &self.program.formulas.substeps[self.program.steps.len() - 1].end,
+            &self.program.formulas.substeps[self.program.formulas.parts() - 1].end,
         );
         start == end && first.start.is_some() && last.end.is_some()
     }

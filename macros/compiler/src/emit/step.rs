@@ -4,6 +4,7 @@ use clebsch_symbolic::{Chart, Shape};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
@@ -14,21 +15,23 @@ impl Emitter<'_, '_> {
     pub(super) fn step_type(&self) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let Names { lifetime, constants: constants_name, .. } = &self.names;
         let parts = self.program.steps.iter().enumerate().map(|(index, step)| self.parts(index, step));
         let (shared, whole) = (self.shared_parts(), self.whole_steps());
+        let step = &self.names.step;
         let documentation =
             docs::lines(
                 &["A system with the constants of a stepper: the parts of a step are its methods.".to_string()],
             );
         quote! {
             #documentation
-            struct Step<'clebsch, #parameters> #predicates {
-                system: &'clebsch #ident<#arguments>,
-                constants: &'clebsch Constants #constants,
+            struct #step<#lifetime, #parameters> #predicates {
+                system: &#lifetime #ident<#arguments>,
+                constants: &#lifetime #constants_name #constants,
             }
 
             #[allow(unused_variables)]
-            impl<'clebsch, #parameters> Step<'clebsch, #arguments> #predicates {
+            impl<#lifetime, #parameters> #step<#lifetime, #arguments> #predicates {
                 #whole
                 #(#parts)*
                 #shared
@@ -99,11 +102,11 @@ impl Emitter<'_, '_> {
     fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
         let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
         let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
-            let (equation, solution) = (equation_name(suffix, number), format_ident!("x{}", number + 1));
+            let (name, solution) = (self.names.equation(suffix, number), format_ident!("x{}", number + 1));
             let target = self.part_of("mu", &solve.components);
-            let equation = quote!(#equation { system: self.system, constants: self.constants });
+            let equation = quote!(#name { system: self.system, constants: self.constants });
             match solve.solution {
-                Solution::ClosedForm => quote!(let #solution = #equation.closed_form(&#target)?;),
+                Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
                 Solution::Explicit => quote!(let #solution = #private::Equation::predict(&#equation, &#target);),
                 Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
             }
@@ -175,11 +178,12 @@ impl Emitter<'_, '_> {
         let krate = &self.paths.krate;
         let (configuration, element, momentum, impulse) =
             (self.configuration_type(), self.element_type(), self.momentum_type(), self.impulse_type());
-        let euler_poincare =
-            self.program.steps.iter().enumerate().map(|(index, step)| self.euler_poincare(index, step));
+        let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
         let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
-        let (inverse, first) = (self.inverse_legendre(), self.program.suffix(0));
-        let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(0, &self.program.steps[0], false));
+        // the declared Lagrangian itself stands last, behind the halves of a composed step
+        let whole = self.program.steps.len() - 1;
+        let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
+        let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
         quote! {
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
             #[inline]
@@ -207,6 +211,11 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The substeps that make a step.
+    fn stepped(&self) -> impl Iterator<Item = (usize, &StepKernels)> {
+        self.program.steps.iter().enumerate().take(self.program.formulas.parts())
+    }
+
     /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
     fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
         let start = format_ident!("start_kick{}", self.program.suffix(index));
@@ -222,7 +231,7 @@ impl Emitter<'_, '_> {
         let (solve, update) = (format_ident!("solve{suffix}"), format_ident!("update{suffix}"));
         let kicked = self.kicked(index, step, true);
         let updated = step.update.as_ref().map(|_| quote!(let mu = self.#update(&mu, &d);));
-        let last = index + 1 == self.program.steps.len();
+        let last = index + 1 == self.program.formulas.parts();
         let end = match (&step.end, last && self.shares_impulse()) {
             (None, _) | (Some(_), true) => quote!(),
             (Some(_), false) => {
@@ -254,7 +263,7 @@ impl Emitter<'_, '_> {
 
     fn symmetric(&self) -> TokenStream {
         let (krate, configuration) = (&self.paths.krate, self.configuration_type());
-        let substeps = self.program.steps.iter().enumerate().map(|(index, step)| {
+        let substeps = self.stepped().map(|(index, step)| {
             let suffix = self.program.suffix(index);
             let solve = format_ident!("solve{suffix}");
             let kick = |name: &str| {
@@ -325,7 +334,8 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, krate) = (&self.paths.private, &self.paths.krate);
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
-        let name = equation_name(self.program.suffix(index), number);
+        let Names { lifetime, constants: constants_name, .. } = &self.names;
+        let name = self.names.equation(self.program.suffix(index), number);
         let mut scope = self.scope_of_step();
         scope.components = solve.components.clone();
         scope.momentum = "target";
@@ -346,13 +356,13 @@ impl Emitter<'_, '_> {
         );
         quote! {
             #documentation
-            struct #name<'clebsch, #parameters> #predicates {
+            struct #name<#lifetime, #parameters> #predicates {
                 #[allow(dead_code)]
-                system: &'clebsch #ident<#arguments>,
-                constants: &'clebsch Constants #constants,
+                system: &#lifetime #ident<#arguments>,
+                constants: &#lifetime #constants_name #constants,
             }
 
-            impl<'clebsch, #parameters> #name<'clebsch, #arguments> #predicates {
+            impl<#lifetime, #parameters> #name<#lifetime, #arguments> #predicates {
                 #solved
                 #[inline]
                 fn closed_form(&self, target: &#vector) -> ::core::result::Result<#vector, #krate::Error> {
@@ -367,9 +377,10 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let Names { lifetime, constants: constants_name, .. } = &self.names;
         let suffix = self.program.suffix(index);
         let dimension = Literal::usize_unsuffixed(solve.dimension);
-        let name = equation_name(suffix, number);
+        let name = self.names.equation(suffix, number);
         let mut scope = self.scope_of_step();
         scope.components = solve.components.clone();
         scope.momentum = "target";
@@ -399,14 +410,14 @@ impl Emitter<'_, '_> {
         });
         quote! {
             #documentation
-            struct #name<'clebsch, #parameters> #predicates {
+            struct #name<#lifetime, #parameters> #predicates {
                 #[allow(dead_code)]
-                system: &'clebsch #ident<#arguments>,
-                constants: &'clebsch Constants #constants,
+                system: &#lifetime #ident<#arguments>,
+                constants: &#lifetime #constants_name #constants,
             }
 
             #[allow(unused_variables)]
-            impl<'clebsch, #parameters> #private::Equation<#scalar, #dimension> for #name<'clebsch, #arguments> #predicates {
+            impl<#lifetime, #parameters> #private::Equation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
                 type Terms = [#scalar; #terms];
 
                 #[inline]
@@ -432,13 +443,4 @@ impl Emitter<'_, '_> {
             }
         }
     }
-}
-
-fn equation_name(suffix: &str, number: usize) -> Ident {
-    let suffix = match suffix {
-        "_first" => "First",
-        "_adjoint" => "Adjoint",
-        _ => "",
-    };
-    format_ident!("Equation{suffix}{}", number + 1)
 }

@@ -17,6 +17,7 @@ impl Emitter<'_, '_> {
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let (impulse, (_, constants_arguments)) = (self.impulse_type(), self.constants_generics());
+        let constants_name = &self.names.constants;
         let order: u32 = if self.model.order == Order::First { 1 } else { 2 };
         let derivation = super::derivation(self.program);
         let (constants, formulas, dynamics, checks) =
@@ -30,7 +31,7 @@ impl Emitter<'_, '_> {
                 type Momentum = #momentum;
                 type MomentumMatrix = #element;
                 type Impulse = #impulse;
-                type Constants = Constants #constants_arguments;
+                type Constants = #constants_name #constants_arguments;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
@@ -147,13 +148,13 @@ impl Emitter<'_, '_> {
 
     /// Steps, handed to the type `Step`.
     fn dynamics(&self) -> TokenStream {
-        let krate = &self.paths.krate;
+        let (krate, step) = (&self.paths.krate, &self.names.step);
         let impulse = match self.shares_impulse() {
-            true => quote!(Step { system: self, constants }.start_kick(q)),
+            true => quote!(#step::start_kick(&#step { system: self, constants }, q)),
             false => quote!(()),
         };
-        let impulse = match (self.program.steps.len(), self.shares_impulse()) {
-            (2, true) => quote!(Step { system: self, constants }.start_kick_first(q)),
+        let impulse = match (self.program.formulas.parts(), self.shares_impulse()) {
+            (2, true) => quote!(#step::start_kick_first(&#step { system: self, constants }, q)),
             _ => impulse,
         };
         quote! {
@@ -164,7 +165,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                Step { system: self, constants }.inverse_legendre(q, mu)
+                #step::inverse_legendre(&#step { system: self, constants }, q, mu)
             }
             /// The kick that the end of a step and the start of the next share.
             #[allow(unused_variables)]
@@ -181,7 +182,7 @@ impl Emitter<'_, '_> {
                 mu: &Self::Momentum,
                 impulse: &Self::Impulse,
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
-                Step { system: self, constants }.euler_poincare(q, mu, impulse)
+                #step::euler_poincare(&#step { system: self, constants }, q, mu, impulse)
             }
             /// One step of the discrete symmetric representation.
             fn step_symmetric(
@@ -190,7 +191,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 p: &Self::Configuration,
             ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                Step { system: self, constants }.symmetric(q, p)
+                #step::symmetric(&#step { system: self, constants }, q, p)
             }
         }
     }

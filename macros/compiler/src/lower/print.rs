@@ -83,7 +83,8 @@ impl Program<'_> {
         match (self.steps.len(), substep) {
             (1, _) => "",
             (_, 0) => "_first",
-            _ => "_adjoint",
+            (_, 1) => "_adjoint",
+            _ => "_whole",
         }
     }
 }
@@ -106,7 +107,7 @@ impl fmt::Display for Program<'_> {
 }
 
 impl Program<'_> {
-    /// The text of a code; `place` is 0 in a sum, 1 in a product.
+    /// The text of a code; `place` is 0 in a sum, 1 in a product, 2 below a fraction bar.
     fn text(&self, code: &Code, place: usize) -> String {
         match code {
             Code::Read(input) => read(input),
@@ -135,7 +136,8 @@ impl Program<'_> {
                 if place == 0 { text } else { format!("({text})") }
             }
             Code::Product(factors) => factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*"),
-            Code::Reciprocal(x) => format!("1/{}", self.text(x, 1)),
+            Code::Reciprocal(x) if place == 0 => format!("1/{}", self.text(x, 2)),
+            Code::Reciprocal(x) => format!("(1/{})", self.text(x, 2)),
             Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
             Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
             Code::Function(function, x) => format!("{}({})", function.name(), self.text(x, 0)),

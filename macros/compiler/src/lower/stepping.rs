@@ -49,7 +49,13 @@ pub struct Solve {
 
 /// The kernels of all substeps.
 pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mut Hoisted) -> Vec<StepKernels> {
-    formulas.substeps.iter().map(|substep| step(formulas, substep, scalars, hoisted)).collect()
+    let mut steps: Vec<StepKernels> =
+        formulas.substeps.iter().map(|substep| step(formulas, substep, scalars, hoisted)).collect();
+    // what serves the inverse Legendre transform alone is never stepped
+    for step in steps.iter_mut().skip(formulas.parts()) {
+        (step.end, step.start_gradient, step.end_gradient, step.update) = (None, None, None, None);
+    }
+    steps
 }
 
 fn step<'g>(

@@ -1,0 +1,72 @@
+//! The names that an expansion introduces beside the user's: they give way to what the user's item already calls so.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use quote::{ToTokens, format_ident};
+use syn::Lifetime;
+
+use crate::model::{Model, ScalarType};
+
+/// Names of generated types and of their lifetime.
+pub struct Names {
+    taken: BTreeSet<String>,
+    /// The struct of the constants.
+    pub constants: Ident,
+    /// The struct whose methods are the parts of a step.
+    pub step: Ident,
+    /// The lifetime of its references.
+    pub lifetime: Lifetime,
+}
+
+impl Names {
+    /// The names for a model.
+    pub fn new(model: &Model<'_>) -> Names {
+        let mut taken = BTreeSet::new();
+        collect(model.item.ident.to_token_stream(), &mut taken);
+        collect(model.item.generics.to_token_stream(), &mut taken);
+        collect(model.item.generics.where_clause.to_token_stream(), &mut taken);
+        model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
+        if let ScalarType::Parameter(ident) = &model.item.scalar {
+            taken.insert(ident.to_string());
+        }
+        let lifetime = format!("'{}", free("clebsch", &taken));
+        Names {
+            constants: free("Constants", &taken),
+            step: free("Step", &taken),
+            lifetime: Lifetime::new(&lifetime, proc_macro2::Span::call_site()),
+            taken,
+        }
+    }
+
+    /// The struct of an equation.
+    pub fn equation(&self, suffix: &str, number: usize) -> Ident {
+        let suffix = match suffix {
+            "_first" => "First",
+            "_adjoint" => "Adjoint",
+            "_whole" => "Whole",
+            _ => "",
+        };
+        free(&format!("Equation{suffix}{}", number + 1), &self.taken)
+    }
+}
+
+/// The name, with underscores behind it as long as it is taken.
+fn free(name: &str, taken: &BTreeSet<String>) -> Ident {
+    let mut name = name.to_string();
+    while taken.contains(&name) {
+        name.push('_');
+    }
+    format_ident!("{name}")
+}
+
+/// All identifiers of some tokens; those of lifetimes too, without their quote.
+fn collect(tokens: TokenStream, taken: &mut BTreeSet<String>) {
+    for token in tokens {
+        match token {
+            TokenTree::Ident(ident) => drop(taken.insert(ident.to_string())),
+            TokenTree::Group(group) => collect(group.stream(), taken),
+            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+        }
+    }
+}
