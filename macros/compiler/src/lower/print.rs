@@ -135,7 +135,10 @@ impl Program<'_> {
                 }
                 if place == 0 { text } else { format!("({text})") }
             }
-            Code::Product(factors) => factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*"),
+            Code::Product(factors) => {
+                let text = factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*");
+                if place < 2 { text } else { format!("({text})") }
+            }
             Code::Reciprocal(x) if place == 0 => format!("1/{}", self.text(x, 2)),
             Code::Reciprocal(x) => format!("(1/{})", self.text(x, 2)),
             Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
