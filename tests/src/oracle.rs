@@ -1,4 +1,4 @@
-//! The theory's explicit formulas, written by hand on nalgebra: what the derived integrators are held against.
+//! The explicit formulas of discrete mechanics, written by hand on nalgebra: what the derived integrators are held against.
 //!
 //! Nothing here is derived and nothing is shared with the compiler: spheres step in closed form, rigid bodies by Newton's method
 //! on a Cayley vector, SO(4) by a Riccati equation, and exact motions come from the equations of motion by a classical method.

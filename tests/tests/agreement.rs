@@ -1,4 +1,4 @@
-//! The derived formulas are the explicit ones of the theory, on random elements: Legendre transforms, momentum maps, Ad*, kicks.
+//! The derived formulas are the explicit ones, written by hand, on random elements: Legendre transforms, momentum maps, Ad*, kicks.
 //!
 //! Both sides are sums of a few dozen products of numbers of size one to ten (h = 0.1 divides them), so they agree to 1e-13.
 
@@ -27,7 +27,7 @@ fn heavy_top(random: &mut Random) -> HeavyTop {
     HeavyTop { mass_matrix: random.inertia(), weight: random.between(0.5, 2.0), center: random.vector() }
 }
 
-/// §3: h π^ = F𝒥 − 𝒥Fᵀ before the step and 𝒥F − Fᵀ𝒥 after it, each with half of the torque mgl Γ × χ.
+/// h π^ = F𝒥 − 𝒥Fᵀ before the step and 𝒥F − Fᵀ𝒥 after it, each with half of the torque mgl Γ × χ.
 #[test]
 fn legendre_transforms_of_the_heavy_top() {
     let mut random = Random::new(1);
@@ -57,7 +57,7 @@ fn legendre_transforms_of_first_order() {
     }
 }
 
-/// §3 for N = 4: hM = F J_d − J_d Fᵀ and hM⁺ = J_d F − Fᵀ J_d = h FᵀMF.
+/// For N = 4: hM = F J_d − J_d Fᵀ and hM⁺ = J_d F − Fᵀ J_d = h FᵀMF.
 #[test]
 fn legendre_transforms_on_so4() {
     let mut random = Random::new(3);
@@ -73,7 +73,7 @@ fn legendre_transforms_on_so4() {
     }
 }
 
-/// §4: hM = ½(F − Fᵀ) in the paper's normalisation, whose components are 2N; unchanged in the drift.
+/// hM = ½(F − Fᵀ) in the paper's normalisation, whose components are 2N; unchanged in the drift.
 #[test]
 fn legendre_transforms_of_the_sphere() {
     let mut random = Random::new(4);
@@ -95,7 +95,7 @@ fn legendre_transforms_of_the_sphere() {
     }
 }
 
-/// §4 on S³: M = wqᵀ − qwᵀ with w = q̇, so that components are x_i p_j − x_j p_i, and kicks are tangential accelerations.
+/// On S³: M = wqᵀ − qwᵀ with w = q̇, so that components are x_i p_j − x_j p_i, and kicks are tangential accelerations.
 #[test]
 fn momenta_and_kicks_of_neumann() {
     let mut random = Random::new(5);
@@ -152,7 +152,7 @@ fn stack(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
 }
 
-/// §1: J(q, p) is 2(qᵀp)^∨ for a right action on matrices, q × p on the sphere, and p for translations.
+/// J(q, p) is 2(qᵀp)^∨ for a right action on matrices, q × p on the sphere, and p for translations.
 #[test]
 fn momentum_maps() {
     let mut random = Random::new(7);
@@ -174,7 +174,7 @@ fn momentum_maps() {
     }
 }
 
-/// §1: Ad*_F is Fᵀμ on SO(3), FᵀMF on SO(N), and nothing for translations.
+/// Ad*_F is Fᵀμ on SO(3), FᵀMF on SO(N), and nothing for translations.
 #[test]
 fn coadjoint_actions() {
     let mut random = Random::new(8);
@@ -221,7 +221,7 @@ fn inverse_legendre_inverts_legendre() {
     }
 }
 
-/// §3: the inertia tensor and ½tr(J)I − J belong to each other; kinetic energy and Hessian are those of a rigid body.
+/// The inertia tensor and ½tr(J)I − J belong to each other; kinetic energy and Hessian are those of a rigid body.
 #[test]
 fn kinetic_energy_is_that_of_the_body() {
     let mut random = Random::new(10);

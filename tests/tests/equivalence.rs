@@ -101,7 +101,7 @@ pub struct CayleyBody {
     pub inertia: Matrix3<f64>,
 }
 
-/// §11 of the theory: with F = cay(x), N = (Jx ± ½ x × Jx + ¼ x (x·Jx))/h before and after the step.
+/// With F = cay(x), N = (Jx ± ½ x × Jx + ¼ x (x·Jx))/h before and after the step.
 #[test]
 fn cayley_lagrangian_has_its_explicit_momenta() {
     let random = &mut Random::new(25);

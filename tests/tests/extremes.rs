@@ -89,7 +89,7 @@ fn states_off_their_orbit_and_momenta_that_no_motion_has() {
     assert!(matches!(outside, Err(Error::OutsideMomentumSpace { violation, .. }) if (violation - 0.5).abs() < 1e-15));
 }
 
-/// §5: about a principal axis sin θ = hY/I, so the equation with s times the momentum is solvable up to s = I/(hY).
+/// About a principal axis sin θ = hY/I, so the equation with s times the momentum is solvable up to s = I/(hY).
 #[test]
 fn steps_that_are_too_long_say_by_how_much() {
     for (axis, moment) in [(Vector3::x(), 1.0), (Vector3::y(), 1.5), (Vector3::z(), 2.2)] {

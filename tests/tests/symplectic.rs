@@ -167,7 +167,7 @@ where
     (d, next.momentum().map(|entry| entry.value))
 }
 
-/// §8: W(π) = (−π^, I; −I, 0).
+/// W(π) = (−π^, I; −I, 0).
 fn form(pi: &Vector3<f64>) -> SMatrix<f64, 6, 6> {
     let mut w = SMatrix::<f64, 6, 6>::zeros();
     w.fixed_view_mut::<3, 3>(0, 0).copy_from(&-hat(pi));
@@ -197,7 +197,7 @@ fn steps_of_a_body_keep_the_symplectic_form_of_its_momentum() {
     }
 }
 
-/// §8: without a potential the momentum alone steps, and Dπ^Dᵀ = π⁺^.
+/// Without a potential the momentum alone steps, and Dπ^Dᵀ = π⁺^.
 #[test]
 fn steps_of_a_free_body_are_lie_poisson() {
     let random = &mut Random::new(53);
