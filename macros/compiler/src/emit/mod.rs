@@ -10,7 +10,8 @@ mod step;
 mod stub;
 mod system;
 
-use proc_macro2::TokenStream;
+use clebsch_symbolic::Group;
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use crate::lower::Program;
@@ -116,11 +117,26 @@ impl<'a, 'g> Emitter<'a, 'g> {
     }
 
     fn items(&self) -> TokenStream {
+        let groups = self.groups();
         let constants = self.constants_type();
         let system = self.system();
         let step = self.step_type();
         let equations = self.equations();
-        quote!(#constants #system #step #equations)
+        quote!(#groups #constants #system #step #equations)
+    }
+
+    /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
+    fn groups(&self) -> TokenStream {
+        let krate = &self.paths.krate;
+        let types = self.model.factors.iter().map(|factor| {
+            let (name, n) = match factor.group {
+                Group::SpecialOrthogonal(n) => ("SO", n),
+                Group::Translation(n) => ("Translation", n),
+            };
+            let (name, n) = (Ident::new(name, factor.span), Literal::usize_unsuffixed(n));
+            quote!(const _: ::core::option::Option<#krate::group::#name<#n>> = ::core::option::Option::None;)
+        });
+        quote!(#(#types)*)
     }
 
     fn generated(&self, items: &TokenStream) -> TokenStream {
