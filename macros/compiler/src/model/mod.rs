@@ -19,6 +19,7 @@ mod types;
 mod value;
 mod vectors;
 
+pub use crate::parse::{Discretization, Emit, Order, Promise};
 pub use outline::{Outline, outline};
 pub use structure::Structure;
 pub use types::*;

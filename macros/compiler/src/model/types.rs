@@ -4,6 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::Structure;
+use crate::parse::{Discretization, Emit, Order, Promise};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -93,17 +94,6 @@ pub struct Leaf<'g> {
     pub is_scalar: bool,
 }
 
-/// A promise about the values of a field, which the stepper checks and simplification uses.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Promise {
-    /// Aᵀ = A.
-    Symmetric,
-    /// Zero off the diagonal.
-    Diagonal,
-    /// |v| = 1.
-    Unit,
-}
-
 /// A scalar constant of the user's crate.
 pub struct Constant<'g> {
     /// Its path, with the spans of its first use.
@@ -179,31 +169,6 @@ pub enum Kinetic<'g> {
         /// How ξ is made from F and h.
         discretization: Discretization,
     },
-}
-
-/// How the velocity of a step is made from its group element.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Discretization {
-    /// ξ = 2(F − I)(F + I)⁻¹/h.
-    Cayley,
-    /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
-    MoserVeselov,
-}
-
-/// Where the potential is placed in a step.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Order {
-    /// −h V(Φ_F q).
-    First,
-    /// −h/2 (V(q) + V(Φ_F q)).
-    Second,
-}
-
-/// What is emitted beside the integrator.
-#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
-pub struct Emit {
-    /// The constant `GENERATED`, the generated code as text.
-    pub generated: bool,
 }
 
 /// The bodies of the closures as they were written.

@@ -147,7 +147,7 @@ fn read_value(
     Ok(())
 }
 
-fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located<crate::model::Order>> {
+fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located<super::dials::Order>> {
     let span = literal.span();
     let number = literal.base10_parse::<i64>().ok();
     match ORDERS.iter().find(|&&(order, _)| Some(order) == number) {

@@ -5,8 +5,8 @@ use syn::ext::IdentExt;
 use syn::punctuated::Punctuated;
 use syn::{Index, Member, Token, Type};
 
+use super::dials::Promise;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, nearest};
-use crate::model::Promise;
 
 /// A field of the user's struct.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Span};
 
 use super::Closure;
-use crate::model::{Discretization, Emit, Order};
+use super::dials::{Discretization, Emit, Order};
 
 /// A value and where it was written.
 #[derive(Clone, Debug)]

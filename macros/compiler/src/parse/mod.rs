@@ -4,6 +4,7 @@ mod attribute;
 mod bounds;
 mod closure;
 mod declaration;
+mod dials;
 mod field;
 mod keys;
 mod print;
@@ -11,6 +12,7 @@ mod spelling;
 
 pub use closure::{Argument, Closure, Pattern};
 pub use declaration::{Declaration, Kinetic};
+pub use dials::{Discretization, Emit, Order, Promise};
 pub use field::Field;
 pub use keys::{Dials, Located};
 pub(crate) use spelling::tokens as spell_tokens;

@@ -1,0 +1,37 @@
+//! What a declaration chooses from: the values of its dials and of the promises on its fields.
+
+/// A promise about the values of a field, which the stepper checks and simplification uses.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Promise {
+    /// Aᵀ = A.
+    Symmetric,
+    /// Zero off the diagonal.
+    Diagonal,
+    /// |v| = 1.
+    Unit,
+}
+
+/// How the velocity of a step is made from its group element.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Discretization {
+    /// ξ = 2(F − I)(F + I)⁻¹/h.
+    Cayley,
+    /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
+    MoserVeselov,
+}
+
+/// Where the potential is placed in a step.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Order {
+    /// −h V(Φ_F q).
+    First,
+    /// −h/2 (V(q) + V(Φ_F q)).
+    Second,
+}
+
+/// What is emitted beside the integrator.
+#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+pub struct Emit {
+    /// The constant `GENERATED`, the generated code as text.
+    pub generated: bool,
+}
