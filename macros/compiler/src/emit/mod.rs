@@ -29,8 +29,9 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
     let items = emitter.items();
     let generated = program.formulas.model.emit.generated.then(|| emitter.generated(&items));
     quote! {
-        // the lints of straight-line code are ours to mind, not the user's
-        #[allow(clippy::all, clippy::pedantic, unused_parens)]
+        // the lints of straight-line code are ours to mind, not the user's; signatures are the same for every system, and
+        // not every kernel reads all of its arguments
+        #[allow(clippy::all, clippy::pedantic, unused_parens, unused_variables, dead_code)]
         const _: () = {
             #items
         };

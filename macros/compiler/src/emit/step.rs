@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
-use crate::derive::{Formula, Solution};
+use crate::derive::{Equation, Formula, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
 use crate::model::Structure;
 
@@ -30,7 +30,6 @@ impl Emitter<'_, '_> {
                 constants: &#lifetime #constants_name #constants,
             }
 
-            #[allow(unused_variables)]
             impl<#lifetime, #parameters> #step<#lifetime, #arguments> #predicates {
                 #whole
                 #(#parts)*
@@ -329,12 +328,27 @@ impl Emitter<'_, '_> {
         types
     }
 
+    /// The struct of an equation: the system and the constants, with the equation as its documentation.
+    fn equation_structure(&self, name: &Ident, derived: &Equation<'_>) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
+        let Names { lifetime, constants: constants_name, .. } = &self.names;
+        let formula = self.program.formulas.formula_of_equation(derived);
+        let documentation = docs::formulas("The momentum equation in the chart.", &[formula], None);
+        quote! {
+            #documentation
+            struct #name<#lifetime, #parameters> #predicates {
+                system: &#lifetime #ident<#arguments>,
+                constants: &#lifetime #constants_name #constants,
+            }
+        }
+    }
+
     /// The type of an equation that is solved by a formula.
     fn closed_form(&self, index: usize, number: usize, solve: &Solve, sine_squared: &Kernel) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, krate) = (&self.paths.private, &self.paths.krate);
-        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
-        let Names { lifetime, constants: constants_name, .. } = &self.names;
+        let lifetime = &self.names.lifetime;
         let name = self.names.equation(self.program.suffix(index), number);
         let mut scope = self.scope_of_step();
         scope.components = solve.components.clone();
@@ -343,11 +357,7 @@ impl Emitter<'_, '_> {
         let (locals, sine) = (code::locals(&scope, sine_squared), scope.code(&sine_squared.outputs[0].1[0], false));
         let solution = code::body(&scope, &solve.predict, None);
         let derived = &self.program.formulas.substeps[index].equations[number];
-        let documentation = docs::formulas(
-            "The momentum equation in the chart.",
-            &[self.program.formulas.formula_of_equation(derived)],
-            None,
-        );
+        let structure = self.equation_structure(&name, derived);
         let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
         let solved = docs::formulas(
             "The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.",
@@ -355,12 +365,7 @@ impl Emitter<'_, '_> {
             Some(&solve.predict),
         );
         quote! {
-            #documentation
-            struct #name<#lifetime, #parameters> #predicates {
-                #[allow(dead_code)]
-                system: &#lifetime #ident<#arguments>,
-                constants: &#lifetime #constants_name #constants,
-            }
+            #structure
 
             impl<#lifetime, #parameters> #name<#lifetime, #arguments> #predicates {
                 #solved
@@ -376,8 +381,7 @@ impl Emitter<'_, '_> {
     fn equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
-        let Names { lifetime, constants: constants_name, .. } = &self.names;
+        let lifetime = &self.names.lifetime;
         let suffix = self.program.suffix(index);
         let dimension = Literal::usize_unsuffixed(solve.dimension);
         let name = self.names.equation(suffix, number);
@@ -397,7 +401,7 @@ impl Emitter<'_, '_> {
         let derived = &self.program.formulas.substeps[index].equations[number];
         let formulas =
             [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
-        let documentation = docs::formulas("The momentum equation in the chart.", &formulas[..1], None);
+        let structure = self.equation_structure(&name, derived);
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
         let orientation = (solve.solution == Solution::Newton).then(|| {
             let field = format_ident!("orientation{suffix}_{}", number + 1);
@@ -409,14 +413,8 @@ impl Emitter<'_, '_> {
             }
         });
         quote! {
-            #documentation
-            struct #name<#lifetime, #parameters> #predicates {
-                #[allow(dead_code)]
-                system: &#lifetime #ident<#arguments>,
-                constants: &#lifetime #constants_name #constants,
-            }
+            #structure
 
-            #[allow(unused_variables)]
             impl<#lifetime, #parameters> #private::Equation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
                 type Terms = [#scalar; #terms];
 

@@ -57,7 +57,6 @@ impl Emitter<'_, '_> {
         let body = code::body(&self.scope_of_system(), kernel, structure);
         quote! {
             #documentation
-            #[allow(unused_variables)]
             fn #signature {
                 #body
             }
@@ -134,7 +133,6 @@ impl Emitter<'_, '_> {
         let kinetic = docs::formulas("The kinetic energy.", &[formulas.formula_of_hamiltonian()], None);
         quote! {
             #potential
-            #[allow(unused_variables)]
             fn potential(&self, q: &Self::Configuration) -> #scalar {
                 #locals
                 #value
@@ -168,7 +166,6 @@ impl Emitter<'_, '_> {
                 #step::inverse_legendre(&#step { system: self, constants }, q, mu)
             }
             /// The kick that the end of a step and the start of the next share.
-            #[allow(unused_variables)]
             #[inline]
             fn impulse(&self, constants: &Self::Constants, q: &Self::Configuration) -> Self::Impulse {
                 #impulse
@@ -223,12 +220,10 @@ impl Emitter<'_, '_> {
         };
         quote! {
             /// By how much q violates what the declaration promises.
-            #[allow(unused_variables)]
             fn orbit_defect(q: &Self::Configuration) -> #scalar {
                 #private::largest([#(#defects),*])
             }
             /// The size of the component of μ that no motion of q can have.
-            #[allow(unused_variables)]
             fn isotropy_defect(q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
                 #isotropy
             }
