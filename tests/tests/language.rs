@@ -34,6 +34,7 @@ macro_rules! potentials {
 
             #[test]
             fn derived_and_plain() {
+                // few formulas read every parameter
                 #[allow(unused_variables)]
                 let plain = |particle: &Particle, $x: Vector3<f64>| -> f64 {
                     let ($a, $b, $s) = (particle.matrix, particle.vector, particle.scalar);

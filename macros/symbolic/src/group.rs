@@ -79,14 +79,6 @@ impl Group {
         }
     }
 
-    /// The tangent vector η·F, the derivative of exp(εη)F: right translation of η.
-    pub fn translate_right<'g>(self, eta: Expr<'g>, f: Expr<'g>) -> Expr<'g> {
-        match self {
-            Group::SpecialOrthogonal(_) => eta * f,
-            Group::Translation(_) => eta,
-        }
-    }
-
     /// The tangent vector F·η, the derivative of F exp(εη): left translation of η.
     pub fn translate_left<'g>(self, f: Expr<'g>, eta: Expr<'g>) -> Expr<'g> {
         match self {

@@ -38,6 +38,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     let methods = methods(&krate, &scalar);
     quote! {
         #[automatically_derived]
+        // no body reads its arguments
         #[allow(unused_variables)]
         impl #parameters #krate::Clebsch for #ident #arguments where #(#predicates,)* #bound {
             type Scalar = #scalar;

@@ -12,7 +12,7 @@ mod stepping;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
-use crate::derive::{Formulas, Solution};
+use crate::derive::Formulas;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 pub use grid::{Grid, Lowering};
@@ -185,14 +185,5 @@ impl Program<'_> {
     /// The operations of all kernels together.
     pub fn cost(&self) -> Cost {
         self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).fold(Cost::default(), Cost::plus)
-    }
-
-    /// Whether some equation is solved by Newton's method.
-    pub fn is_implicit(&self) -> bool {
-        self.formulas
-            .substeps
-            .iter()
-            .flat_map(|substep| &substep.equations)
-            .any(|equation| equation.solution == Solution::Newton)
     }
 }
