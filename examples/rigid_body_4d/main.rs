@@ -83,7 +83,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (attitude, momentum) = (state.configuration(), stepper.momentum_matrix(state.momentum()));
         csv.row(step, time, by_rows(attitude).chain(PLANES.map(|plane| momentum[plane])))?;
-        watch.observe(step, time, attitude, &momentum, stepper.energy(state), RigidBody4::orbit_defect(attitude));
+        watch.observe(step, time, attitude, &momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         Ok(())
     })?;
 

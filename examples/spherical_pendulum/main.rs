@@ -99,8 +99,8 @@ where
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (q, n) = (state.configuration(), state.momentum());
         csv.row(step, time, by_rows(q).chain(by_rows(n)))?;
-        let (energy, potential) = (stepper.energy(state), stepper.potential(q));
-        watch.observe(step, Sample { time, q: *q, n: *n, energy, potential }, S::orbit_defect(q));
+        let (energy, potential) = (stepper.energy(state), stepper.potential_at(0.0, q));
+        watch.observe(step, Sample { time, q: *q, n: *n, energy, potential }, stepper.system().orbit_defect(q));
         Ok(())
     })?;
 

@@ -83,7 +83,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (attitude, momentum) = (state.configuration(), state.momentum());
         csv.row(step, time, by_rows(attitude).chain(by_rows(momentum)))?;
-        watch.observe(step, time, attitude, momentum, stepper.energy(state), TumblingBody::orbit_defect(attitude));
+        watch.observe(step, time, attitude, momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         Ok(())
     })?;
 

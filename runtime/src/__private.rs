@@ -3,15 +3,21 @@
 //! What is the same for every problem is here and compiled once; what depends on the problem is generated. The other side of
 //! this file is the module of paths in the compiler's `emit` stage.
 
+pub use crate::element::{check_sine_squared, from_increment, inverse, quaternion, quaternion_from_increment};
+pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
+pub use crate::exponential::{exponential, phi};
 pub use crate::implicit::{Equation, orientation, solve};
 pub use crate::linear::Orientation;
-pub use crate::orbit::{
-    check_sine_squared, from_increment, kinetic_energy, largest, length_defect, orthogonality_defect,
+pub use crate::logarithm::logarithm;
+pub use crate::opaque::check_slope;
+pub use crate::orbit::{largest, length_defect, orientation_defect, orthogonality_defect};
+pub use crate::parameters::{
+    annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
 };
-pub use crate::parameters::{annihilator_defect, check_diagonal, check_finite, check_symmetric, check_unit, invert};
-pub use crate::{Clebsch, Error, Scalar, Space};
+pub use crate::stumpff::stumpff;
+pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
 pub use core;
-pub use nalgebra::{SMatrix, SVector};
+pub use nalgebra::{Quaternion, SMatrix, SVector};
 pub use num_traits::{One, Zero};
 
 use nalgebra::ArrayStorage;

@@ -67,6 +67,15 @@ pub enum Error {
         /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
         step_size: Option<f64>,
     },
+    /// The gradient method of an opaque potential disagrees with differences of its value method.
+    WrongGradient {
+        /// The entry of the configuration, counted through all its leaves, matrices column by column.
+        entry: usize,
+        /// What the gradient method gives for it.
+        gradient: f64,
+        /// What differences of the value method give.
+        difference: f64,
+    },
     /// The work allowed for one implicit equation was used up without a decision.
     NotConverged {
         /// Size of the residual that was left, relative to the terms of the equation.
@@ -134,7 +143,8 @@ impl Display for Error {
             Self::OutsideMomentumSpace { violation, tolerance } => write!(
                 f,
                 "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, where \
-                 {tolerance:.1e} is accepted: compute it by `momentum_map`, or subtract that component"
+                 {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
+                 where such motions are motions of the body, declare `isotropy = free`"
             ),
             Self::Unsolvable { solvable_fraction, step_size: None } => write!(
                 f,
@@ -146,6 +156,11 @@ impl Display for Error {
                 "the step of {h:.3e} is too long for this momentum: the implicit equation is solvable up to {solvable_fraction:.3} \
                  of it; reduce the step size below about {:.3e}",
                 solvable_fraction * h
+            ),
+            Self::WrongGradient { entry, gradient, difference } => write!(
+                f,
+                "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
+                 check the sign, the factor and the order of entries of the gradient method"
             ),
             Self::NotConverged { residual, iterations } => write!(
                 f,

@@ -1,13 +1,14 @@
 //! The implicit equation of a step: ρ(ξ; μ) = 0 for the chart coordinates ξ of the group element F, given the momentum μ.
 //!
 //! [`solve`] first tries full Newton steps from the predictor, which ends after one to four linearisations for the step sizes
-//! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work, until it arrives or is found to turn back: then no solution is connected to the identity.
+//! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work,
+//! until it arrives or is found to turn back: then no solution is connected to the identity.
 
 mod path;
 
 pub use path::LINEARIZATIONS;
 
-use crate::linear::{Orientation, eliminate};
+use crate::linear::{Orientation, eliminate, rows};
 use crate::{Error, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -15,6 +16,9 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
 /// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign.
+///
+/// Where the momentum of the identity is not 0, as for a cost in which a potential depends on q and F together, μ is the
+/// momentum less that of the identity, and so is ρ.
 pub trait Equation<T: Scalar, const M: usize> {
     /// What does not change during the iteration.
     type Terms;
@@ -23,7 +27,13 @@ pub trait Equation<T: Scalar, const M: usize> {
     fn prepare(&self, target: &SVector<T, M>) -> Self::Terms;
 
     /// A first approximation of ξ, best Σ⁻¹μ in the units of the chart; it should be 0 for μ = 0.
-    fn predict(&self, target: &SVector<T, M>) -> SVector<T, M>;
+    ///
+    /// The provided method answers 0, which asks [`solve`] for the first Newton correction from ξ = 0: right where Σ is no
+    /// constant, such as an inertia that depends on the configuration, for one linearisation more.
+    #[inline]
+    fn predict(&self, _target: &SVector<T, M>) -> SVector<T, M> {
+        SVector::from_element(T::zero())
+    }
 
     /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
@@ -80,16 +90,17 @@ pub fn solve<T: Scalar, const M: usize>(
 /// Newton's method from the predictor: `None` as soon as it does not contract cleanly, or leaves the branch.
 ///
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
-/// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0.
+/// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0, and where it is 0 the
+/// first correction is the predictor.
 #[inline]
 fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SVector<T, M>) -> Option<SVector<T, M>> {
     let branch = equation.orientation()?;
     let terms = equation.prepare(target);
-    let start = equation.predict(target);
+    let mut start = equation.predict(target);
     let mut xi = start;
     let half = T::from_ratio(1, 2);
     let negligible = T::EPSILON * T::from_ratio(1, 4);
-    let predicted = size(&start);
+    let mut predicted = size(&start);
     let (mut before, mut residual_before) = (predicted, xi);
     for iteration in 0..QUICK {
         let (residual, jacobian) = equation.linearize(&terms, &xi);
@@ -105,7 +116,9 @@ fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SV
             return Some(xi);
         }
         let ratio = now / before;
-        if ratio <= half {
+        if predicted == T::zero() {
+            (start, predicted) = (xi, now);
+        } else if ratio <= half {
             if now * ratio * ratio <= negligible * scale {
                 return Some(xi);
             }
@@ -155,12 +168,6 @@ fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: 
 #[inline]
 fn size<T: Scalar, const M: usize>(vector: &SVector<T, M>) -> T {
     vector.iter().fold(T::zero(), |sum, x| sum + x.abs())
-}
-
-/// A matrix by rows.
-#[inline]
-fn rows<T: Scalar, const M: usize>(matrix: &SMatrix<T, M, M>) -> [[T; M]; M] {
-    core::array::from_fn(|i| core::array::from_fn(|j| matrix[(i, j)]))
 }
 
 #[cfg(test)]

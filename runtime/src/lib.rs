@@ -37,6 +37,8 @@
 //! |---|---|
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
+//! | follow a potential in time | [`Stepper::state_at`] and [`State::time`], which exist where the time matters |
 //! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
@@ -58,20 +60,29 @@ extern crate std;
 
 #[doc(hidden)]
 pub mod __private;
+mod conserved;
+mod element;
+mod energy;
 mod error;
+mod exponential;
 pub mod group;
 pub mod implicit;
 mod linear;
+mod logarithm;
+mod opaque;
 mod orbit;
 mod parameters;
 mod scalar;
 mod space;
 mod state;
 mod stepper;
+mod stumpff;
 mod system;
+mod time;
 mod trajectory;
 
 pub use clebsch_macros::Clebsch;
+pub use conserved::{Conserved, Conserves};
 pub use error::Error;
 pub use nalgebra;
 pub use scalar::Scalar;
@@ -79,4 +90,5 @@ pub use space::Space;
 pub use state::{CotangentState, State};
 pub use stepper::Stepper;
 pub use system::Clebsch;
+pub use time::{Clock, Time};
 pub use trajectory::Trajectory;

@@ -4,6 +4,9 @@
 //! overflows long before its factors do.
 
 use crate::Scalar;
+use crate::space::larger;
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
 
 /// The sign of the determinant of a regular matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +72,53 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
     Some(if negative { Orientation::Negative } else { Orientation::Positive })
 }
 
+/// x of A x = b; `None` where A is singular or not finite.
+#[inline]
+pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
+    let mut unknowns: [[T; 1]; M] = from_fn(|i| [b[i]]);
+    eliminate(rows(a), &mut unknowns)?;
+    Some(SVector::from_fn(|i, _| unknowns[i][0]))
+}
+
+/// A square matrix by rows.
+#[inline]
+pub(crate) fn rows<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> [[T; N]; N] {
+    from_fn(|i| from_fn(|j| matrix[(i, j)]))
+}
+
+/// A B of square matrices by rows.
+#[inline]
+pub(crate) fn product<T: Scalar, const N: usize>(a: &[[T; N]; N], b: &[[T; N]; N]) -> [[T; N]; N] {
+    from_fn(|i| from_fn(|j| (0..N).fold(T::zero(), |sum, k| sum + a[i][k] * b[k][j])))
+}
+
+/// c I
+#[inline]
+pub(crate) fn multiple_of_identity<T: Scalar, const N: usize>(c: T) -> [[T; N]; N] {
+    from_fn(|i| from_fn(|j| if i == j { c } else { T::zero() }))
+}
+
+/// A + c I
+#[inline]
+pub(crate) fn shifted<T: Scalar, const N: usize>(a: &[[T; N]; N], c: T) -> [[T; N]; N] {
+    from_fn(|i| from_fn(|j| if i == j { a[i][j] + c } else { a[i][j] }))
+}
+
+/// The largest Σ_j |A_ij| of a row i: a norm with |AB| ≤ |A||B|. NaN are passed over.
+#[inline]
+pub(crate) fn norm<T: Scalar, const N: usize>(a: &[[T; N]; N]) -> T {
+    a.iter().fold(T::zero(), |max, row| larger(max, row.iter().fold(T::zero(), |sum, x| sum + x.abs())))
+}
+
+/// The matrix of NaN: what a function of a matrix is where it has no value.
+pub(crate) fn undefined<T: Scalar, const N: usize>() -> SMatrix<T, N, N> {
+    SMatrix::from_element(T::zero() / T::zero())
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Orientation, eliminate};
+    use super::{Orientation, eliminate, norm, product, solve_linear};
+    use nalgebra::{Matrix2, Vector2};
     use proptest::prelude::*;
 
     #[test]
@@ -79,6 +126,15 @@ mod tests {
         let mut b = [[2.0], [1.0]];
         assert_eq!(eliminate([[0.0, 1.0], [1.0, 0.0]], &mut b), Some(Orientation::Negative));
         assert_eq!(b, [[1.0], [2.0]]);
+    }
+
+    #[test]
+    fn systems_are_solved_by_rows_and_products_made() {
+        let solution = solve_linear(&Matrix2::new(0.0, 2.0, 4.0, 8.0), &Vector2::new(2.0, 0.0));
+        assert_eq!(solution, Some(Vector2::new(-2.0, 1.0)));
+        assert_eq!(solve_linear(&Matrix2::new(1.0, 2.0, 2.0, 4.0), &Vector2::x()), None);
+        assert_eq!(product(&[[1.0, 2.0], [3.0, 4.0]], &[[0.0, 1.0], [-1.0, 5.0]]), [[-2.0, 11.0], [-4.0, 23.0]]);
+        assert_eq!(norm(&[[1.0, -2.0], [-3.0, -4.0]]), 7.0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
-use crate::linear::eliminate;
+use crate::linear::{eliminate, multiple_of_identity, rows};
 use crate::space::larger;
 use crate::{Error, Scalar, Space};
 use core::array::from_fn;
@@ -60,8 +60,8 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
 /// # Errors
 /// [`Error::SingularKineticEnergy`].
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
-    let mut inverse: [[T; N]; N] = from_fn(|i| from_fn(|j| if i == j { T::one() } else { T::zero() }));
-    let rows: [[T; N]; N] = from_fn(|i| from_fn(|j| matrix[(i, j)]));
+    let mut inverse: [[T; N]; N] = multiple_of_identity(T::one());
+    let rows = rows(matrix);
     if eliminate(rows, &mut inverse).is_none() {
         return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
     }
@@ -83,12 +83,32 @@ pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
 }
 
 /// The distance of `mu` from the span of `rows`, the momenta that motions of a configuration can have.
-///
-/// Modified Gram–Schmidt on the rows, each made orthogonal twice (once more than round-off needs); a row of which less than
-/// √ε is left depends on those before it and is passed over.
 pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> T {
+    length(&rest(orthonormal(rows).as_slice(), mu))
+}
+
+/// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly.
+///
+/// Made twice, for what the first time leaves is round-off of `mu`, not of the result.
+pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
+    rows: &[[T; M]; D],
+    mu: &SVector<T, M>,
+) -> SVector<T, M> {
+    let basis = orthonormal(rows);
+    let mut projection = *mu;
+    for _ in 0..2 {
+        let outside = rest(basis.as_slice(), &projection);
+        projection.iter_mut().zip(outside).for_each(|(entry, outside)| *entry -= outside);
+    }
+    projection
+}
+
+/// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them.
+///
+/// Modified Gram–Schmidt, each row made orthogonal twice (once more than round-off needs); a row of which less than √ε is left
+/// is taken for dependent.
+fn orthonormal<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D]) -> [[T; M]; D] {
     let mut basis = *rows;
-    let mut rest: [T; M] = from_fn(|i| mu[i]);
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);
         let Some(row) = others.first_mut() else { break };
@@ -101,12 +121,18 @@ pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T;
         let left = length(row);
         if left > T::EPSILON.sqrt() * given {
             row.iter_mut().for_each(|entry| *entry /= left);
-            remove(&mut rest, row);
         } else {
             *row = [T::zero(); M];
         }
     }
-    length(&rest)
+    basis
+}
+
+/// What is left of `mu` without its components along `basis`.
+fn rest<T: Scalar, const M: usize>(basis: &[[T; M]], mu: &SVector<T, M>) -> [T; M] {
+    let mut rest: [T; M] = from_fn(|i| mu[i]);
+    basis.iter().for_each(|unit| remove(&mut rest, unit));
+    rest
 }
 
 /// `vector` −= its component along `unit`.
@@ -126,7 +152,7 @@ fn length<T: Scalar, const M: usize>(vector: &[T; M]) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::{annihilator_defect, check_diagonal, check_symmetric, check_unit, invert};
+    use super::{annihilator_defect, annihilator_projection, check_diagonal, check_symmetric, check_unit, invert};
     use crate::Error;
     use nalgebra::{Matrix3, Vector3};
 
@@ -171,5 +197,20 @@ mod tests {
             1e200
         );
         assert_eq!(annihilator_defect(&[[0.0; 3]; 0], &Vector3::new(3.0, 4.0, 0.0)), 5.0);
+    }
+
+    /// A component along q that is 10¹² times the others leaves no more than their round-off.
+    #[test]
+    fn projected_momenta_are_those_of_motions() {
+        let q = Vector3::new(2.0, -1.0, 2.0) / 3.0;
+        let rows = [Vector3::x(), Vector3::y(), Vector3::z()].map(|e| q.cross(&e).into());
+        let tangential = q.cross(&Vector3::new(0.3, 0.4, 1.2));
+        let projected = annihilator_projection(&rows, &(tangential + q * 1e12));
+        assert!(annihilator_defect(&rows, &projected) < 1e-15 && (projected - tangential).amax() < 1e-3);
+        assert!((annihilator_projection(&rows, &tangential) - tangential).amax() < 1e-15);
+        let exact = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(annihilator_projection(&exact, &Vector3::new(0.1, 0.7, -3.0)), Vector3::new(0.1, 0.7, 0.0));
+        assert_eq!(annihilator_projection(&[[0.0; 3]; 0], &tangential), Vector3::zeros());
+        assert!(annihilator_projection(&rows, &Vector3::new(f64::NAN, 0.0, 0.0)).x.is_nan());
     }
 }

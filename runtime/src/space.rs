@@ -2,9 +2,10 @@
 
 use crate::Scalar;
 use core::fmt::Debug;
-use nalgebra::SMatrix;
+use nalgebra::{Quaternion, SMatrix};
 
-/// A value made of scalars `T`: a scalar, a vector or matrix, a tuple of up to eight spaces, an array of a space, or `()`.
+/// A value made of scalars `T`: a scalar, a vector or matrix, a quaternion, a tuple of up to eight spaces, an array of a space,
+/// or `()`.
 ///
 /// Implementations only have to say how their scalars are visited.
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
@@ -46,6 +47,17 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn max_abs(&self) -> T {
         self.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
+    }
+}
+
+impl<T: Scalar> Space<T> for Quaternion<T> {
+    #[inline]
+    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
+        self.coords.all(visit)
+    }
+    #[inline]
+    fn max_abs(&self) -> T {
+        self.coords.max_abs()
     }
 }
 
@@ -91,13 +103,14 @@ tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
 #[cfg(test)]
 mod tests {
     use super::Space;
-    use nalgebra::{Matrix3, Vector2};
+    use nalgebra::{Matrix3, Quaternion, Vector2};
 
     #[test]
     fn nested_spaces_are_visited_completely() {
-        let nested = ([(1.0, Vector2::new(-7.0, 2.0)); 2], Matrix3::<f64>::identity(), ());
+        let nested =
+            ([(1.0, Vector2::new(-7.0, 2.0)); 2], Matrix3::<f64>::identity(), (), Quaternion::new(-8.0, 0.0, 0.0, 0.0));
         assert!(nested.is_finite());
-        assert_eq!(Space::<f64>::max_abs(&nested), 7.0);
+        assert_eq!(Space::<f64>::max_abs(&nested), 8.0);
         let mut broken = nested;
         broken.0[1].1.y = f64::NAN;
         assert!(!broken.is_finite());

@@ -1,16 +1,21 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
-use crate::Clebsch;
-use core::fmt::{self, Debug, Formatter};
+use crate::{Clebsch, Clock, Time};
+use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
 ///
 /// N is the momentum *before* the kick of the step that follows: with order 2 the physical momentum at q.
-/// The impulse at q, which two steps share, travels along unseen.
+/// The impulse at q, which two steps share, travels along unseen; a stepper of another step size makes its own. To go on with another
+/// *system*, make a new state of [`configuration`](Self::configuration) and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a
+/// state has its [`time`](Self::time).
 pub struct State<S: Clebsch> {
+    pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
     pub(crate) momentum: S::Momentum,
     pub(crate) impulse: S::Impulse,
+    /// The step size that the impulse is for.
+    pub(crate) h: S::Scalar,
 }
 
 impl<S: Clebsch> State<S> {
@@ -33,6 +38,14 @@ impl<S: Clebsch> State<S> {
     }
 }
 
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> State<S> {
+    /// The time t of the configuration, in the unit of the step size.
+    #[inline]
+    pub fn time(&self) -> S::Scalar {
+        Time::now(&self.time)
+    }
+}
+
 impl<S: Clebsch> Copy for State<S> {}
 
 impl<S: Clebsch> Clone for State<S> {
@@ -44,20 +57,24 @@ impl<S: Clebsch> Clone for State<S> {
 
 impl<S: Clebsch> PartialEq for State<S> {
     fn eq(&self, other: &Self) -> bool {
-        self.configuration == other.configuration && self.momentum == other.momentum
+        self.time == other.time && self.configuration == other.configuration && self.momentum == other.momentum
     }
 }
 
 impl<S: Clebsch> Debug for State<S> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("State").field("configuration", &self.configuration).field("momentum", &self.momentum).finish()
+        let mut state = f.debug_struct("State");
+        show_time::<S>(&mut state, &self.time);
+        state.field("configuration", &self.configuration).field("momentum", &self.momentum).finish()
     }
 }
 
 /// A configuration q with a covector p at it, checked by [`Stepper::cotangent_state`](crate::Stepper::cotangent_state).
 ///
 /// p has the shape of q and pairs with velocities of q entry by entry: ⟨p, v⟩ = tr(pᵀv).
+/// It has a [`time`](Self::time) where the cost or the potential depends on it.
 pub struct CotangentState<S: Clebsch> {
+    pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
     pub(crate) covector: S::Configuration,
 }
@@ -82,6 +99,14 @@ impl<S: Clebsch> CotangentState<S> {
     }
 }
 
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> CotangentState<S> {
+    /// The time t of the configuration, in the unit of the step size.
+    #[inline]
+    pub fn time(&self) -> S::Scalar {
+        Time::now(&self.time)
+    }
+}
+
 impl<S: Clebsch> Copy for CotangentState<S> {}
 
 impl<S: Clebsch> Clone for CotangentState<S> {
@@ -93,15 +118,21 @@ impl<S: Clebsch> Clone for CotangentState<S> {
 
 impl<S: Clebsch> PartialEq for CotangentState<S> {
     fn eq(&self, other: &Self) -> bool {
-        self.configuration == other.configuration && self.covector == other.covector
+        self.time == other.time && self.configuration == other.configuration && self.covector == other.covector
     }
 }
 
 impl<S: Clebsch> Debug for CotangentState<S> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("CotangentState")
-            .field("configuration", &self.configuration)
-            .field("covector", &self.covector)
-            .finish()
+        let mut state = f.debug_struct("CotangentState");
+        show_time::<S>(&mut state, &self.time);
+        state.field("configuration", &self.configuration).field("covector", &self.covector).finish()
+    }
+}
+
+/// The time as a number, where there is one.
+fn show_time<S: Clebsch>(state: &mut DebugStruct<'_, '_>, time: &S::Time) {
+    if size_of::<S::Time>() > 0 {
+        state.field("time", &time.now());
     }
 }

@@ -1,6 +1,9 @@
 //! A system with a step size: what a person integrates with.
 
-use crate::{Clebsch, CotangentState, Error, Scalar, Space, State, Trajectory};
+mod formulas;
+
+use crate::{Clebsch, Clock, Conserves, CotangentState, Error, Scalar, Space, State, Time, Trajectory};
+use num_traits::Zero;
 
 /// A system, a step size and what no step changes, computed once.
 ///
@@ -15,7 +18,7 @@ pub struct Stepper<S: Clebsch> {
 impl<S: Clebsch> Stepper<S> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
-        if !h.is_finite() || h == <S::Scalar as num_traits::Zero>::zero() {
+        if !h.is_finite() || h == S::Scalar::zero() {
             return Err(Error::StepSize { value: h.to_f64() });
         }
         let constants = system.constants(h)?;
@@ -25,38 +28,35 @@ impl<S: Clebsch> Stepper<S> {
     /// The state (q, N), after checks: finite, q on its orbit, N in 𝔤_q^⊥, the momenta that motions of q can have.
     ///
     /// What is accepted as round-off of the input is √ε: 1.5e-8 for `f64`, 3.5e-4 for `f32`; for N relative to its largest
-    /// component.
+    /// component. [`project`](Self::project) gives the nearest N that is accepted. Where the time matters it starts at 0.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::OutsideMomentumSpace`].
     pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
-        check_configuration::<S>(&q)?;
-        if !mu.is_finite() {
-            return Err(Error::NotFinite { name: "the momentum" });
-        }
-        let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
-        let violation = S::isotropy_defect(&q, &mu);
-        // Written so that NaN is a violation.
-        if !matches!(violation.partial_cmp(&tolerance), Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)) {
-            return Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() });
-        }
-        let impulse = self.system.impulse(&self.constants, &q);
-        if !impulse.is_finite() {
-            return Err(Error::NotFinite { name: "the gradient of the potential at the configuration" });
-        }
-        Ok(State { configuration: q, momentum: mu, impulse })
+        self.checked_state(S::Scalar::zero(), q, mu)
     }
 
-    /// The state (q, p) on T*Q, after checks: finite, q on its orbit.
+    /// The state (q, p) on T*Q, after checks: finite, q on its orbit. Where the time matters it starts at 0.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::OffOrbit`].
     pub fn cotangent_state(&self, q: S::Configuration, p: S::Configuration) -> Result<CotangentState<S>, Error> {
-        check_configuration::<S>(&q)?;
-        if !p.is_finite() {
-            return Err(Error::NotFinite { name: "the covector" });
+        self.checked_cotangent_state(S::Scalar::zero(), q, p)
+    }
+
+    /// The momentum nearest to `mu` that motions of q can have: the orthogonal projection of its components to 𝔤_q^⊥.
+    ///
+    /// `mu` itself where the action is free or the declaration says `isotropy = free`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OffOrbit`].
+    pub fn project(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+        self.check_configuration(q)?;
+        let projected = self.system.project_momentum(q, mu);
+        if !(mu.is_finite() && projected.is_finite()) {
+            return Err(Error::NotFinite { name: "the momentum" });
         }
-        Ok(CotangentState { configuration: q, covector: p })
+        Ok(projected)
     }
 
     /// One step of the discrete Euler–Poincaré representation: (q_k, N_k) ↦ (q_{k+1}, N_{k+1}).
@@ -66,15 +66,26 @@ impl<S: Clebsch> Stepper<S> {
     /// NaN or numbers overflowed, [`Error::NotConverged`].
     #[inline]
     pub fn step(&self, state: &State<S>) -> Result<State<S>, Error> {
-        let stepped = self.system.step(&self.constants, &state.configuration, &state.momentum, &state.impulse);
-        let (configuration, momentum, impulse) = match stepped {
-            Ok(next) => next,
-            Err(error) => return Err(error.with_step_size(self.h.to_f64())),
-        };
+        let State { time, configuration, momentum, .. } = state;
+        let impulse = self.impulse_of(state);
+        let (configuration, momentum, impulse) =
+            match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse) {
+                Ok(next) => next,
+                Err(error) => return Err(error.with_step_size(self.h.to_f64())),
+            };
         if !(configuration.is_finite() & momentum.is_finite()) {
             return Err(Error::NotFinite { name: "the state after the step" });
         }
-        Ok(State { configuration, momentum, impulse })
+        Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
+    }
+
+    /// The impulse that a state brings along, or a new one where a stepper of another step size has made it.
+    #[inline]
+    fn impulse_of(&self, state: &State<S>) -> S::Impulse {
+        if size_of::<S::Impulse>() == 0 || state.h == self.h {
+            return state.impulse;
+        }
+        self.system.impulse(&self.constants, state.time.now(), &state.configuration)
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
@@ -83,15 +94,16 @@ impl<S: Clebsch> Stepper<S> {
     /// As [`step`](Self::step).
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
-        let stepped = self.system.step_symmetric(&self.constants, &state.configuration, &state.covector);
-        let (configuration, covector) = match stepped {
-            Ok(next) => next,
-            Err(error) => return Err(error.with_step_size(self.h.to_f64())),
-        };
+        let CotangentState { time, configuration, covector } = state;
+        let (configuration, covector) =
+            match self.system.step_symmetric(&self.constants, time.now(), configuration, covector) {
+                Ok(next) => next,
+                Err(error) => return Err(error.with_step_size(self.h.to_f64())),
+            };
         if !(configuration.is_finite() & covector.is_finite()) {
             return Err(Error::NotFinite { name: "the state after the step" });
         }
-        Ok(CotangentState { configuration, covector })
+        Ok(CotangentState { time: time.after_step(self.h), configuration, covector })
     }
 
     /// The states of all steps, `start` first; ends after the first error.
@@ -100,76 +112,19 @@ impl<S: Clebsch> Stepper<S> {
         Trajectory::new(self, start)
     }
 
-    /// Kinetic energy ½ N·Σ⁻¹N plus potential V(q): nearly constant, its oscillation shrinks with the order.
+    /// Kinetic energy plus potential, at the time of the state.
+    ///
+    /// Nearly constant for an autonomous system: its oscillation shrinks with the order.
     #[inline]
     pub fn energy(&self, state: &State<S>) -> S::Scalar {
-        self.kinetic_energy(state) + self.potential(&state.configuration)
+        self.kinetic_energy(state) + self.system.potential(state.time.now(), &state.configuration)
     }
 
-    /// Kinetic energy ½ N·Σ⁻¹N.
+    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity ξ with the momentum N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N where ℓ is quadratic with the
+    /// Hessian Σ; +∞ where no velocity has this momentum.
     #[inline]
     pub fn kinetic_energy(&self, state: &State<S>) -> S::Scalar {
-        self.system.kinetic_energy(&self.constants, &state.momentum)
-    }
-
-    /// The potential V(q).
-    #[inline]
-    pub fn potential(&self, q: &S::Configuration) -> S::Scalar {
-        self.system.potential(q)
-    }
-
-    /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
-    #[inline]
-    pub fn legendre(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
-        self.system.legendre(self.h, q, f)
-    }
-
-    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
-    #[inline]
-    pub fn legendre_next(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
-        self.system.legendre_next(self.h, q, f)
-    }
-
-    /// The group element F of the step that starts at (q, N): the implicit solve.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
-    #[inline]
-    pub fn inverse_legendre(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Element, Error> {
-        match self.system.inverse_legendre(&self.constants, q, mu) {
-            Ok(element) => Ok(element),
-            Err(error) => Err(error.with_step_size(self.h.to_f64())),
-        }
-    }
-
-    /// The action Φ_F(q).
-    #[inline]
-    pub fn act(&self, f: &S::Element, q: &S::Configuration) -> S::Configuration {
-        self.system.act(f, q)
-    }
-
-    /// The momentum map J(q, p).
-    #[inline]
-    pub fn momentum_map(&self, q: &S::Configuration, p: &S::Configuration) -> S::Momentum {
-        self.system.momentum_map(q, p)
-    }
-
-    /// The coadjoint action Ad*_F μ.
-    #[inline]
-    pub fn coadjoint(&self, f: &S::Element, mu: &S::Momentum) -> S::Momentum {
-        self.system.coadjoint(f, mu)
-    }
-
-    /// The representing matrices of a momentum.
-    #[inline]
-    pub fn momentum_matrix(&self, mu: &S::Momentum) -> S::MomentumMatrix {
-        S::momentum_matrix(mu)
-    }
-
-    /// The components of a momentum given by its representing matrices.
-    #[inline]
-    pub fn momentum_components(&self, m: &S::MomentumMatrix) -> S::Momentum {
-        S::momentum_components(m)
+        self.system.kinetic_energy(&self.constants, state.time.now(), &state.configuration, &state.momentum)
     }
 
     /// The step size h, seconds in SI units.
@@ -183,17 +138,87 @@ impl<S: Clebsch> Stepper<S> {
     pub fn system(&self) -> &S {
         &self.system
     }
+
+    fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        self.check_configuration(&q)?;
+        if !mu.is_finite() {
+            return Err(Error::NotFinite { name: "the momentum" });
+        }
+        let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
+        let violation = self.system.isotropy_defect(&q, &mu);
+        // Written so that NaN is a violation.
+        if !matches!(violation.partial_cmp(&tolerance), Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)) {
+            return Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() });
+        }
+        let impulse = self.system.impulse(&self.constants, t, &q);
+        if !impulse.is_finite() {
+            return Err(Error::NotFinite { name: "the gradient of the potential at the configuration" });
+        }
+        Ok(State { time: S::Time::at(t), configuration: q, momentum: mu, impulse, h: self.h })
+    }
+
+    fn checked_cotangent_state(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        p: S::Configuration,
+    ) -> Result<CotangentState<S>, Error> {
+        self.check_configuration(&q)?;
+        if !p.is_finite() {
+            return Err(Error::NotFinite { name: "the covector" });
+        }
+        Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })
+    }
+
+    /// q is finite and on its orbit, up to √ε.
+    fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
+        if !q.is_finite() {
+            return Err(Error::NotFinite { name: "the configuration" });
+        }
+        let tolerance = S::Scalar::EPSILON.sqrt();
+        let defect = self.system.orbit_defect(q);
+        if defect <= tolerance {
+            return Ok(());
+        }
+        Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+    }
 }
 
-/// q is finite and on its orbit, up to √ε.
-fn check_configuration<S: Clebsch>(q: &S::Configuration) -> Result<(), Error> {
-    if !q.is_finite() {
-        return Err(Error::NotFinite { name: "the configuration" });
+/// Where the cost or the potential depends on the time.
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+    /// The state (q, N) at the time t, checked as by [`state`](Self::state).
+    ///
+    /// # Errors
+    /// As [`state`](Self::state); [`Error::NotFinite`] for the time too.
+    pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        check_time(t)?;
+        self.checked_state(t, q, mu)
     }
-    let tolerance = S::Scalar::EPSILON.sqrt();
-    let defect = S::orbit_defect(q);
-    if defect <= tolerance {
-        return Ok(());
+
+    /// The state (q, p) on T*Q at the time t, checked as by [`cotangent_state`](Self::cotangent_state).
+    ///
+    /// # Errors
+    /// As [`cotangent_state`](Self::cotangent_state); [`Error::NotFinite`] for the time too.
+    pub fn cotangent_state_at(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        p: S::Configuration,
+    ) -> Result<CotangentState<S>, Error> {
+        check_time(t)?;
+        self.checked_cotangent_state(t, q, p)
     }
-    Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+}
+
+fn check_time<T: Scalar>(t: T) -> Result<(), Error> {
+    if t.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the time" }) }
+}
+
+/// Where conserved momenta were found.
+impl<S: Conserves> Stepper<S> {
+    /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
+    #[inline]
+    pub fn conserved(&self, state: &State<S>) -> S::Conserved {
+        self.system.conserved(&state.configuration, &state.momentum)
+    }
 }

@@ -1,14 +1,17 @@
 //! The trait that the derive macro implements.
 
-use crate::{Error, Scalar, Space, Stepper};
+use crate::{Error, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
 
 /// A mechanical or control system with everything that is derived from its declaration.
 ///
 /// Implemented by `#[derive(Clebsch)]`; the documentation of each generated method carries its formula as derived for that
 /// struct. Notation: configuration q in Q, group element F in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step
-/// size h, discrete Lagrangian ℓd(h, q, F). Momenta are components with respect to the basis E_i of 𝔤 that
+/// size h, time t, discrete Lagrangian ℓd(t, h, q, F). Momenta are components with respect to the basis E_i of 𝔤 that
 /// [`group`](crate::group) documents, m_i = ⟨M, E_i⟩ = tr(MᵀE_i), all factors of a product one after the other.
+///
+/// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere it is that of the
+/// configuration. An autonomous system takes no notice of it.
 ///
 /// People use it through a [`Stepper`], which holds h and the [`Constants`](Self::Constants).
 ///
@@ -28,6 +31,9 @@ pub trait Clebsch {
     type Impulse: Space<Self::Scalar>;
     /// What is computed once per stepper.
     type Constants: Clone + Debug;
+    /// What a state knows of the time: `()` for an autonomous system, [`Clock`](crate::Clock) where the cost or the potential
+    /// depends on it.
+    type Time: Time<Self::Scalar>;
 
     /// The name of the struct.
     const NAME: &'static str;
@@ -52,26 +58,34 @@ pub trait Clebsch {
     fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum;
 
     /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
-    fn legendre(&self, h: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
+    fn legendre(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
 
     /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
-    fn legendre_next(&self, h: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
+    fn legendre_next(
+        &self,
+        h: Self::Scalar,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        f: &Self::Element,
+    ) -> Self::Momentum;
 
-    /// The group element F with `legendre(h, q, F)` = μ that is connected to the identity.
+    /// The group element F with `legendre(h, t, q, F)` = μ that is connected to the identity.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::Unsolvable`] or [`Error::NotConverged`].
     fn inverse_legendre(
         &self,
         constants: &Self::Constants,
+        t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
     ) -> Result<Self::Element, Error>;
 
-    /// The kick at q, shared by the end of one step and the start of the next.
-    fn impulse(&self, constants: &Self::Constants, q: &Self::Configuration) -> Self::Impulse;
+    /// The kick at q and the time t of q, shared by the end of one step and the start of the next.
+    fn impulse(&self, constants: &Self::Constants, t: Self::Scalar, q: &Self::Configuration) -> Self::Impulse;
 
-    /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), given the impulse at q; returns that at q⁺ too.
+    /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, given the impulse
+    /// at q; returns that at q⁺ too.
     ///
     /// # Errors
     /// As [`inverse_legendre`](Self::inverse_legendre).
@@ -79,27 +93,38 @@ pub trait Clebsch {
     fn step(
         &self,
         constants: &Self::Constants,
+        t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
         impulse: &Self::Impulse,
     ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error>;
 
-    /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺).
+    /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
     ///
     /// # Errors
     /// As [`inverse_legendre`](Self::inverse_legendre).
     fn step_symmetric(
         &self,
         constants: &Self::Constants,
+        t: Self::Scalar,
         q: &Self::Configuration,
         p: &Self::Configuration,
     ) -> Result<(Self::Configuration, Self::Configuration), Error>;
 
-    /// The potential V(q), 0 for a free system.
-    fn potential(&self, q: &Self::Configuration) -> Self::Scalar;
+    /// The potential V(t, q), 0 for a free system.
+    fn potential(&self, t: Self::Scalar, q: &Self::Configuration) -> Self::Scalar;
 
-    /// The kinetic energy ½ μ·Σ⁻¹μ, with Σ the Hessian of the Lagrangian ℓ(ξ).
-    fn kinetic_energy(&self, constants: &Self::Constants, mu: &Self::Momentum) -> Self::Scalar;
+    /// The kinetic energy μ·ξ − ℓ(q, ξ) at the velocity ξ with ∂ℓ/∂ξ = μ: the Legendre–Fenchel transform of ℓ(q, ·), with
+    /// ℓ(q, ξ) = lim ℓd(t, h, q, exp hξ)/h less its value at ξ = 0.
+    ///
+    /// ½ μ·Σ⁻¹μ where ℓ is quadratic with the Hessian Σ; +∞ where no velocity has this momentum.
+    fn kinetic_energy(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Self::Scalar;
 
     /// The representing matrices of μ.
     fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix;
@@ -110,10 +135,17 @@ pub trait Clebsch {
     /// By how much q violates what the declaration promises, as the largest entry of |RᵀR − I| or ||q|² − 1|.
     ///
     /// 0 for plain vectors and matrices, +∞ on the wrong component of a group (det < 0).
-    fn orbit_defect(q: &Self::Configuration) -> Self::Scalar;
+    fn orbit_defect(&self, q: &Self::Configuration) -> Self::Scalar;
 
-    /// The size of the component of μ outside of 𝔤_q^⊥, the momenta that motions of q can have. 0 where the action is free.
-    fn isotropy_defect(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Scalar;
+    /// The size of the component of μ outside of 𝔤_q^⊥, the momenta that motions of q can have.
+    ///
+    /// 0 where the action is free, and where the motions that fix q are declared to be motions (`isotropy = free`).
+    fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Scalar;
+
+    /// The momentum in 𝔤_q^⊥ whose components are nearest to those of μ, in the Euclidean distance.
+    ///
+    /// μ itself where [`isotropy_defect`](Self::isotropy_defect) is 0 for every momentum.
+    fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum;
 
     /// A stepper of step size `h`, on a copy of this system.
     ///

@@ -37,8 +37,8 @@ fn legendre_transforms_of_the_heavy_top() {
         let torque = |r| gravity_torque(top.weight, &top.center, r);
         let before = vee(&(f * top.mass_matrix - top.mass_matrix * f.transpose())) / H - torque(&r) * (H / 2.0);
         let after = vee(&(top.mass_matrix * f - f.transpose() * top.mass_matrix)) / H + torque(&(r * f)) * (H / 2.0);
-        assert_near(&top.legendre(H, &r, &f), &before, NEAR, "F⁻ℓd");
-        assert_near(&top.legendre_next(H, &r, &f), &after, NEAR, "F⁺ℓd");
+        assert_near(&top.legendre(H, 0.0, &r, &f), &before, NEAR, "F⁻ℓd");
+        assert_near(&top.legendre_next(H, 0.0, &r, &f), &after, NEAR, "F⁺ℓd");
     }
 }
 
@@ -52,8 +52,8 @@ fn legendre_transforms_of_first_order() {
         let (r, f) = (random.attitude::<3>(), random.attitude::<3>());
         let before = vee(&(f * mass_matrix - mass_matrix * f.transpose())) / H;
         let after = f.transpose() * before + gravity_torque(weight, &center, &(r * f)) * H;
-        assert_near(&top.legendre(H, &r, &f), &before, NEAR, "F⁻ℓd");
-        assert_near(&top.legendre_next(H, &r, &f), &after, NEAR, "F⁺ℓd");
+        assert_near(&top.legendre(H, 0.0, &r, &f), &before, NEAR, "F⁻ℓd");
+        assert_near(&top.legendre_next(H, 0.0, &r, &f), &after, NEAR, "F⁺ℓd");
     }
 }
 
@@ -67,8 +67,8 @@ fn legendre_transforms_on_so4() {
         let m = (f * body.j_d - body.j_d * f.transpose()) / H;
         let before: Vector6<f64> = components(&m);
         let after: Vector6<f64> = components(&(f.transpose() * m * f));
-        assert_near(&body.legendre(H, &r, &f), &before, NEAR, "F⁻ℓd");
-        assert_near(&body.legendre_next(H, &r, &f), &after, NEAR, "F⁺ℓd");
+        assert_near(&body.legendre(H, 0.0, &r, &f), &before, NEAR, "F⁻ℓd");
+        assert_near(&body.legendre_next(H, 0.0, &r, &f), &after, NEAR, "F⁺ℓd");
         assert_near(&RigidBody4::momentum_matrix(&before), &m, NEAR, "M");
     }
 }
@@ -82,16 +82,21 @@ fn legendre_transforms_of_the_sphere() {
         let paper = PaperPendulum { gravity: random.between(1.0, 10.0) };
         let n = vee(&((f - f.transpose()) / 2.0)) / H;
         let kick = -(f * q).cross(&Vector3::z()) * (2.0 * paper.gravity * H);
-        assert_near(&paper.legendre(H, &q, &f), &(n * 2.0), NEAR, "F⁻ℓd");
-        assert_near(&paper.legendre_next(H, &q, &f), &(n * 2.0 + kick), NEAR, "F⁺ℓd");
+        assert_near(&paper.legendre(H, 0.0, &q, &f), &(n * 2.0), NEAR, "F⁻ℓd");
+        assert_near(&paper.legendre_next(H, 0.0, &q, &f), &(n * 2.0 + kick), NEAR, "F⁺ℓd");
         assert_near(&PaperPendulum::momentum_matrix(&(n * 2.0)), &hat(&n), NEAR, "M = N^");
 
         let mass = random.between(0.5, 2.0);
         let pendulum = SphericalPendulum { mass, length: 1.5, gravity: 2.0 };
         let half = |q: Vector3<f64>| -q.cross(&Vector3::z()) * (mass * 1.5 * 2.0 * H / 2.0);
         let momentum = n * (mass * 1.5 * 1.5);
-        assert_near(&pendulum.legendre(H, &q, &f), &(momentum - half(q)), NEAR, "F⁻ℓd with mass and length");
-        assert_near(&pendulum.legendre_next(H, &q, &f), &(momentum + half(f * q)), NEAR, "F⁺ℓd with mass and length");
+        assert_near(&pendulum.legendre(H, 0.0, &q, &f), &(momentum - half(q)), NEAR, "F⁻ℓd with mass and length");
+        assert_near(
+            &pendulum.legendre_next(H, 0.0, &q, &f),
+            &(momentum + half(f * q)),
+            NEAR,
+            "F⁺ℓd with mass and length",
+        );
     }
 }
 
@@ -112,8 +117,8 @@ fn momenta_and_kicks_of_neumann() {
         let drift: Vector6<f64> = components(&((f - f.transpose()) / (4.0 * H)));
         let before = drift + gradient(q) * (H / 2.0);
         let after = drift - gradient(f * q) * (H / 2.0);
-        assert_near(&problem.legendre(H, &q, &f), &before, NEAR, "F⁻ℓd");
-        assert_near(&problem.legendre_next(H, &q, &f), &after, NEAR, "F⁺ℓd");
+        assert_near(&problem.legendre(H, 0.0, &q, &f), &before, NEAR, "F⁻ℓd");
+        assert_near(&problem.legendre_next(H, 0.0, &q, &f), &after, NEAR, "F⁺ℓd");
     }
 }
 
@@ -132,8 +137,13 @@ fn legendre_transforms_of_commutative_groups() {
         };
         let momentum = stack(&(a[0] * (bodies.mass[0] / H)), &(a[1] * (bodies.mass[1] / H)));
         let next = bodies.act(&a, &x);
-        assert_near(&bodies.legendre(H, &x, &a), &(momentum - force(x) * (H / 2.0)), NEAR, "m a/h − h/2 f");
-        assert_near(&bodies.legendre_next(H, &x, &a), &(momentum + force(next) * (H / 2.0)), NEAR, "m a/h + h/2 f⁺");
+        assert_near(&bodies.legendre(H, 0.0, &x, &a), &(momentum - force(x) * (H / 2.0)), NEAR, "m a/h − h/2 f");
+        assert_near(
+            &bodies.legendre_next(H, 0.0, &x, &a),
+            &(momentum + force(next) * (H / 2.0)),
+            NEAR,
+            "m a/h + h/2 f⁺",
+        );
 
         let (length, mass) = (random.between(0.5, 2.0), random.between(0.5, 2.0));
         let (q, f) = (random.unit::<2>(), random.attitude::<2>());
@@ -142,7 +152,7 @@ fn legendre_transforms_of_commutative_groups() {
         let drift = mass * length * length * f[(1, 0)] / H;
         let expected = [drift - torque(&q), drift + torque(&(f * q))];
         let pendulum = PlanarPendulum(length, mass);
-        let found = [pendulum.legendre(H, &q, &f)[0], pendulum.legendre_next(H, &q, &f)[0]];
+        let found = [pendulum.legendre(H, 0.0, &q, &f)[0], pendulum.legendre_next(H, 0.0, &q, &f)[0]];
         // components reach 40, and 1e-13 is relative to them
         assert_near(&SVector::from(found), &SVector::from(expected), 40.0 * NEAR, "I sin θ/h");
     }
@@ -232,8 +242,8 @@ fn kinetic_energy_is_that_of_the_body() {
         let omega = random.vector::<3>();
         let (pi, energy) = (inertia * omega, omega.dot(&(inertia * omega)) / 2.0);
         let constants = top.constants(H).expect("a regular top");
-        assert!((top.kinetic_energy(&constants, &pi) - energy).abs() < NEAR);
         let r = random.attitude::<3>();
-        assert!((top.potential(&r) - top.weight * (r * top.center).z).abs() < NEAR);
+        assert!((top.kinetic_energy(&constants, 0.0, &r, &pi) - energy).abs() < NEAR);
+        assert!((top.potential(0.0, &r) - top.weight * (r * top.center).z).abs() < NEAR);
     }
 }

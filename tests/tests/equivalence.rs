@@ -113,8 +113,8 @@ fn cayley_lagrangian_has_its_explicit_momenta() {
         let (jx, r) = (inertia * x, random.attitude());
         let momentum = |sign: f64| (jx + x.cross(&jx) * (sign / 2.0) + x * (x.dot(&jx) / 4.0)) / H;
         // divided by h = 0.02
-        assert_near(&body.legendre(H, &r, &f), &momentum(1.0), 1e-12, "N");
-        assert_near(&body.legendre_next(H, &r, &f), &momentum(-1.0), 1e-12, "N⁺");
+        assert_near(&body.legendre(H, 0.0, &r, &f), &momentum(1.0), 1e-12, "N");
+        assert_near(&body.legendre_next(H, 0.0, &r, &f), &momentum(-1.0), 1e-12, "N⁺");
     }
 }
 
@@ -174,7 +174,7 @@ fn potential_inside_of_the_cost() {
     let whole = heavy_top(random);
     let split = SplitTop { mass_matrix: whole.mass_matrix, weight: whole.weight, center: whole.center };
     let r = random.attitude::<3>();
-    assert!((whole.potential(&r) - split.potential(&r)).abs() < 1e-15, "both parts are the potential");
+    assert!((whole.potential(0.0, &r) - split.potential(0.0, &r)).abs() < 1e-15, "both parts are the potential");
     let (whole, split) = (whole.stepper(H).expect("a top"), split.stepper(H).expect("a top"));
     let pi = random.vector::<3>();
     let starts = (whole.state(r, pi).expect("a state"), split.state(r, pi).expect("a state"));

@@ -50,12 +50,12 @@ macro_rules! potentials {
                     };
                     // away from zero, for roots, logarithms and reciprocals
                     let x = Vector3::repeat(0.8) + random.vector() * 0.3;
-                    let (derived, expected) = (particle.potential(&x), plain(&particle, x));
+                    let (derived, expected) = (particle.potential(0.0, &x), plain(&particle, x));
                     assert!((derived - expected).abs() <= 1e-13 * (1.0 + expected.abs()), "{derived} and {expected}");
                     let h = 2.0;
                     let constants = particle.constants(h).expect("a regular particle");
                     // J(x, −h/2 ∂V) = −∂V
-                    let kick = particle.impulse(&constants, &x);
+                    let kick = particle.impulse(&constants, 0.0, &x);
                     for i in 0..3 {
                         let at = |e: f64| plain(&particle, x + Vector3::ith(i, e));
                         let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;

@@ -105,7 +105,7 @@ fn assert_symplectic<S, const R: usize, const C: usize, const K: usize>(
     S: Clebsch<Scalar = Dual<K>, Configuration = SMatrix<Dual<K>, R, C>>,
 {
     let constants = system.constants(Dual::constant(H)).expect("a regular system");
-    let step = system.step_symmetric(&constants, &variables(q, 0), &variables(p, K / 2));
+    let step = system.step_symmetric(&constants, Dual::constant(0.0), &variables(q, 0), &variables(p, K / 2));
     let (q, p) = step.expect("a solvable step");
     let d = jacobian(q.iter().chain(p.iter()));
     let omega = SMatrix::<f64, K, K>::from_fn(|i, j| match (i + K / 2 == j, j + K / 2 == i) {
@@ -223,8 +223,9 @@ fn steps_on_the_sphere_are_poisson_in_configuration_and_momentum() {
         let n = q.cross(&random.vector());
         let constants = pendulum.constants(Dual::constant(H)).expect("a regular pendulum");
         let (at, momentum) = (variables::<6, 3, 1>(&q, 0), variables(&n, 3));
-        let impulse = pendulum.impulse(&constants, &at);
-        let (next, next_momentum, _) = pendulum.step(&constants, &at, &momentum, &impulse).expect("a solvable step");
+        let impulse = pendulum.impulse(&constants, Dual::constant(0.0), &at);
+        let (next, next_momentum, _) =
+            pendulum.step(&constants, Dual::constant(0.0), &at, &momentum, &impulse).expect("a solvable step");
         let d = jacobian(next.iter().chain(next_momentum.iter()));
         let bracket = |q: Vector3<f64>, n: Vector3<f64>| {
             let mut b = SMatrix::<f64, 6, 6>::zeros();

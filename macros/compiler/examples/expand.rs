@@ -1,6 +1,8 @@
 //! Prints every stage of the structs in a file: `cargo run -p clebsch-compiler --example expand -- FILE [STAGE]`.
 
-use clebsch_compiler::{Graph, compile, emit};
+use clebsch_compiler::diagnostic::Diagnostics;
+use clebsch_compiler::{Graph, compile, derive, emit, model, parse};
+use proc_macro2::TokenStream;
 use quote::ToTokens;
 
 fn main() {
@@ -11,16 +13,22 @@ fn main() {
     let file = syn::parse_file(&source).expect("Rust source");
     for item in file.items {
         let syn::Item::Struct(item) = item else { continue };
-        let graph = Graph::new();
-        match compile(&graph, item.to_token_stream()) {
-            Err(errors) => println!("{errors}"),
-            Ok(program) => match stage.as_str() {
-                "formulas" => println!("{}", program.formulas),
-                "model" => println!("{}", program.formulas.model),
-                "program" => println!("{program}"),
-                "derivation" => println!("{}", emit::derivation(&program)),
-                _ => println!("{}", emit::generated(&program)),
-            },
+        if let Err(errors) = show(&stage, item.to_token_stream()) {
+            println!("{errors}");
         }
     }
+}
+
+/// Prints one stage, and runs none behind it.
+fn show(stage: &str, item: TokenStream) -> Result<(), Diagnostics> {
+    let graph = Graph::new();
+    match stage {
+        "declaration" => println!("{}", parse::parse(item)?),
+        "model" => println!("{}", model::model(&graph, &parse::parse(item)?)?),
+        "formulas" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?),
+        "program" => println!("{}", compile(&graph, item)?),
+        "derivation" => println!("{}", emit::derivation(&compile(&graph, item)?)),
+        _ => println!("{}", emit::generated(&compile(&graph, item)?)),
+    }
+    Ok(())
 }

@@ -145,6 +145,11 @@ impl Diagnostics {
         self.found.len()
     }
 
+    /// The errors.
+    pub fn into_vec(self) -> Vec<Diagnostic> {
+        self.found
+    }
+
     /// The value, unless there were errors.
     pub fn propagate<T>(self, value: T) -> Result<T, Diagnostics> {
         match self.is_empty() {

@@ -30,7 +30,7 @@ pub fn expand(item: TokenStream) -> TokenStream {
         Ok(program) => emit::emit(&program),
         Err(errors) => {
             let declaration = parse::parse(item).ok();
-            let outline = declaration.as_ref().and_then(model::outline);
+            let outline = declaration.as_ref().and_then(|declaration| model::outline(&graph, declaration));
             let stub = declaration.zip(outline).map(|(declaration, outline)| emit::stub(&declaration, &outline));
             let errors = errors.to_compile_errors();
             quote::quote!(#errors #stub)

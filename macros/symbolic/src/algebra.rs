@@ -1,72 +1,122 @@
-//! Lie algebras of matrix groups: bases, in the documented order.
+//! Bases of vector spaces of matrices, Lie algebras above all: what v ↦ Σ v_i E_i and A ↦ ⟨A, E_i⟩ refer to.
 
-use crate::{Expr, Graph, Shape, integer};
+use num_traits::{One, Zero};
 
-/// The Lie algebra of a group, with its basis E_1 … E_m.
+use crate::{Expr, Graph, Rational, Shape, integer};
+
+/// The entries (row, column, value) of a matrix that are not zero.
+pub type Sparse = Vec<(usize, usize, Rational)>;
+
+/// A basis E_1 … E_m of a space of matrices, known to a graph.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub enum Algebra {
-    /// so(n). For n = 3 the hat basis e1^, e2^, e3^; else Eji − Eij for i < j in the order (12) (13) … (n−1 n).
-    SpecialOrthogonal(usize),
-    /// Rⁿ with the unit vectors: elements and their coordinates are the same thing.
-    Translation(usize),
+pub struct Algebra {
+    index: u32,
+    dimension: usize,
+    shape: Shape,
+    skew: bool,
+    identification: bool,
+}
+
+/// What a graph keeps of a basis.
+#[derive(PartialEq, Eq, Debug)]
+pub struct Basis {
+    /// The shape of the matrices.
+    pub shape: Shape,
+    /// E_1 … E_m.
+    pub elements: Vec<Sparse>,
 }
 
 impl Algebra {
     /// The dimension m.
     pub fn dimension(self) -> usize {
-        match self {
-            Algebra::SpecialOrthogonal(n) => n * (n - 1) / 2,
-            Algebra::Translation(n) => n,
-        }
+        self.dimension
     }
 
-    /// The shape of the matrices that represent elements.
+    /// The shape of the matrices.
     pub fn matrix_shape(self) -> Shape {
-        match self {
-            Algebra::SpecialOrthogonal(n) => Shape::square(n),
-            Algebra::Translation(n) => Shape::vector(n),
-        }
+        self.shape
     }
 
     /// Whether every element is a skew matrix.
     pub fn is_skew(self) -> bool {
-        matches!(self, Algebra::SpecialOrthogonal(_))
+        self.skew
     }
 
-    /// Whether elements are their own coordinates.
+    /// Whether elements are their own coordinates: vectors in the unit basis.
     pub fn is_identification(self) -> bool {
-        matches!(self, Algebra::Translation(_))
+        self.identification
+    }
+}
+
+impl Graph {
+    /// The handle of a basis; the same basis has the same handle.
+    pub fn algebra(&self, shape: Shape, elements: Vec<Sparse>) -> Algebra {
+        let basis = Basis { shape, elements };
+        let (dimension, skew, identification) = (basis.elements.len(), basis.is_skew(), basis.is_identification());
+        let index = self.basis_index(basis);
+        Algebra { index, dimension, shape, skew, identification }
     }
 
-    /// For each basis element its entries (row, column, value) that are not zero.
-    pub fn sparse_basis(self) -> Vec<Vec<(usize, usize, i64)>> {
-        match self {
-            Algebra::SpecialOrthogonal(3) => {
-                [(1, 2), (2, 0), (0, 1)].iter().map(|&(i, j)| vec![(j, i, 1), (i, j, -1)]).collect()
-            }
-            Algebra::SpecialOrthogonal(n) => {
-                let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-                pairs.map(|(i, j)| vec![(j, i, 1), (i, j, -1)]).collect()
-            }
-            Algebra::Translation(n) => (0..n).map(|i| vec![(i, 0, 1)]).collect(),
-        }
+    /// For each basis element its entries that are not zero.
+    pub fn basis(&self, algebra: Algebra) -> std::rc::Rc<Basis> {
+        self.basis_at(algebra.index)
     }
 
     /// The basis as literal matrices.
-    pub fn basis(self, graph: &Graph) -> Vec<Expr<'_>> {
-        let shape = self.matrix_shape();
-        let dense = |entries: &Vec<(usize, usize, i64)>| {
-            let value = |(i, j)| entries.iter().find(|&&(r, c, _)| (r, c) == (i, j)).map_or(0, |&(_, _, value)| value);
-            graph.literal(shape, shape.positions().map(|position| integer(value(position))).collect())
-        };
-        self.sparse_basis().iter().map(dense).collect()
+    pub fn basis_matrices(&self, algebra: Algebra) -> Vec<Expr<'_>> {
+        self.basis(algebra).elements.iter().map(|element| self.sparse_literal(algebra.shape, element)).collect()
     }
 
-    /// The square ⟨E_i, E_i⟩ of the basis elements, if they are orthogonal to each other and equally long.
-    pub fn uniform_gram(self) -> Option<i64> {
-        match self {
-            Algebra::SpecialOrthogonal(_) => Some(2),
-            Algebra::Translation(_) => Some(1),
+    /// A literal matrix from its entries that are not zero.
+    pub fn sparse_literal(&self, shape: Shape, entries: &Sparse) -> Expr<'_> {
+        let mut dense = vec![Rational::zero(); shape.len()];
+        for (i, j, value) in entries {
+            dense[i * shape.columns + j] += value;
         }
+        self.literal(shape, dense)
     }
+}
+
+impl Basis {
+    /// G_ij = ⟨E_i, E_j⟩ = tr(E_iᵀE_j).
+    pub fn gram(&self) -> Vec<Vec<Rational>> {
+        let pairing = |a: &Sparse, b: &Sparse| {
+            let mut sum = Rational::zero();
+            for (i, j, value) in a {
+                for (_, _, other) in b.iter().filter(|(k, l, _)| (k, l) == (i, j)) {
+                    sum += value * other;
+                }
+            }
+            sum
+        };
+        self.elements.iter().map(|a| self.elements.iter().map(|b| pairing(a, b)).collect()).collect()
+    }
+
+    /// The square ⟨E_i, E_i⟩ of the elements, if they are orthogonal to each other and equally long.
+    pub fn uniform_gram(&self) -> Option<Rational> {
+        let gram = self.gram();
+        let square = gram.first()?[0].clone();
+        let expected = |i: usize, j: usize| if i == j { square.clone() } else { Rational::zero() };
+        let fits = gram.iter().enumerate().all(|(i, row)| row.iter().enumerate().all(|(j, g)| *g == expected(i, j)));
+        fits.then_some(square)
+    }
+
+    fn is_skew(&self) -> bool {
+        let mirrored = |element: &Sparse| {
+            element.iter().all(|(i, j, value)| {
+                i != j && element.iter().any(|(k, l, other)| (k, l) == (j, i) && *other == -value.clone())
+            })
+        };
+        self.shape.is_square() && !self.shape.is_scalar() && self.elements.iter().all(mirrored)
+    }
+
+    fn is_identification(&self) -> bool {
+        let unit = |(k, element): (usize, &Sparse)| *element == vec![(k, 0, Rational::one())];
+        self.shape == Shape::vector(self.elements.len()) && self.elements.iter().enumerate().all(unit)
+    }
+}
+
+/// The unit vectors of Rⁿ.
+pub(crate) fn unit_vectors(n: usize) -> Vec<Sparse> {
+    (0..n).map(|i| vec![(i, 0, integer(1))]).collect()
 }

@@ -2,11 +2,11 @@
 
 use num_traits::{One, Zero};
 
-use crate::node::{Exponent, Function, Id, Node, Term};
-use crate::{Algebra, Expr, Graph, Property, Rational, Shape, integer, rational};
+use crate::node::{Analytic, Id, Node, Term};
+use crate::{Expr, Graph, Property, Rational, Shape};
 
 impl<'g> Expr<'g> {
-    fn atom_of(self, node: Node, shape: Shape) -> Expr<'g> {
+    pub(crate) fn atom_of(self, node: Node, shape: Shape) -> Expr<'g> {
         self.graph.intern(node, shape)
     }
 
@@ -49,6 +49,7 @@ impl<'g> Expr<'g> {
             Node::Transpose(inner) => graph.expr(*inner),
             Node::Inverse(inner) => graph.expr(*inner).transpose().inverse(),
             Node::DiagonalMatrix(_) => self,
+            Node::Analytic(function, inner) => graph.expr(*inner).transpose().analytic(*function),
             Node::Wedge(algebra, _) if algebra.is_skew() => -self,
             Node::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
             Node::Symbol(id) => match graph.symbol_data(*id).property {
@@ -105,8 +106,13 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
             Node::Inverse(inner) => graph.expr(*inner),
-            Node::Transpose(inner) if graph.has_property(*inner, Property::Orthogonal) => graph.expr(*inner),
-            Node::Symbol(_) if graph.has_property(self.id, Property::Orthogonal) => self.transpose(),
+            Node::Transpose(inner) if graph.is_orthogonal(*inner) => graph.expr(*inner),
+            Node::Symbol(_) if graph.is_orthogonal(self.id) => self.transpose(),
+            Node::Analytic(Analytic::Exponential, inner) => (-graph.expr(*inner)).exponential(),
+            Node::Literal(_) => {
+                let inverse = self.rational_inverse_of_literal();
+                inverse.unwrap_or_else(|| self.atom_of(Node::Inverse(self.id), self.shape()))
+            }
             Node::Sum(terms) => {
                 // I + c L rather than a I + b L: the form that the rules of `expand` know.
                 let unit = terms.iter().find(|term| term.word.is_empty() && term.scalars.is_empty());
@@ -131,7 +137,7 @@ impl<'g> Expr<'g> {
         }
         match self.is_zero() {
             true => graph.integer(0),
-            false if self.is_identity() || graph.has_property(self.id, Property::Orthogonal) => graph.integer(1),
+            false if self.is_identity() || graph.is_special(self.id) => graph.integer(1),
             false => {
                 let Term { coefficient, scalars, word } = self.factor();
                 let scale = graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]);
@@ -154,6 +160,11 @@ impl<'g> Expr<'g> {
         }
     }
 
+    /// ⟨A, B⟩ = tr(AᵀB) for arrays of any shape.
+    pub fn pairing(self, other: Expr<'g>) -> Expr<'g> {
+        if self.shape().is_scalar() { self * other } else { self.dot(other) }
+    }
+
     /// The square of the Euclidean or Frobenius norm.
     pub fn norm_squared(self) -> Expr<'g> {
         self.dot(self)
@@ -167,78 +178,6 @@ impl<'g> Expr<'g> {
     /// A / |A|.
     pub fn normalize(self) -> Expr<'g> {
         self / self.norm()
-    }
-
-    /// The matrix of x ↦ a × x.
-    pub fn hat(self) -> Expr<'g> {
-        self.wedge(Algebra::SpecialOrthogonal(3))
-    }
-
-    /// a × b.
-    pub fn cross(self, other: Expr<'g>) -> Expr<'g> {
-        self.hat() * other
-    }
-
-    /// Σ v_i E_i in the basis of the algebra.
-    pub fn wedge(self, algebra: Algebra) -> Expr<'g> {
-        let shape = algebra.matrix_shape();
-        if algebra.is_identification() {
-            return self;
-        }
-        if algebra.dimension() == 1 {
-            return self.wedge_of_scalar(algebra);
-        }
-        if let Node::Literal(entries) = &*self.node() {
-            let basis = algebra.basis(self.graph);
-            let terms = entries.iter().zip(basis).map(|(entry, element)| element.times(entry));
-            return terms.fold(self.graph.zero(shape), |sum, term| sum + term);
-        }
-        self.linear(shape, |plain| match &*plain.node() {
-            Node::Literal(_) if plain != self => plain.wedge(algebra),
-            _ => plain.atom_of(Node::Wedge(algebra, plain.id), shape),
-        })
-    }
-
-    /// v E_1 of a one-dimensional algebra, kept as one letter so that its products are known as those of v^.
-    fn wedge_of_scalar(self, algebra: Algebra) -> Expr<'g> {
-        let graph = self.graph;
-        let shape = algebra.matrix_shape();
-        self.terms().into_iter().fold(graph.zero(shape), |sum, Term { coefficient, scalars, word }| {
-            let plain = graph.collect(Shape::scalar(), [Term { coefficient: Rational::one(), scalars, word }]);
-            let element = match plain.as_number() {
-                Some(number) => algebra.basis(graph)[0].times(&number),
-                None => self.atom_of(Node::Wedge(algebra, plain.id), shape),
-            };
-            sum + element.times(&coefficient)
-        })
-    }
-
-    /// The components ⟨A, E_i⟩ = tr(AᵀE_i) in the basis of the algebra.
-    pub fn components(self, algebra: Algebra) -> Expr<'g> {
-        let shape = Shape::vector(algebra.dimension());
-        if algebra.is_identification() {
-            return self;
-        }
-        self.linear(shape, |plain| {
-            if let Node::Wedge(other, inner) = &*plain.node()
-                && *other == algebra
-                && let Some(square) = algebra.uniform_gram()
-            {
-                return square * plain.graph.expr(*inner);
-            }
-            if !algebra.is_skew() {
-                return plain.atom_of(Node::Components(algebra, plain.id), shape);
-            }
-            // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both
-            let Term { coefficient, scalars, word } = plain.transpose().factor();
-            let sign = coefficient.clone();
-            let word = plain.graph.collect(plain.shape(), [Term { coefficient: Rational::one(), scalars, word }]);
-            match sign == integer(1) || sign == integer(-1) {
-                true if word == plain && sign == integer(1) => plain.graph.zero(shape),
-                true if word.id < plain.id => plain.atom_of(Node::Components(algebra, word.id), shape).times(&-sign),
-                _ => plain.atom_of(Node::Components(algebra, plain.id), shape),
-            }
-        })
     }
 
     /// The product entry by entry.
@@ -277,134 +216,6 @@ impl<'g> Expr<'g> {
             _ => plain.atom_of(Node::Diagonal(plain.id), shape),
         })
     }
-
-    /// The entry in row i and column j, counted from zero.
-    pub fn entry(self, i: usize, j: usize) -> Expr<'g> {
-        self.block(i, j, Shape::scalar())
-    }
-
-    /// The block of the given shape whose first entry is (row, column).
-    pub fn block(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
-        assert!(
-            row + shape.rows <= self.shape().rows && column + shape.columns <= self.shape().columns,
-            "a block of `{self}`"
-        );
-        if shape == self.shape() {
-            return self;
-        }
-        self.linear(shape, |plain| plain.block_of_plain(row, column, shape))
-    }
-
-    fn block_of_plain(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
-        let graph = self.graph;
-        let columns = self.shape().columns;
-        let positions = || shape.positions().map(move |(i, j)| (row + i) * columns + column + j);
-        match &*self.node() {
-            Node::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
-            Node::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
-            Node::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
-            Node::Embed(inner, r, c) => {
-                let given = graph.shape(*inner);
-                let (last_row, last_column) = (row + shape.rows, column + shape.columns);
-                let inside =
-                    row >= *r && column >= *c && last_row <= r + given.rows && last_column <= c + given.columns;
-                let outside =
-                    last_row <= *r || last_column <= *c || row >= r + given.rows || column >= c + given.columns;
-                match (inside, outside) {
-                    (true, _) => graph.expr(*inner).block(row - r, column - c, shape),
-                    (_, true) => graph.zero(shape),
-                    _ => self.atom_of(Node::Block(self.id, row, column), shape),
-                }
-            }
-            Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
-                let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
-                graph.literal(shape, shape.positions().map(one_at).collect())
-            }
-            _ => self.atom_of(Node::Block(self.id, row, column), shape),
-        }
-    }
-
-    /// The matrix of the given shape that is zero but for this block at (row, column).
-    pub fn embed(self, shape: Shape, row: usize, column: usize) -> Expr<'g> {
-        assert!(
-            row + self.shape().rows <= shape.rows && column + self.shape().columns <= shape.columns,
-            "`{self}` in a {shape}"
-        );
-        if shape == self.shape() {
-            return self;
-        }
-        if self.shape().is_scalar() {
-            return self * self.graph.unit(shape, row, column);
-        }
-        self.linear(shape, |plain| plain.atom_of(Node::Embed(plain.id, row, column), shape))
-    }
-
-    /// An integer power of a scalar.
-    pub fn powi(self, exponent: i32) -> Expr<'g> {
-        self.power(rational(exponent as i64, 1))
-    }
-
-    /// The square root of a scalar.
-    pub fn sqrt(self) -> Expr<'g> {
-        self.power(rational(1, 2))
-    }
-
-    /// A rational power of a scalar. Powers of powers are merged only where that is true for every real value.
-    pub fn power(self, exponent: Rational) -> Expr<'g> {
-        assert!(self.shape().is_scalar(), "a power of `{self}`");
-        let graph = self.graph;
-        let Some(exponent) = small_exponent(&exponent) else {
-            return (self.function(Function::Ln) * graph.number(exponent)).function(Function::Exp);
-        };
-        if exponent.is_zero() {
-            return graph.integer(1);
-        }
-        if self.is_zero() && exponent > Exponent::zero() {
-            return self;
-        }
-        let Term { coefficient, scalars, word: _ } = self.factor();
-        let mut term = Term::number(Rational::one());
-        match Graph::small_integer(&exponent) {
-            Some(power) if !coefficient.is_zero() => {
-                term.coefficient = num_traits::Pow::pow(&coefficient, power);
-                let powers: Vec<(Id, Exponent)> = scalars.iter().map(|&(id, e)| (id, e * exponent)).collect();
-                term.multiply_scalars(&powers);
-            }
-            _ => match self
-                .as_number()
-                .filter(|number| number.is_one() || (number.is_zero() && exponent > Exponent::zero()))
-            {
-                Some(number) => return graph.number(number),
-                None => term.multiply_scalars(&[(self.id, exponent)]),
-            },
-        }
-        graph.collect(Shape::scalar(), [term])
-    }
-
-    /// An elementary function of a scalar.
-    pub fn function(self, function: Function) -> Expr<'g> {
-        assert!(self.shape().is_scalar(), "a function of `{self}`");
-        let graph = self.graph;
-        let value_at_zero = match function {
-            Function::Cos | Function::Cosh | Function::Exp => Some(1),
-            Function::Sin | Function::Tan | Function::Asin | Function::Atan | Function::Sinh | Function::Tanh => {
-                Some(0)
-            }
-            Function::Acos | Function::Ln => None,
-        };
-        match value_at_zero {
-            Some(value) if self.is_zero() => graph.integer(value),
-            _ if function == Function::Ln && self.is_identity() => graph.integer(0),
-            _ => self.atom_of(Node::Function(function, self.id), Shape::scalar()),
-        }
-    }
-}
-
-/// An exponent with small numerator and denominator.
-fn small_exponent(exponent: &Rational) -> Option<Exponent> {
-    let numerator = i64::try_from(exponent.numer()).ok().filter(|n| n.abs() <= 1 << 20)?;
-    let denominator = i64::try_from(exponent.denom()).ok().filter(|d| *d <= 1 << 20)?;
-    Some(Exponent::new(numerator, denominator))
 }
 
 impl Graph {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use num_traits::ToPrimitive;
 
-use crate::node::{Exponent, Function, Id, Node};
+use crate::node::{Analytic, Exponent, Function, Id, Node};
 use crate::{Expr, Graph, Rational, Shape};
 
 /// A field of numbers with elementary functions.
@@ -21,6 +21,10 @@ pub trait Number: Copy + PartialEq {
     fn fractional_power(self, exponent: (i64, i64)) -> Self;
     /// An elementary function.
     fn function(self, function: Function) -> Self;
+    /// A power series of a matrix.
+    fn analytic(function: Analytic, argument: &Matrix<Self>) -> Matrix<Self>;
+    /// The value of a method that is not known here.
+    fn opaque(name: u32, output: usize, arguments: &[&Matrix<Self>], shape: Shape) -> Matrix<Self>;
     /// π.
     fn pi() -> Self;
 }
@@ -54,11 +58,44 @@ impl Number for f64 {
             Function::Tanh => self.tanh(),
             Function::Exp => self.exp(),
             Function::Ln => self.ln(),
+            Function::Stumpff(k) => stumpff(k, self),
         }
+    }
+    fn analytic(function: Analytic, argument: &Matrix<f64>) -> Matrix<f64> {
+        let n = argument.shape.rows;
+        let mut power = Matrix::scaled_identity(n, 1.0);
+        let mut sum = power.clone();
+        match function {
+            // the series themselves: this is for matrices of moderate size in tests
+            Analytic::Exponential | Analytic::Phi => {
+                let shift = if function == Analytic::Phi { 1 } else { 0 };
+                for k in 1..120 {
+                    power = power.multiply(argument).scale(1.0 / f64::from(k + shift));
+                    sum = sum.add(&power);
+                }
+                sum
+            }
+            Analytic::Logarithm => Matrix::from_fn(argument.shape, |_| f64::NAN),
+        }
+    }
+    fn opaque(_: u32, _: usize, _: &[&Matrix<f64>], shape: Shape) -> Matrix<f64> {
+        Matrix::from_fn(shape, |_| f64::NAN)
     }
     fn pi() -> f64 {
         std::f64::consts::PI
     }
+}
+
+/// Σ (−s)ʲ/(k + 2j)!.
+fn stumpff(k: u8, s: f64) -> f64 {
+    let mut term = (1..=u32::from(k)).fold(1.0, |product, factor| product / f64::from(factor));
+    let mut sum = term;
+    for j in 1..100 {
+        let last = f64::from(u32::from(k) + 2 * j);
+        term *= -s / (last * (last - 1.0));
+        sum += term;
+    }
+    sum
 }
 
 /// A matrix of numbers, row by row.
@@ -203,6 +240,11 @@ impl<'g> Expr<'g> {
             Node::Inverse(a) => known[a].inverse().0,
             Node::Determinant(a) => scalar(known[a].inverse().1),
             Node::Function(function, a) => scalar(known[a].entries[0].function(*function)),
+            Node::Analytic(function, a) => K::analytic(*function, &known[a]),
+            Node::Opaque(name, output, arguments) => {
+                let arguments: Vec<&Matrix<K>> = arguments.iter().map(|argument| &known[argument]).collect();
+                K::opaque(name.0, *output, &arguments, shape)
+            }
             Node::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
             Node::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
                 let inner = &known[a];
@@ -215,22 +257,22 @@ impl<'g> Expr<'g> {
             Node::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
             Node::Wedge(algebra, a) => {
                 let mut matrix = Matrix::from_fn(shape, |_| zero::<K>());
-                for (k, entries) in algebra.sparse_basis().into_iter().enumerate() {
+                for (k, entries) in self.graph.basis(*algebra).elements.iter().enumerate() {
                     for (i, j, value) in entries {
-                        let entry = known[a].at(k, 0).multiply(K::from_rational(&crate::integer(value)));
-                        matrix.entries[i * shape.columns + j] = matrix.at(i, j).add(entry);
+                        let entry = known[a].at(k, 0).multiply(K::from_rational(value));
+                        matrix.entries[i * shape.columns + j] = matrix.at(*i, *j).add(entry);
                     }
                 }
                 matrix
             }
             Node::Components(algebra, a) => {
-                let component = |entries: Vec<(usize, usize, i64)>| {
-                    let products = entries
-                        .into_iter()
-                        .map(|(i, j, value)| known[a].at(i, j).multiply(K::from_rational(&crate::integer(value))));
-                    products.fold(zero(), K::add)
+                let component = |entries: &crate::Sparse| {
+                    let product = |(i, j, value): &(usize, usize, Rational)| {
+                        known[a].at(*i, *j).multiply(K::from_rational(value))
+                    };
+                    entries.iter().map(product).fold(zero(), K::add)
                 };
-                Matrix::new(shape, algebra.sparse_basis().into_iter().map(component).collect())
+                Matrix::new(shape, self.graph.basis(*algebra).elements.iter().map(component).collect())
             }
         }
     }

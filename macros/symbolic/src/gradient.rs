@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use num_traits::One;
 
-use crate::node::{Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
 use crate::{Expr, Rational, Shape};
 
 impl<'g> Expr<'g> {
@@ -46,6 +46,15 @@ impl<'g> Expr<'g> {
             Node::Inverse(a) => add(*a, -(self.transpose() * adjoint * self.transpose())),
             Node::Determinant(a) => add(*a, adjoint * self * expr(a).inverse().transpose()),
             Node::Function(function, a) => add(*a, adjoint * function.derivative(expr(a), self)),
+            // the adjoint of D ↦ Df(A)D with respect to tr(AᵀB) is G ↦ Df(Aᵀ)G
+            Node::Analytic(function, a) => add(*a, expr(a).transpose().analytic_slope(*function, adjoint)),
+            Node::Opaque(name, output, arguments) => {
+                assert_eq!(*output, 0, "the second derivative of a method");
+                for (index, argument) in arguments.iter().enumerate() {
+                    let gradient = graph.opaque_of(*name, index + 1, self.arguments(arguments), graph.shape(*argument));
+                    add(*argument, adjoint * gradient);
+                }
+            }
             Node::Block(a, row, column) => add(*a, adjoint.embed(graph.shape(*a), *row, *column)),
             Node::Embed(a, row, column) => add(*a, adjoint.block(*row, *column, graph.shape(*a))),
             Node::Hadamard(a, b) => {
@@ -71,7 +80,7 @@ impl<'g> Expr<'g> {
             rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
             rest.multiply_scalars(&[(*base, -Exponent::one())]);
             let rest = graph.collect(self.shape(), [rest]);
-            add(*base, adjoint.dot_any(rest));
+            add(*base, adjoint.pairing(rest));
         }
     }
 
@@ -91,9 +100,16 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// ⟨A, B⟩ for any shape.
-    fn dot_any(self, other: Expr<'g>) -> Expr<'g> {
-        if self.shape().is_scalar() { self * other } else { self.dot(other) }
+    fn arguments(self, ids: &[Id]) -> Vec<Expr<'g>> {
+        ids.iter().map(|id| self.graph.expr(*id)).collect()
+    }
+
+    /// Df(A)D, the upper right block of f((A D; 0 A)).
+    pub(crate) fn analytic_slope(self, function: Analytic, direction: Expr<'g>) -> Expr<'g> {
+        let (n, square) = (self.shape().rows, self.shape());
+        let double = Shape::square(2 * n);
+        let doubled = self.embed(double, 0, 0) + direction.embed(double, 0, n) + self.embed(double, n, n);
+        doubled.analytic(function).block(0, n, square)
     }
 
     /// The derivative in the direction in which the symbols move: d/dε of the expression at x + ε dx.
@@ -126,6 +142,15 @@ impl<'g> Expr<'g> {
             Node::Inverse(a) => -(self * tangents[a] * self),
             Node::Determinant(a) => self * (expr(a).inverse() * tangents[a]).trace(),
             Node::Function(function, a) => function.derivative(expr(a), self) * tangents[a],
+            Node::Analytic(function, a) => expr(a).analytic_slope(*function, tangents[a]),
+            Node::Opaque(name, output, arguments) => {
+                assert_eq!(*output, 0, "the second derivative of a method");
+                let gradient = |(index, argument): (usize, &Id)| {
+                    let shape = graph.shape(*argument);
+                    graph.opaque_of(*name, index + 1, self.arguments(arguments), shape).pairing(tangents[argument])
+                };
+                arguments.iter().enumerate().map(gradient).fold(zero, |sum, term| sum + term)
+            }
             Node::Block(a, row, column) => tangents[a].block(*row, *column, self.shape()),
             Node::Embed(a, row, column) => tangents[a].embed(self.shape(), *row, *column),
             Node::Hadamard(a, b) => tangents[a].hadamard(expr(b)) + expr(a).hadamard(tangents[b]),
@@ -182,6 +207,11 @@ impl Function {
             Function::Tanh => one - value * value,
             Function::Exp => value,
             Function::Ln => x.powi(-1),
+            // c_k′ = ½(k c_{k+2} − c_{k+1})
+            Function::Stumpff(k) => {
+                let next = |j: u8| x.function(Function::Stumpff(k + j));
+                (i64::from(k) * next(2) - next(1)) / 2
+            }
         }
     }
 }

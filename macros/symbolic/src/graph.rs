@@ -6,8 +6,10 @@ use std::rc::Rc;
 
 use num_traits::{One, Zero};
 
-use crate::node::{Id, Node, SymbolId, Term};
-use crate::{Expr, Property, Rational, Role, Shape, Symbol, integer, rational};
+use crate::algebra::Basis;
+use crate::group::{Block, Definition};
+use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
+use crate::{Expr, Group, Property, Rational, Role, Shape, Symbol, integer, rational};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
@@ -15,6 +17,10 @@ pub struct Graph {
     nodes: RefCell<Vec<(Rc<Node>, Shape)>>,
     index: RefCell<HashMap<(Rc<Node>, Shape), Id>>,
     symbols: RefCell<Vec<Symbol>>,
+    bases: RefCell<Vec<Rc<Basis>>>,
+    blocks: RefCell<HashMap<Group, Rc<[Block]>>>,
+    definitions: RefCell<Vec<Rc<Definition>>>,
+    methods: RefCell<Vec<String>>,
 }
 
 impl Graph {
@@ -56,6 +62,39 @@ impl Graph {
         self.nodes.borrow()[id.0 as usize].1
     }
 
+    /// The index of a basis among those of this graph.
+    pub(crate) fn basis_index(&self, basis: Basis) -> u32 {
+        let known = self.bases.borrow().iter().position(|other| **other == basis);
+        known.unwrap_or_else(|| {
+            self.bases.borrow_mut().push(Rc::new(basis));
+            self.bases.borrow().len() - 1
+        }) as u32
+    }
+
+    pub(crate) fn basis_at(&self, index: u32) -> Rc<Basis> {
+        self.bases.borrow()[index as usize].clone()
+    }
+
+    /// The blocks of a group, made by `make` when they are first asked for.
+    pub(crate) fn blocks_of(&self, group: Group, make: impl FnOnce() -> Vec<Block>) -> Rc<[Block]> {
+        if let Some(known) = self.blocks.borrow().get(&group) {
+            return known.clone();
+        }
+        let made: Rc<[Block]> = make().into();
+        self.blocks.borrow_mut().insert(group, made.clone());
+        made
+    }
+
+    /// Keeps the definition of a group and gives its index.
+    pub(crate) fn keep_definition(&self, definition: Definition) -> u32 {
+        self.definitions.borrow_mut().push(Rc::new(definition));
+        self.definitions.borrow().len() as u32 - 1
+    }
+
+    pub(crate) fn definition_at(&self, index: u32) -> Rc<Definition> {
+        self.definitions.borrow()[index as usize].clone()
+    }
+
     pub(crate) fn symbol_data(&self, id: SymbolId) -> Symbol {
         self.symbols.borrow()[id.0 as usize].clone()
     }
@@ -69,6 +108,31 @@ impl Graph {
             self.symbols.borrow().len() - 1
         });
         self.intern(Node::Symbol(SymbolId(index as u32)), shape)
+    }
+
+    /// What a method of the user's gives for some arguments: its value for `output` 0, its gradient with respect to argument i for
+    /// `output` i + 1.
+    pub fn opaque<'g>(&'g self, name: &str, output: usize, arguments: &[Expr<'g>], shape: Shape) -> Expr<'g> {
+        let known = self.methods.borrow().iter().position(|other| other == name);
+        let index = known.unwrap_or_else(|| {
+            self.methods.borrow_mut().push(name.to_string());
+            self.methods.borrow().len() - 1
+        });
+        self.opaque_of(OpaqueId(index as u32), output, arguments.to_vec(), shape)
+    }
+
+    pub(crate) fn opaque_of<'g>(
+        &'g self,
+        name: OpaqueId,
+        output: usize,
+        arguments: Vec<Expr<'g>>,
+        shape: Shape,
+    ) -> Expr<'g> {
+        self.intern(Node::Opaque(name, output, arguments.iter().map(|argument| argument.id).collect()), shape)
+    }
+
+    pub(crate) fn opaque_name(&self, name: OpaqueId) -> String {
+        self.methods.borrow()[name.0 as usize].clone()
     }
 
     /// A rational number.

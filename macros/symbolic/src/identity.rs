@@ -11,8 +11,9 @@ use num_bigint::BigInt;
 use num_traits::ToPrimitive;
 
 use crate::evaluate::{Matrix, Number, negative, one, zero};
-use crate::node::Function;
-use crate::{Expr, Property, Rational, Shape};
+use crate::group::sample;
+use crate::node::{Analytic, Function};
+use crate::{Expr, Group, Property, Rational, Shape};
 
 const PRIME: u64 = (1 << 61) - 1;
 const POINTS: u64 = 3;
@@ -22,12 +23,15 @@ const POINTS: u64 = 3;
 pub struct Residue(u64);
 
 impl Residue {
-    fn new(value: u128) -> Residue {
-        Residue((value % PRIME as u128) as u64)
+    /// The residue of a value below 2¹²²: 2⁶¹ is one, so its upper and lower halves are added.
+    pub(crate) fn new(value: u128) -> Residue {
+        let sum = (value as u64 & PRIME) + (value >> 61) as u64;
+        let sum = (sum & PRIME) + (sum >> 61);
+        Residue(if sum >= PRIME { sum - PRIME } else { sum })
     }
 
     /// A number that depends on all bits of the seeds and on nothing else.
-    fn mixed(seeds: &[u64]) -> Residue {
+    pub(crate) fn mixed(seeds: &[u64]) -> Residue {
         let mut state = 0x9e37_79b9_7f4a_7c15_u64;
         for seed in seeds {
             state = (state ^ seed).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -45,7 +49,12 @@ impl Number for Residue {
             let residue: BigInt = ((part % &prime) + &prime) % &prime;
             Residue(residue.to_u64().unwrap_or(0))
         };
-        reduce(value.numer()).multiply(reduce(value.denom()).reciprocal())
+        match (i64::try_from(value.numer()), i64::try_from(value.denom())) {
+            (Ok(numerator), Ok(1)) if numerator.unsigned_abs() < PRIME => {
+                Residue(if numerator < 0 { PRIME - numerator.unsigned_abs() } else { numerator as u64 })
+            }
+            _ => reduce(value.numer()).multiply(reduce(value.denom()).reciprocal()),
+        }
     }
     fn add(self, other: Residue) -> Residue {
         Residue::new(self.0 as u128 + other.0 as u128)
@@ -71,7 +80,23 @@ impl Number for Residue {
         }
     }
     fn function(self, function: Function) -> Residue {
-        Residue::mixed(&[2, self.0, function as u64])
+        Residue::mixed(&[2, self.0, function.code()])
+    }
+    fn analytic(function: Analytic, argument: &Matrix<Residue>) -> Matrix<Residue> {
+        let mut seeds = vec![7, function as u64, 0];
+        seeds.extend(argument.entries.iter().map(|entry| entry.0));
+        Matrix::from_fn(argument.shape, |(i, j)| {
+            seeds[2] = (i * argument.shape.columns + j) as u64;
+            Residue::mixed(&seeds)
+        })
+    }
+    fn opaque(name: u32, output: usize, arguments: &[&Matrix<Residue>], shape: Shape) -> Matrix<Residue> {
+        let mut seeds = vec![8, u64::from(name), output as u64, 0];
+        seeds.extend(arguments.iter().flat_map(|argument| argument.entries.iter().map(|entry| entry.0)));
+        Matrix::from_fn(shape, |(i, j)| {
+            seeds[3] = (i * shape.columns + j) as u64;
+            Residue::mixed(&seeds)
+        })
     }
     fn pi() -> Residue {
         Residue::mixed(&[3])
@@ -119,7 +144,21 @@ impl<'g> Point<'g> {
             Property::Skew => Matrix::from_fn(shape, |position| skew(position, random)),
             Property::Orthogonal => cayley(shape.rows, random),
             Property::Unit => stereographic(shape, random),
+            Property::Element(group) => self.sample_element(symbol, group),
         }
+    }
+}
+
+impl<'g> Point<'g> {
+    /// A random element of a group; any matrix where no way to make elements is known, for what holds for all matrices holds for them.
+    fn sample_element(&self, symbol: Expr<'g>, group: Group) -> Matrix<Residue> {
+        let mut count = 0;
+        let mut random = || {
+            count += 1;
+            Residue::mixed(&[5, self.seed, symbol.id.0 as u64, count])
+        };
+        let element = sample::element(symbol.graph, group, &mut random);
+        element.unwrap_or_else(|| Matrix::from_fn(symbol.shape(), |_| random()))
     }
 }
 
@@ -163,6 +202,15 @@ pub fn equal<'g>(left: &[Expr<'g>], right: &[Expr<'g>]) -> bool {
     left.len() == right.len() && (0..POINTS).all(agrees)
 }
 
+/// Whether the expression is zero for all values of its symbols that the properties allow, some of them fixed by `prepare`.
+pub fn vanishes_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> bool {
+    (0..POINTS).all(|seed| {
+        let mut point = Point::new(seed);
+        prepare(&mut point);
+        point.evaluate(expr).entries.iter().all(|entry| *entry == zero())
+    })
+}
+
 /// Whether the expression is zero for all values of its symbols that the properties allow.
 pub fn vanishes(expr: Expr<'_>) -> bool {
     equal(&[expr], &[expr.graph.zero(expr.shape())])
@@ -170,7 +218,11 @@ pub fn vanishes(expr: Expr<'_>) -> bool {
 
 /// The rank of a matrix for general values of its symbols.
 pub fn rank(expr: Expr<'_>) -> usize {
-    let mut matrix = Point::new(0).evaluate(expr);
+    rank_of(Point::new(0).evaluate(expr))
+}
+
+/// The rank of a matrix over the field.
+pub(crate) fn rank_of(mut matrix: Matrix<Residue>) -> usize {
     let Shape { rows, columns } = matrix.shape;
     let mut rank = 0;
     for column in 0..columns {
@@ -188,4 +240,74 @@ pub fn rank(expr: Expr<'_>) -> usize {
         rank += 1;
     }
     rank
+}
+
+/// A basis of the constant vectors w with A·w = 0 for all values of the symbols in A that the properties allow, in reduced echelon
+/// form. `prepare` may fix the values of symbols at each point.
+///
+/// Entries that are no small rationals are not recognised; vectors with such entries are left out, so that nothing is claimed
+/// wrongly.
+pub fn null_space<'g>(matrix: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> Vec<Vec<Rational>> {
+    let columns = matrix.shape().columns;
+    let mut rows: Vec<Vec<Residue>> = Vec::new();
+    // points that add nothing to the rank: as many in a row as decide an identity
+    let mut idle = 0;
+    for seed in 0..columns as u64 + POINTS {
+        let mut point = Point::new(seed);
+        prepare(&mut point);
+        let values = point.evaluate(matrix);
+        let rank = rows.len();
+        rows.extend(values.entries.chunks(columns).map(<[Residue]>::to_vec));
+        reduce(&mut rows);
+        idle = if rows.len() == rank { idle + 1 } else { 0 };
+        if idle == POINTS || rows.len() == columns {
+            break;
+        }
+    }
+    let pivots: Vec<usize> = rows.iter().filter_map(|row| row.iter().position(|entry| *entry != zero())).collect();
+    let free = (0..columns).filter(|column| !pivots.contains(column));
+    let vector = |column: usize| -> Option<Vec<Rational>> {
+        let entry = |k: usize| match pivots.iter().position(|pivot| *pivot == k) {
+            Some(row) => negative(rows[row][column]).rational(),
+            None => Some(crate::integer((k == column) as i64)),
+        };
+        (0..columns).map(entry).collect()
+    };
+    free.filter_map(vector).collect()
+}
+
+/// Reduced row echelon form, without zero rows.
+fn reduce(rows: &mut Vec<Vec<Residue>>) {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut rank = 0;
+    for column in 0..columns {
+        let Some(found) = (rank..rows.len()).find(|&row| rows[row][column] != zero()) else { continue };
+        rows.swap(rank, found);
+        let scale = rows[rank][column].reciprocal();
+        rows[rank].iter_mut().for_each(|entry| *entry = entry.multiply(scale));
+        let pivot = rows[rank].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != rank) {
+            let factor = negative(row[column]);
+            if factor != zero() {
+                row.iter_mut().zip(&pivot).for_each(|(entry, other)| *entry = entry.add(factor.multiply(*other)));
+            }
+        }
+        rank += 1;
+    }
+    rows.truncate(rank);
+}
+
+impl Residue {
+    /// The rational a/b with |a|, b < 2¹⁶ that this stands for, if there is one.
+    fn rational(self) -> Option<Rational> {
+        let bound = 1_i128 << 16;
+        let (mut r, mut s) = ((PRIME as i128, self.0 as i128), (0_i128, 1_i128));
+        while r.1 >= bound {
+            let quotient = r.0 / r.1;
+            r = (r.1, r.0 - quotient * r.1);
+            s = (s.1, s.0 - quotient * s.1);
+        }
+        let (numerator, denominator) = if s.1 < 0 { (-r.1, -s.1) } else { (r.1, s.1) };
+        (denominator > 0 && denominator < bound).then(|| crate::rational(numerator as i64, denominator as i64))
+    }
 }

@@ -13,6 +13,8 @@
 //! x^ y = x × y. Left actions have Φ_gh = Φ_g Φ_h, right actions Φ_gh = Φ_h Φ_g. T*L_F pairs with F·η, T*R_F with η·F.
 
 mod algebra;
+mod bases;
+mod blocks;
 mod construct;
 mod evaluate;
 mod expr;
@@ -22,6 +24,7 @@ mod group;
 pub mod identity;
 mod linear;
 mod node;
+mod powers;
 mod print;
 mod rational;
 mod rebuild;
@@ -30,12 +33,12 @@ mod symbol;
 mod terms;
 mod view;
 
-pub use algebra::Algebra;
+pub use algebra::{Algebra, Basis, Sparse};
 pub use evaluate::{Matrix, Number};
 pub use expr::Expr;
 pub use graph::Graph;
-pub use group::{Chart, Group};
-pub use node::Function;
+pub use group::{Block, Chart, Declared, Group, Span, conjugate, quaternion_product, reduce};
+pub use node::{Analytic, Function};
 pub use rational::{One, Rational, Signed, Zero, integer, product, rational};
 pub use shape::Shape;
 pub use symbol::{Property, Role, Symbol};

@@ -15,6 +15,10 @@ pub(crate) struct Id(pub(crate) u32);
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub(crate) struct SymbolId(pub(crate) u32);
 
+/// The index of a method of the user's in its graph.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct OpaqueId(pub(crate) u32);
+
 /// The exponent of a scalar factor.
 pub(crate) type Exponent = Ratio<i64>;
 
@@ -42,6 +46,19 @@ pub enum Function {
     Tanh,
     Exp,
     Ln,
+    /// c_k(s) = Σ_j (−s)ʲ/(k + 2j)!: cos √s, sin √s/√s, (1 − cos √s)/s, …
+    Stumpff(u8),
+}
+
+/// A function of a square matrix that is given by a power series.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Analytic {
+    /// exp A.
+    Exponential,
+    /// φ(A) = Σ Aᵏ/(k + 1)!, (exp A − I)A⁻¹.
+    Phi,
+    /// The principal logarithm.
+    Logarithm,
 }
 
 /// An expression without its shape, which the graph keeps beside it.
@@ -60,6 +77,10 @@ pub(crate) enum Node {
     Inverse(Id),
     Determinant(Id),
     Function(Function, Id),
+    /// A power series of a matrix.
+    Analytic(Analytic, Id),
+    /// What a method of the user's gives for some arguments: 0 for its value, i + 1 for the gradient with respect to argument i.
+    Opaque(OpaqueId, usize, Vec<Id>),
     /// The block that starts at (row, column).
     Block(Id, usize, usize),
     /// A matrix placed at (row, column) of a zero matrix.
@@ -74,7 +95,7 @@ pub(crate) enum Node {
 }
 
 impl Function {
-    /// All functions with their names in Rust.
+    /// The functions that a declaration can name, by their names in Rust.
     pub const ALL: [(&'static str, Function); 11] = [
         ("sin", Function::Sin),
         ("cos", Function::Cos),
@@ -89,8 +110,17 @@ impl Function {
         ("ln", Function::Ln),
     ];
 
-    /// The name in Rust, `sin`.
+    /// The name in Rust, `sin`; that of all Stumpff functions is one.
     pub fn name(self) -> &'static str {
-        Function::ALL[self as usize].0
+        let known = Function::ALL.iter().find(|(_, function)| *function == self);
+        known.map_or("stumpff", |(name, _)| name)
+    }
+
+    /// A number that no other function has.
+    pub(crate) fn code(self) -> u64 {
+        match self {
+            Function::Stumpff(k) => 100 + u64::from(k),
+            _ => Function::ALL.iter().position(|(_, function)| *function == self).unwrap_or(0) as u64,
+        }
     }
 }

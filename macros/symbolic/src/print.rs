@@ -4,7 +4,7 @@ use std::fmt;
 
 use num_traits::{One, Signed};
 
-use crate::node::{Exponent, Id, Node, Term};
+use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
 use crate::{Expr, Graph, Rational, Shape};
 
 /// How a formula is written.
@@ -81,6 +81,28 @@ impl Printer<'_> {
                 atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{-1}" } else { "⁻¹" }))
             }
             Node::Determinant(a) => call(if latex { "\\det" } else { "det" }, *a),
+            Node::Function(Function::Stumpff(k), a) => call(&self.subscripted("c", *k), *a),
+            Node::Analytic(function, a) => call(
+                match (function, latex) {
+                    (Analytic::Exponential, true) => "\\exp",
+                    (Analytic::Exponential, false) => "exp",
+                    (Analytic::Phi, true) => "\\varphi",
+                    (Analytic::Phi, false) => "φ",
+                    (Analytic::Logarithm, true) => "\\log",
+                    (Analytic::Logarithm, false) => "log",
+                },
+                *a,
+            ),
+            Node::Opaque(name, output, arguments) => {
+                let arguments: Vec<String> = arguments.iter().map(|&a| self.print(a, Binding::Sum)).collect();
+                let name = self.graph.opaque_name(*name);
+                let name = if *output == 0 {
+                    name
+                } else {
+                    format!("∇{}{name}", if arguments.len() > 1 { output.to_string() } else { String::new() })
+                };
+                atom(format!("{name}({})", arguments.join(", ")))
+            }
             Node::Function(function, a) => call(&format!("{}{}", if latex { "\\" } else { "" }, function.name()), *a),
             Node::Block(a, row, column) => atom(self.block(*a, *row, *column, self.graph.shape(id))),
             Node::Embed(a, row, column) => atom(format!("embed({}, {row}, {column})", self.print(*a, Binding::Sum))),
@@ -104,6 +126,20 @@ impl Printer<'_> {
         match self.style {
             Style::Unicode => name.to_string(),
             Style::Latex => latex_name(name),
+        }
+    }
+
+    fn subscripted(&self, letter: &str, index: u8) -> String {
+        match self.style {
+            Style::Unicode => {
+                let digit = |digit: u8| char::from_u32('₀' as u32 + u32::from(digit - b'0'));
+                index
+                    .to_string()
+                    .bytes()
+                    .filter_map(digit)
+                    .fold(letter.to_string(), |text, digit| text + &digit.to_string())
+            }
+            Style::Latex => format!("{letter}_{{{index}}}"),
         }
     }
 

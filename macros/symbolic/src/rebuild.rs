@@ -15,12 +15,13 @@ impl Node {
             Node::Sum(terms) => {
                 terms.iter().flat_map(|t| t.scalars.iter().map(|s| s.0).chain(t.word.iter().copied())).collect()
             }
-            Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) => ids.clone(),
+            Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) | Node::Opaque(_, _, ids) => ids.clone(),
             Node::Hadamard(a, b) => vec![*a, *b],
             Node::Transpose(a)
             | Node::Inverse(a)
             | Node::Determinant(a)
             | Node::Function(_, a)
+            | Node::Analytic(_, a)
             | Node::Block(a, _, _) => vec![*a],
             Node::Embed(a, _, _)
             | Node::DiagonalMatrix(a)
@@ -62,6 +63,16 @@ impl<'g> Expr<'g> {
         self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), Node::Inverse(_)))
     }
 
+    /// Whether a root, an elementary function, a power series or a method of the user's occurs.
+    pub fn has_functions(self) -> bool {
+        let fractional = |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| !e.is_integer()));
+        self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
+            Node::Function(..) | Node::Analytic(..) | Node::Opaque(..) => true,
+            Node::Sum(terms) => fractional(terms),
+            _ => false,
+        })
+    }
+
     /// The expression with symbols replaced by expressions of the same shape.
     pub fn substitute(self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let mut images: HashMap<Id, Expr<'g>> = replacements.iter().map(|(from, to)| (from.id, *to)).collect();
@@ -101,6 +112,10 @@ impl<'g> Expr<'g> {
             Node::Inverse(a) => images[a].inverse(),
             Node::Determinant(a) => images[a].determinant(),
             Node::Function(function, a) => images[a].function(*function),
+            Node::Analytic(function, a) => images[a].analytic(*function),
+            Node::Opaque(name, output, arguments) => {
+                graph.opaque_of(*name, *output, arguments.iter().map(|a| images[a]).collect(), self.shape())
+            }
             Node::Block(a, row, column) => images[a].block(*row, *column, self.shape()),
             Node::Embed(a, row, column) => images[a].embed(self.shape(), *row, *column),
             Node::Hadamard(a, b) => images[a].hadamard(images[b]),
@@ -119,6 +134,28 @@ impl<'g> Expr<'g> {
             images.insert(id, image);
         }
         images[&self.id]
+    }
+
+    /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is what is looked for.
+    pub fn expand_all(self) -> Expr<'g> {
+        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
+        for id in self.reachable() {
+            let expr = self.graph.expr(id);
+            let rebuilt = expr.rebuild(&images);
+            images.insert(id, rebuilt.expand());
+        }
+        images[&self.id]
+    }
+
+    /// Whether no reciprocal of zero occurs.
+    pub fn is_defined(self) -> bool {
+        let zero = self.graph.integer(0).id;
+        let fails =
+            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::zero());
+        !self
+            .reachable()
+            .into_iter()
+            .any(|id| matches!(&*self.graph.node(id), Node::Sum(terms) if terms.iter().any(fails)))
     }
 
     fn expand_node(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {

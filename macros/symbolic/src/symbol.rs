@@ -1,6 +1,6 @@
 //! Symbols: named unknowns with a shape, a role and a promise about their values.
 
-use crate::Shape;
+use crate::{Group, Shape};
 
 /// What a symbol stands for. The role decides how often its value changes and how generated code spells it.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -19,6 +19,8 @@ pub enum Role {
     Covector(usize),
     /// A factor of the group element F.
     Element(usize),
+    /// The coordinates of log F of a factor.
+    Logarithm(usize),
     /// A factor of the increment F − I that a step has found.
     Increment(usize),
     /// The coordinates of an algebra element ξ of a factor.
@@ -48,6 +50,8 @@ pub enum Property {
     Orthogonal,
     /// |v| = 1.
     Unit,
+    /// An element of a group that is not SO(n).
+    Element(Group),
 }
 
 /// A symbol as it was declared.

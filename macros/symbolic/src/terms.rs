@@ -7,7 +7,7 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
 use crate::rational::product;
-use crate::{Expr, Graph, Property, Rational, Shape, integer};
+use crate::{Expr, Graph, Group, Property, Rational, Shape, integer};
 
 /// The scalar powers and the word of a term: what like terms share.
 type Monomial = (Vec<(Id, Exponent)>, Vec<Id>);
@@ -109,6 +109,13 @@ impl<'g> Expr<'g> {
         self.graph.collect(self.shape(), terms)
     }
 
+    /// Each term of the sum times a scalar, which meets the powers that the terms hold of it.
+    pub fn times_each(self, scalar: Expr<'g>) -> Expr<'g> {
+        let zero = self.graph.zero(self.shape());
+        let terms = self.terms().into_iter().map(|term| self.graph.collect(self.shape(), [term]) * scalar);
+        terms.fold(zero, |sum, term| sum + term)
+    }
+
     /// The product of matrices, or of a scalar and anything.
     pub(crate) fn product(self, other: Expr<'g>) -> Expr<'g> {
         let (left, right) = (self.shape(), other.shape());
@@ -129,6 +136,13 @@ impl<'g> Expr<'g> {
             return self.times(&number);
         }
         self.graph.multiply(&self.factor(), &other.factor(), shape)
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The embedded matrix; zero for zero.
+    fn embed_any(self, shape: Shape, row: usize, column: usize) -> Expr<'g> {
+        if self.is_zero() { self.graph.zero(shape) } else { self.embed(shape, row, column) }
     }
 }
 
@@ -198,7 +212,7 @@ impl Graph {
     /// The product of two neighbouring letters, where it is simpler than the pair.
     fn merge(&self, left: Id, right: Id) -> Option<Expr<'_>> {
         let inverse = |a: Id, b: Id| match &*self.node(a) {
-            Node::Transpose(inner) => *inner == b && self.has_property(b, Property::Orthogonal),
+            Node::Transpose(inner) => *inner == b && self.is_orthogonal(b),
             Node::Inverse(inner) => *inner == b,
             _ => false,
         };
@@ -209,6 +223,27 @@ impl Graph {
             (Node::Literal(a), Node::Literal(b)) => {
                 Some(self.multiply_literals(a, self.shape(left), b, self.shape(right)))
             }
+            (Node::Embed(a, row, column), Node::Embed(b, other_row, other_column)) => {
+                let shape = Shape::new(self.shape(left).rows, self.shape(right).columns);
+                let (a, b) = (self.expr(*a), self.expr(*b));
+                Some(self.overlap((a, *column), (b, *other_row)).embed_any(shape, *row, *other_column))
+            }
+            (Node::Literal(_), Node::Embed(b, row, column)) => {
+                let b = self.expr(*b);
+                let (literal, rows) = (self.expr(left), self.shape(left).rows);
+                let columns = literal.block(0, *row, Shape::new(rows, b.shape().rows));
+                self.sparse_rows(columns).map(|(first, part)| {
+                    (part * b).embed_any(Shape::new(rows, self.shape(right).columns), first, *column)
+                })
+            }
+            (Node::Embed(a, row, column), Node::Literal(_)) => {
+                let a = self.expr(*a);
+                let (literal, columns) = (self.expr(right), self.shape(right).columns);
+                let rows = literal.block(*column, 0, Shape::new(a.shape().columns, columns));
+                self.sparse_rows(rows.transpose()).map(|(first, part)| {
+                    (a * part.transpose()).embed_any(Shape::new(self.shape(left).rows, columns), *row, first)
+                })
+            }
             (Node::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => {
                 Some(self.integer(1))
             }
@@ -217,12 +252,63 @@ impl Graph {
         .filter(|product| !product.shape().is_scalar() || product.as_number().is_none())
     }
 
+    /// The product of what meets of A, whose columns stand from `column` on, and of B, whose rows stand from `row` on.
+    fn overlap<'g>(&'g self, (a, column): (Expr<'g>, usize), (b, row): (Expr<'g>, usize)) -> Expr<'g> {
+        let start = column.max(row);
+        let end = (column + a.shape().columns).min(row + b.shape().rows);
+        if start >= end {
+            return self.zero(Shape::new(a.shape().rows, b.shape().columns));
+        }
+        let left = a.block(0, start - column, Shape::new(a.shape().rows, end - start));
+        let right = b.block(start - row, 0, Shape::new(end - start, b.shape().columns));
+        left * right
+    }
+
+    /// The rows of a matrix of numbers between the first and the last that are not zero, with the index of the first: none for zero,
+    /// `None` if these are all rows.
+    fn sparse_rows<'g>(&'g self, literal: Expr<'g>) -> Option<(usize, Expr<'g>)> {
+        let shape = literal.shape();
+        let filled = |i: &usize| !literal.block(*i, 0, Shape::new(1, shape.columns)).is_zero();
+        let (first, last) = match ((0..shape.rows).find(filled), (0..shape.rows).rev().find(filled)) {
+            (Some(first), Some(last)) => (first, last),
+            _ => return Some((0, literal)),
+        };
+        (last - first + 1 < shape.rows)
+            .then(|| (first, literal.block(first, 0, Shape::new(last - first + 1, shape.columns))))
+    }
+
     fn multiply_literals(&self, a: &[Rational], left: Shape, b: &[Rational], right: Shape) -> Expr<'_> {
         let shape = Shape::new(left.rows, right.columns);
         let entry = |(i, j): (usize, usize)| {
             (0..left.columns).map(|k| &a[i * left.columns + k] * &b[k * right.columns + j]).sum::<Rational>()
         };
         self.literal(shape, shape.positions().map(entry).collect())
+    }
+
+    /// Whether this is the symbol of an orthogonal matrix.
+    pub(crate) fn is_orthogonal(&self, id: Id) -> bool {
+        self.expr(id).as_symbol().is_some_and(|symbol| match symbol.property {
+            Property::Orthogonal => true,
+            Property::Element(group) => group.is_orthogonal(),
+            _ => false,
+        })
+    }
+
+    /// Whether this is the symbol of a matrix of determinant one.
+    pub(crate) fn is_special(&self, id: Id) -> bool {
+        self.expr(id).as_symbol().is_some_and(|symbol| match symbol.property {
+            Property::Orthogonal => true,
+            Property::Element(group) => matches!(
+                group,
+                Group::SpecialLinear(_)
+                    | Group::Symplectic(_)
+                    | Group::SpecialEuclidean(_)
+                    | Group::Heisenberg(_)
+                    | Group::SpecialUnitary(_)
+                    | Group::Unitary(_)
+            ),
+            _ => false,
+        })
     }
 
     pub(crate) fn has_property(&self, id: Id, property: Property) -> bool {

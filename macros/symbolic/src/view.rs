@@ -1,6 +1,6 @@
 //! Looking into an expression from outside of this crate: what the lowering to scalars walks over.
 
-use crate::node::{Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
 use crate::{Algebra, Expr, Rational, Symbol};
 
 /// The outermost operation of an expression.
@@ -28,6 +28,10 @@ pub enum View<'g> {
     Determinant(Expr<'g>),
     /// f(x).
     Function(Function, Expr<'g>),
+    /// A power series of a matrix.
+    Analytic(Analytic, Expr<'g>),
+    /// What a method of the user's gives, by its name: 0 for its value, i + 1 for the gradient with respect to argument i.
+    Opaque(String, usize, Vec<Expr<'g>>),
     /// The block at (row, column).
     Block(Expr<'g>, usize, usize),
     /// A matrix in a zero matrix at (row, column).
@@ -101,6 +105,10 @@ impl<'g> Expr<'g> {
             Node::Inverse(a) => View::Inverse(expr(a)),
             Node::Determinant(a) => View::Determinant(expr(a)),
             Node::Function(function, a) => View::Function(*function, expr(a)),
+            Node::Analytic(function, a) => View::Analytic(*function, expr(a)),
+            Node::Opaque(name, output, arguments) => {
+                View::Opaque(self.graph.opaque_name(*name), *output, self.exprs(arguments))
+            }
             Node::Block(a, row, column) => View::Block(expr(a), *row, *column),
             Node::Embed(a, row, column) => View::Embed(expr(a), *row, *column),
             Node::Hadamard(a, b) => View::Hadamard(expr(a), expr(b)),

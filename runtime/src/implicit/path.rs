@@ -91,7 +91,7 @@ impl<T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'_, T, E, M> {
                     return Some(xi);
                 }
             } else {
-                if now <= seen || size(&residual) <= T::from_f64(8.0) * T::EPSILON * terms {
+                if now <= seen || self.is_round_off(&residual, terms, T::one()) {
                     return Some(xi);
                 }
                 if !is_much_smaller(&residual, &residual_before) {

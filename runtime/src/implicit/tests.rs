@@ -46,6 +46,21 @@ impl<T: Scalar> Equation<T, 3> for Body<T> {
     }
 }
 
+/// The same equation without a predictor of its own.
+struct Unpredicted(Body<f64>);
+
+impl Equation<f64, 3> for Unpredicted {
+    type Terms = Vector3<f64>;
+
+    fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
+        *target
+    }
+
+    fn linearize(&self, a: &Vector3<f64>, c: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        self.0.linearize(a, c)
+    }
+}
+
 /// A scalar equation from its residual and slope, with 0 as the predictor.
 struct Curve<F: Fn(f64, f64) -> (f64, f64)>(F, Cell<u32>);
 
@@ -54,10 +69,6 @@ impl<F: Fn(f64, f64) -> (f64, f64)> Equation<f64, 1> for Curve<F> {
 
     fn prepare(&self, target: &Vector1<f64>) -> f64 {
         target.x
-    }
-
-    fn predict(&self, _target: &Vector1<f64>) -> Vector1<f64> {
-        Vector1::new(0.0)
     }
 
     fn linearize(&self, target: &f64, xi: &Vector1<f64>) -> (Vector1<f64>, SMatrix<f64, 1, 1>) {
@@ -156,6 +167,18 @@ fn small_steps_need_few_linearizations() {
         let target = body.inertia * Vector3::new(0.6, 0.64, 0.48) * angle;
         solve(&body, &target).expect("solvable");
         assert!(body.linearizations.get() <= most, "{angle}: {}", body.linearizations.get());
+    }
+}
+
+/// One linearisation more than with a predictor, up to steps that are too long for most; never the path.
+#[test]
+fn without_a_predictor_the_first_correction_is_one() {
+    for (angle, most) in [(0.0, 2), (1e-9, 3), (1e-6, 3), (1e-2, 4), (0.1, 5), (0.5, 6), (0.9, 8)] {
+        let body = Unpredicted(principal([1.0, 1.4, 0.9]));
+        let target = body.0.inertia * Vector3::new(0.6, 0.64, 0.48) * angle;
+        let c = solve(&body, &target).expect("solvable");
+        assert!(body.0.linearizations.get() <= most, "{angle}: {}", body.0.linearizations.get());
+        assert!((c - solve(&body.0, &target).expect("solvable")).amax() <= 1e-15 * c.amax());
     }
 }
 

@@ -42,6 +42,7 @@ const _: () = {
         type MomentumMatrix = SMatrix<f64, 3, 3>;
         type Impulse = SVector<f64, 3>;
         type Constants = Constants;
+        type Time = ();
         const NAME: &'static str = "HeavyTop";
         const ORDER: u32 = 2;
         const DERIVATION: &'static str = "a hand expansion";
@@ -84,12 +85,12 @@ const _: () = {
         }
 
         /// T*R_F ∂_F ℓd − J(R, ∂_R ℓd): N^ = (F𝒥 − 𝒥Fᵀ)/h + (h/2)(center × Γ)^·weight, Γ = Rᵀe₃
-        fn legendre(&self, h: f64, r: &SMatrix<f64, 3, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+        fn legendre(&self, h: f64, _t: f64, r: &SMatrix<f64, 3, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
             components(&(f * self.mass_matrix)) / h - torque(&(self.center * (self.weight * h / 2.0)), r)
         }
 
         /// T*L_F ∂_F ℓd: N⁺^ = (𝒥F − Fᵀ𝒥)/h − (h/2)(center × Γ⁺)^·weight, Γ⁺ = (R F)ᵀe₃
-        fn legendre_next(&self, h: f64, r: &SMatrix<f64, 3, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+        fn legendre_next(&self, h: f64, _t: f64, r: &SMatrix<f64, 3, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
             components(&(self.mass_matrix * f)) / h + torque(&(self.center * (self.weight * h / 2.0)), &(r * f))
         }
 
@@ -98,17 +99,18 @@ const _: () = {
         fn inverse_legendre(
             &self,
             constants: &Constants,
+            t: f64,
             r: &SMatrix<f64, 3, 3>,
             mu: &SVector<f64, 3>,
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let kicked = mu + self.impulse(constants, r);
+            let kicked = mu + self.impulse(constants, t, r);
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
             Ok(SMatrix::<f64, 3, 3>::identity() + increment(&c))
         }
 
         /// −(h/2) J(R, ∇V) = (h/2)·weight·Γ × center, Γ = Rᵀe₃
         #[inline]
-        fn impulse(&self, constants: &Constants, r: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+        fn impulse(&self, constants: &Constants, _t: f64, r: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
             torque(&constants.moment, r)
         }
 
@@ -121,6 +123,7 @@ const _: () = {
         fn step(
             &self,
             constants: &Constants,
+            t: f64,
             r: &SMatrix<f64, 3, 3>,
             mu: &SVector<f64, 3>,
             impulse: &SVector<f64, 3>,
@@ -129,7 +132,7 @@ const _: () = {
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
             let motion = increment(&c);
             let next = r + r * motion;
-            let impulse_next = self.impulse(constants, &next);
+            let impulse_next = self.impulse(constants, t + constants.h, &next);
             Ok((next, kicked + motion.tr_mul(&kicked) + impulse_next, impulse_next))
         }
 
@@ -138,6 +141,7 @@ const _: () = {
         fn step_symmetric(
             &self,
             constants: &Constants,
+            _t: f64,
             r: &SMatrix<f64, 3, 3>,
             p: &SMatrix<f64, 3, 3>,
         ) -> ::core::result::Result<(SMatrix<f64, 3, 3>, SMatrix<f64, 3, 3>), ::clebsch::Error> {
@@ -150,14 +154,14 @@ const _: () = {
 
         /// V(R) = weight·(R center)₃
         #[inline]
-        fn potential(&self, r: &SMatrix<f64, 3, 3>) -> f64 {
+        fn potential(&self, _t: f64, r: &SMatrix<f64, 3, 3>) -> f64 {
             self.weight * (r * self.center).z
         }
 
         /// ½ π·J⁻¹π
         #[inline]
-        fn kinetic_energy(&self, constants: &Constants, mu: &SVector<f64, 3>) -> f64 {
-            0.5 * mu.dot(&(constants.inertia_inverse * mu))
+        fn kinetic_energy(&self, constants: &Constants, _t: f64, _r: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> f64 {
+            ::clebsch::__private::kinetic_energy(&constants.inertia_inverse, mu)
         }
 
         /// M = ½ π^
@@ -173,17 +177,31 @@ const _: () = {
         }
 
         /// Largest entry of |RᵀR − I|, infinite for det R < 0.
-        fn orbit_defect(r: &SMatrix<f64, 3, 3>) -> f64 {
-            if r.determinant() < 0.0 {
-                return f64::INFINITY;
-            }
-            ::clebsch::Space::max_abs(&(r.tr_mul(r) - SMatrix::<f64, 3, 3>::identity()))
+        fn orbit_defect(&self, r: &SMatrix<f64, 3, 3>) -> f64 {
+            ::clebsch::__private::orthogonality_defect(r)
         }
 
         /// The action is free.
         #[inline]
-        fn isotropy_defect(_r: &SMatrix<f64, 3, 3>, _mu: &SVector<f64, 3>) -> f64 {
+        fn isotropy_defect(&self, _r: &SMatrix<f64, 3, 3>, _mu: &SVector<f64, 3>) -> f64 {
             0.0
+        }
+
+        /// The action is free.
+        #[inline]
+        fn project_momentum(&self, _r: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> SVector<f64, 3> {
+            *mu
+        }
+    }
+
+    #[automatically_derived]
+    impl ::clebsch::Conserves for HeavyTop {
+        type Conserved = ::clebsch::Conserved<f64, 1>;
+
+        /// (R π)₃
+        #[inline]
+        fn conserved(&self, r: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> ::clebsch::Conserved<f64, 1> {
+            ::clebsch::Conserved::new(["about e3, spatial"], [(r * mu).z])
         }
     }
 

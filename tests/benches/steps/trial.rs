@@ -46,7 +46,7 @@ where
             for _ in 0..steps {
                 state = stepper.step(&state).expect("a step of moderate size");
             }
-            (scale * stepper.energy(&state), S::orbit_defect(state.configuration()))
+            (scale * stepper.energy(&state), stepper.system().orbit_defect(state.configuration()))
         });
         (drift, state.configuration().transpose().as_slice().to_vec())
     };

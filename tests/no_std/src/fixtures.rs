@@ -24,31 +24,46 @@ macro_rules! steppers {
 }
 
 modules! {
-    annotated_body first_order_top flying_body free_particle free_rigid_body generic_body heavy_top lopsided_pendulum
-    neumann paper_pendulum planar_pendulum principal_body promised_top rigid_body4 sided_pair sphere_geodesic
-    spherical_pendulum spin_pair two_bodies two_pendulums
+    annotated_body centred_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    gravity_gradient harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
+    lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top
+    rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
+    underwater_vehicle weighted_sl2
 }
 
 steppers! {
     step_annotated_body: annotated_body::AnnotatedBody<'static, (), 4>;
+    step_centred_body: centred_body::CentredBody;
     step_first_order_top: first_order_top::FirstOrderTop;
+    step_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid;
     step_flying_body: flying_body::FlyingBody;
     step_free_particle: free_particle::FreeParticle;
     step_free_rigid_body: free_rigid_body::FreeRigidBody;
     step_generic_body_in_f32: generic_body::GenericBody<f32>;
     step_generic_body_in_f64: generic_body::GenericBody<f64>;
+    step_gravity_gradient: gravity_gradient::GravityGradient;
+    step_harmonics: harmonics::Harmonics;
     step_heavy_top: heavy_top::HeavyTop;
+    step_heavy_top_reduced: heavy_top_reduced::HeavyTopReduced;
+    step_heisenberg_geodesic: heisenberg_geodesic::HeisenbergGeodesic;
+    step_linear_optics: linear_optics::LinearOptics;
     step_lopsided_pendulum: lopsided_pendulum::LopsidedPendulum;
+    step_lorentz_frame: lorentz_frame::LorentzFrame;
+    step_midpoint_top: midpoint_top::MidpointTop;
     step_neumann: neumann::Neumann;
     step_paper_pendulum: paper_pendulum::PaperPendulum;
     step_planar_pendulum: planar_pendulum::PlanarPendulum;
     step_principal_body: principal_body::PrincipalBody;
     step_promised_top: promised_top::PromisedTop;
+    step_quaternion_top: quaternion_top::QuaternionTop;
     step_rigid_body4: rigid_body4::RigidBody4;
     step_sided_pair: sided_pair::SidedPair;
+    step_spatial_body: spatial_body::SpatialBody;
     step_sphere_geodesic: sphere_geodesic::SphereGeodesic;
     step_spherical_pendulum: spherical_pendulum::SphericalPendulum;
     step_spin_pair: spin_pair::SpinPair;
     step_two_bodies: two_bodies::TwoBodies;
     step_two_pendulums: two_pendulums::TwoPendulums;
+    step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;
+    step_weighted_sl2: weighted_sl2::WeightedSl2;
 }

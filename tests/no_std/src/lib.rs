@@ -64,9 +64,10 @@ fn symmetric<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result
 }
 
 fn formulas<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<(), Error> {
-    motion.element = stepper.inverse_legendre(&motion.configuration, &motion.momentum)?;
-    motion.momentum = stepper.legendre(&motion.configuration, &motion.element);
-    motion.momentum = stepper.legendre_next(&motion.configuration, &motion.element);
+    let t = motion.step_size;
+    motion.element = stepper.inverse_legendre_at(t, &motion.configuration, &motion.momentum)?;
+    motion.momentum = stepper.legendre_at(t, &motion.configuration, &motion.element);
+    motion.momentum = stepper.legendre_next_at(t, &motion.configuration, &motion.element);
     motion.momentum = stepper.coadjoint(&motion.element, &motion.momentum);
     motion.matrix = stepper.momentum_matrix(&motion.momentum);
     motion.momentum = stepper.momentum_components(&motion.matrix);

@@ -1,19 +1,20 @@
-//! Compiled declarations with numbers in them: formulas are evaluated and kernels are run.
+//! Compiled declarations with random numbers in them.
 
 use std::collections::HashMap;
 
-use clebsch_compiler::lower::{Code, Kernel, Program};
+use clebsch_compiler::lower::Program;
 use clebsch_compiler::{Graph, compile};
-use clebsch_symbolic::{Expr, Matrix, Number, Property, Rational, Shape};
+use clebsch_symbolic::{Expr, Group, Matrix, Property, Role, Shape};
 use clebsch_tests::oracle::random::Random;
+use quote::ToTokens;
 
-/// The numbers of all symbols of a program, by name.
-pub struct Values(HashMap<String, Matrix<f64>>);
+pub use crate::kernels::Values;
 
 /// The first four stages of the struct in a fixture's text.
 pub fn program<'g>(graph: &'g Graph, text: &str) -> Program<'g> {
-    let start = text.find("#[derive(").expect("a derived struct");
-    let item = text[start..].parse().expect("Rust tokens");
+    let file = syn::parse_file(text).expect("a Rust file");
+    let structs = file.items.iter().filter(|item| matches!(item, syn::Item::Struct(_)));
+    let item = structs.map(ToTokens::to_token_stream).next().expect("a struct");
     match compile(graph, item) {
         Ok(program) => program,
         Err(errors) => panic!("{errors}"),
@@ -25,30 +26,31 @@ impl Values {
     pub fn random(program: &Program<'_>, random: &mut Random) -> Values {
         let formulas = &program.formulas;
         let (model, symbols) = (&formulas.model, &formulas.symbols);
-        let mut all: Vec<Expr<'_>> = vec![model.step_size];
+        let mut all: Vec<Expr<'_>> = vec![model.step_size, model.time];
         all.extend(model.parameters.iter().flat_map(|parameter| parameter.leaves.iter().map(|leaf| leaf.symbol)));
         all.extend(model.constants.iter().map(|constant| constant.symbol));
         all.extend(model.factors.iter().map(|factor| factor.symbol));
         all.extend(model.configurations.iter().map(|leaf| leaf.symbol));
-        for more in [&symbols.covectors, &symbols.momenta, &symbols.charts, &symbols.directions, &symbols.algebra] {
+        for more in [&symbols.covectors, &symbols.momenta, &symbols.algebra] {
             all.extend(more.iter());
         }
+        all.extend(symbols.blocks.iter().flat_map(|block| [block.coordinates, block.direction]));
         let mut values = Values(HashMap::new());
         for symbol in all {
             let data = symbol.as_symbol().expect("a symbol");
-            values.0.insert(data.name.clone(), value(data.shape, data.property, random));
+            let numbers = match data.property {
+                Property::Element(group) => element(program.formulas.model.graph, group, random),
+                // charts of groups that are not compact end where det(I + Z) or det(I − Z) is zero
+                _ if matches!(data.role, Role::Chart(_)) => Matrix::from_fn(data.shape, |_| random.number() / 10.0),
+                _ => value(data.shape, data.property, random),
+            };
+            values.0.insert(data.name.clone(), numbers);
         }
         let step = program.formulas.model.step_size.as_symbol().expect("a symbol").name;
         values.0.insert(step, Matrix::new(Shape::scalar(), vec![0.1]));
         let inverse = values.evaluate(formulas.inertia).inverse().0;
         values.0.insert("inertia_inverse".into(), inverse);
         values
-    }
-
-    /// Replaces the numbers of a symbol.
-    pub fn set(&mut self, symbol: Expr<'_>, entries: &[f64]) {
-        let data = symbol.as_symbol().expect("a symbol");
-        self.0.insert(data.name, Matrix::new(data.shape, entries.to_vec()));
     }
 
     /// Takes over all numbers of `other`.
@@ -59,26 +61,6 @@ impl Values {
     /// The numbers of the symbol with this name, row by row.
     pub fn named(&self, name: &str) -> &[f64] {
         &self.0[name].entries
-    }
-
-    /// The numbers of a symbol, row by row.
-    pub fn get(&self, symbol: Expr<'_>) -> &[f64] {
-        &self.0[&symbol.as_symbol().expect("a symbol").name].entries
-    }
-
-    /// A formula with these numbers.
-    pub fn evaluate(&self, formula: Expr<'_>) -> Matrix<f64> {
-        formula.evaluate(&mut |symbol| self.0[&symbol.as_symbol().expect("a symbol").name].clone())
-    }
-
-    /// The outputs of a kernel, one list of entries each.
-    pub fn run(&self, kernel: &Kernel, constants: &[f64], terms: &[f64]) -> Vec<Vec<f64>> {
-        let mut run = Run { values: self, constants, terms, locals: Vec::new() };
-        for local in &kernel.locals {
-            let value = run.code(local);
-            run.locals.push(value);
-        }
-        kernel.outputs.iter().map(|(_, entries)| entries.iter().map(|entry| run.code(entry)).collect()).collect()
     }
 }
 
@@ -108,30 +90,15 @@ fn cayley(z: &Matrix<f64>, n: usize) -> Matrix<f64> {
     shifted(-1.0).inverse().0.multiply(&shifted(1.0))
 }
 
-struct Run<'a> {
-    values: &'a Values,
-    constants: &'a [f64],
-    terms: &'a [f64],
-    locals: Vec<f64>,
-}
-
-impl Run<'_> {
-    fn code(&self, code: &Code) -> f64 {
-        let rational = |value: &Rational| <f64 as Number>::from_rational(value);
-        match code {
-            Code::Read(input) => self.values.0[&input.name].at(input.row, input.column),
-            Code::Pi => std::f64::consts::PI,
-            Code::Number(value) => rational(value),
-            Code::Constant(index) => self.constants[*index],
-            Code::Term(index) => self.terms[*index],
-            Code::Local(index) => self.locals[*index],
-            Code::Sum(constant, terms) => {
-                terms.iter().fold(rational(constant), |sum, (factor, term)| sum + rational(factor) * self.code(term))
-            }
-            Code::Product(factors) => factors.iter().map(|factor| self.code(factor)).product(),
-            Code::Reciprocal(x) => 1.0 / self.code(x),
-            Code::Root(x, (numerator, denominator)) => self.code(x).powf(*numerator as f64 / *denominator as f64),
-            Code::Function(function, x) => Number::function(self.code(x), *function),
-        }
-    }
+/// An element of a group near its identity, in the chart of its exponential map or in that of the group.
+fn element(graph: &Graph, group: Group, random: &mut Random) -> Matrix<f64> {
+    let coordinates: Vec<Expr<'_>> = (graph.blocks(group).iter().zip(0..))
+        .map(|(block, index)| {
+            let name = format!("coordinates of a random element {index}");
+            let shape = Shape::vector(block.algebra.dimension());
+            graph.symbol(&name, shape, Role::Auxiliary(usize::MAX - 2 - index), Property::General)
+        })
+        .collect();
+    let element = group.chart(graph).element(group, &coordinates);
+    element.evaluate(&mut |symbol| Matrix::from_fn(symbol.shape(), |_| random.number() / 4.0))
 }

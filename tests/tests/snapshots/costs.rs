@@ -9,7 +9,7 @@ use crate::fixture::{Fixture, root};
 type Wanted = fn(&str) -> bool;
 
 /// The kernels that `step` does not call.
-const FORMULAS: [&str; 10] = [
+const FORMULAS: [&str; 11] = [
     "act",
     "momentum_map",
     "coadjoint",
@@ -20,6 +20,7 @@ const FORMULAS: [&str; 10] = [
     "momentum_components",
     "generator",
     "cotangent_lift",
+    "conserved",
 ];
 
 /// What each column adds up.

@@ -3,19 +3,22 @@
 use clebsch_symbolic::{Expr, Shape, identity};
 
 use super::Symbols;
+use super::symbols::logarithm;
 use crate::model::Model;
 
 /// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
 pub(super) fn generator<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
     let factors = || model.factors.iter().zip(&symbols.algebra);
-    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, xi.wedge(factor.group.algebra()))).collect();
+    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).collect();
     let at_identity = identities(model);
     model.action.iter().map(|image| image.differential(&directions).substitute(&at_identity).expand()).collect()
 }
 
-/// The replacement of every group element by the identity.
+/// The replacement of every group element by the identity, and of its logarithm by zero.
 pub(super) fn identities<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph))).collect()
+    let elements = model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph)));
+    let logarithms = (0..model.factors.len()).map(|k| logarithm(model, k));
+    elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
 }
 
 /// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
@@ -42,6 +45,18 @@ pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Ve
     model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
 }
 
+/// The components of −J(q, ∂_q K) for each factor.
+pub(super) fn coupling<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    momentum_map: &[Expr<'g>],
+    kinetic: Expr<'g>,
+) -> Vec<Expr<'g>> {
+    let leaves = model.configurations.iter().zip(&symbols.covectors);
+    let gradients: Vec<_> = leaves.map(|(leaf, p)| (*p, kinetic.gradient(leaf.symbol))).collect();
+    momentum_map.iter().map(|momentum| -momentum.substitute(&gradients)).collect()
+}
+
 /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
 pub(super) fn impulse<'g>(
     model: &Model<'g>,
@@ -55,13 +70,15 @@ pub(super) fn impulse<'g>(
     impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
 }
 
-/// Whether ξ ↦ ξ_Q(q) is injective for a general q.
+/// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
 pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
     let columns = generator_columns(symbols, generator);
-    let dimension: usize = model.factors.iter().map(|factor| factor.group.dimension()).sum();
+    let moving = model.factors.iter().filter(|factor| factor.moves);
+    let moving: usize = moving.map(|factor| factor.group.dimension()).sum();
+    let dimension = columns.len();
     let rows: usize = generator.iter().map(|velocity| velocity.shape().len()).sum();
     let entries = (0..rows).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-    identity::rank(model.graph.stack(Shape::new(rows, dimension), entries)) == dimension
+    identity::rank(model.graph.stack(Shape::new(rows, dimension), entries)) == moving
 }
 
 /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.

@@ -1,124 +1,104 @@
-//! The discrete Lagrangian ℓd(q, F) = K(F) + U₀(q) + U₁(Φ_F q): made from a Lagrangian where one is declared, separated,
-//! tested for time symmetry, and composed with its adjoint where that fails.
+//! The discrete Lagrangian ℓd(t, h, q, F) = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q): separated, tested for time symmetry, and
+//! composed with its adjoint where that fails.
 
-use clebsch_symbolic::{Algebra, Expr, Group, identity};
+use clebsch_symbolic::{Expr, identity};
 
 use super::action::identities;
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Discretization, Kinetic, Model, Order};
+use super::symbols::logarithm;
+use super::trivialisation;
+use crate::model::{Factor, Model, Order};
 
-/// ℓd(q, F) = K(F) + U₀(q) + U₁(Φ_F q), with U₁ written as a function of q.
+/// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), with U₀ and U₁ written as functions of a configuration and of its time.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub struct DiscreteLagrangian<'g> {
-    /// K(h, F).
+    /// K, a function of F (and of h and t) alone unless it couples.
     pub kinetic: Expr<'g>,
-    /// U₀(h, q), at the start of the step.
+    /// U₀(t, q), at the start of the step.
     pub start: Expr<'g>,
-    /// U₁(h, q), at its end.
+    /// U₁(t, q), at its end.
     pub end: Expr<'g>,
+    /// Whether K depends on the configuration.
+    pub couples: bool,
 }
 
-/// The cost K(h, q, F), as declared or made from the Lagrangian.
-pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
-    let (energy, velocity, discretization) = match model.kinetic {
-        Kinetic::Cost(cost) => return Ok(cost),
-        Kinetic::Lagrangian { energy, velocity, discretization, .. } => (energy, velocity, discretization),
-    };
-    let gradient = energy.gradient(velocity);
-    let at_rest = gradient.substitute(&[(velocity, velocity.graph().zero(velocity.shape()))]);
-    let inertia = gradient.matrix_of_linear(velocity);
-    if inertia.depends_on(velocity) || !identity::vanishes(at_rest) {
-        let written = &model.spans.kinetic;
-        let error = Diagnostic::new(written.place, "the Lagrangian is not a quadratic form of the velocity")
-            .help(format!("write it as a kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`", name = velocity))
-            .note("its Hessian depends on the velocity, or its gradient does not vanish at rest; such Lagrangians come with a later version of clebsch");
-        return Err(error.into());
-    }
-    let factor = &model.factors[0];
-    let (f, h) = (factor.symbol, model.step_size);
-    let identity = factor.group.identity(model.graph);
-    Ok(match discretization {
-        Discretization::MoserVeselov => {
-            let mass = (inertia.trace() / 2 * identity - inertia).expand();
-            (mass * (f - identity) * (f - identity).transpose()).trace() / (2 * h)
-        }
-        Discretization::Cayley => {
-            let xi = cayley_velocity(factor.group, f, h);
-            h * energy.substitute(&[(velocity, xi)])
-        }
-    })
-}
-
-/// The components of 2(F − I)(F + I)⁻¹/h.
-fn cayley_velocity<'g>(group: Group, f: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
-    let identity = group.identity(f.graph());
-    let algebra = group.algebra();
-    let components = ((f - identity) * (f + identity).inverse()).components(algebra);
-    match algebra {
-        Algebra::Translation(_) => f / h,
-        _ => 2 * components / algebra.uniform_gram().unwrap_or(1) / h,
-    }
-}
-
-/// Separates the cost into a part of F and a part of q, and places the potential.
-pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> Result<DiscreteLagrangian<'g>, Diagnostics> {
+/// Separates the cost into a part of F and a part of q where it is such a sum, and places the potential.
+pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> DiscreteLagrangian<'g> {
     let static_part = cost.substitute(&identities(model));
     let couples = |kinetic: Expr<'g>| model.configurations.iter().any(|leaf| kinetic.depends_on(leaf.symbol));
     let difference = cost - static_part;
     let kinetic = if couples(difference) { difference.expand() } else { difference };
-    if let Some(leaf) = model.configurations.iter().find(|leaf| kinetic.depends_on(leaf.symbol)) {
-        let written = &model.spans.kinetic;
-        let error = Diagnostic::new(
-            written.place,
-            format!("the cost couples `{}` and `{}`", leaf.name, model.factors[0].name),
-        )
-        .help("write a cost of the group element alone and put what depends on the configuration into the `potential`")
-        .note("costs that depend on configuration and group element together come with a later version of clebsch");
-        return Err(error.into());
+    let (start, end) = placed_potential(model);
+    match couples(kinetic) {
+        true => DiscreteLagrangian { kinetic: cost, start, end, couples: true },
+        false => {
+            let constant = !couples(static_part);
+            let start = if constant { start } else { start + static_part };
+            DiscreteLagrangian { kinetic, start, end, couples: false }
+        }
     }
-    let h = model.step_size;
-    let zero = model.graph.integer(0);
-    let (start, end) = match (model.potential, model.order) {
+}
+
+/// −h/2 V at both ends of a step of second order, −h V at the end of one of first order.
+fn placed_potential<'g>(model: &Model<'g>) -> (Expr<'g>, Expr<'g>) {
+    let (h, zero) = (model.step_size, model.graph.integer(0));
+    match (model.potential, model.order) {
         (None, _) => (zero, zero),
         (Some(potential), Order::First) => (zero, -(h * potential)),
         (Some(potential), Order::Second) => (-(h * potential / 2), -(h * potential / 2)),
-    };
-    let constant = !model.configurations.iter().any(|leaf| static_part.depends_on(leaf.symbol));
-    Ok(DiscreteLagrangian { kinetic, start: if constant { start } else { start + static_part }, end })
+    }
 }
 
 impl<'g> DiscreteLagrangian<'g> {
-    /// −ℓd(Φ_F q, F⁻¹; −h), whose scheme is the adjoint.
+    /// −ℓd(t + h, −h, Φ_F q, F⁻¹), whose scheme is the adjoint.
     pub fn adjoint(&self, model: &Model<'g>) -> DiscreteLagrangian<'g> {
-        let reversed = (model.step_size, -model.step_size);
-        let inverse = |factor: &crate::model::Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
-        let mut replacements: Vec<_> = model.factors.iter().map(inverse).collect();
-        replacements.push(reversed);
+        let h = model.step_size;
+        let inverse = |factor: &Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
+        let mut reversed: Vec<_> = model.factors.iter().map(inverse).collect();
+        reversed.extend((0..model.factors.len()).map(|k| logarithm(model, k)).map(|y| (y, -y)));
+        reversed.extend(model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)));
+        reversed.extend([(h, -h), (model.time, model.time + h)]);
         DiscreteLagrangian {
-            kinetic: -self.kinetic.substitute(&replacements),
-            start: -self.end.substitute(&[reversed]),
-            end: -self.start.substitute(&[reversed]),
+            kinetic: -self.kinetic.substitute(&reversed),
+            start: -self.end.substitute(&[(h, -h)]),
+            end: -self.start.substitute(&[(h, -h)]),
+            couples: self.couples,
         }
     }
 
-    /// Whether ℓd is its own adjoint: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials, up to constants.
+    /// Whether ℓd is its own adjoint, up to what no variation sees: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials.
     pub fn is_time_symmetric(&self, model: &Model<'g>) -> bool {
         let adjoint = self.adjoint(model);
-        let gradients = |lagrangian: &DiscreteLagrangian<'g>| -> Vec<Expr<'g>> {
-            let leaves = model.configurations.iter().map(|leaf| leaf.symbol);
-            leaves.flat_map(|q| [lagrangian.start.gradient(q), lagrangian.end.gradient(q)]).collect()
+        let leaves = || model.configurations.iter().map(|leaf| leaf.symbol);
+        let potentials = |lagrangian: &DiscreteLagrangian<'g>| -> Vec<Expr<'g>> {
+            leaves().flat_map(|q| [lagrangian.start.gradient(q), lagrangian.end.gradient(q)]).collect()
         };
-        identity::equal(&[self.kinetic], &[adjoint.kinetic]) && identity::equal(&gradients(self), &gradients(&adjoint))
+        let variations = |kinetic: Expr<'g>| -> Vec<Expr<'g>> {
+            let factors = (0..model.factors.len()).map(|k| {
+                let (before, _) = trivialisation::trivialisations(model, kinetic, k);
+                before.components(model.factors[k].group)
+            });
+            factors.chain(leaves().map(|q| kinetic.gradient(q))).collect()
+        };
+        let kinetic = identity::equal(&[self.kinetic], &[adjoint.kinetic])
+            || identity::equal(&variations(self.kinetic), &variations(adjoint.kinetic));
+        kinetic && identity::equal(&potentials(self), &potentials(&adjoint))
     }
 
-    fn with_step(&self, h: Expr<'g>, step: Expr<'g>) -> DiscreteLagrangian<'g> {
-        let scaled = |part: Expr<'g>| part.substitute(&[(h, step)]);
-        DiscreteLagrangian { kinetic: scaled(self.kinetic), start: scaled(self.start), end: scaled(self.end) }
+    /// The Lagrangian of a part of the step: the step `h` stands for is `step`, and its start is `later` than that of the whole.
+    fn of_part(&self, model: &Model<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
+        let scaled = |part: Expr<'g>| part.substitute(&[(model.step_size, step)]);
+        DiscreteLagrangian {
+            kinetic: self.kinetic.substitute(&[(model.step_size, step), (model.time, model.time + later)]),
+            start: scaled(self.start),
+            end: scaled(self.end),
+            couples: self.couples,
+        }
     }
 }
 
-/// The discrete Lagrangians whose steps make one step: ℓd itself where it has the order asked for, else half a step of ℓd and
-/// half a step of its adjoint, and then ℓd itself again, whose Legendre transform is to be inverted.
+/// The discrete Lagrangians whose steps make one step, with the number of parts that the step has: ℓd itself where it has the order
+/// asked for, else half a step of ℓd and half a step of its adjoint, and then ℓd itself again, whose Legendre transform is to be
+/// inverted.
 pub(super) fn substeps<'g>(
     model: &Model<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
@@ -126,8 +106,8 @@ pub(super) fn substeps<'g>(
     if model.order == Order::First || lagrangian.is_time_symmetric(model) {
         return vec![(1, *lagrangian)];
     }
-    let half = model.step_size / 2;
-    let halves = [*lagrangian, lagrangian.adjoint(model)];
-    let composed = halves.iter().map(|part| (2, part.with_step(model.step_size, half)));
-    composed.chain([(1, *lagrangian)]).collect()
+    let (half, now) = (model.step_size / 2, model.graph.integer(0));
+    let first = lagrangian.of_part(model, half, now);
+    let second = lagrangian.adjoint(model).of_part(model, half, half);
+    vec![(2, first), (2, second), (1, *lagrangian)]
 }

@@ -1,30 +1,98 @@
 //! The kinetic energy ½ ξ·Σξ, the Hessian of the cost at the identity, with the checks that it exists and is regular.
 
-use clebsch_symbolic::{Expr, Group, Shape, identity, integer};
+use clebsch_symbolic::{Expr, Shape, identity, integer};
 
 use super::action::identities;
-use super::{DiscreteLagrangian, Symbols};
+use super::{DiscreteLagrangian, Symbols, naming};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::Model;
+use crate::model::{Factor, Kinetic, Model};
 
-/// ½ ξ·Σξ = lim K(h, exp hξ)/h.
-pub(super) fn kinetic<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
+/// The Lagrangian ℓ(t, q, ξ) = ½ ξ·Σξ + A·ξ − V(t, q) that is the limit of ℓd(t, h, q, exp hξ)/h, less the potential.
+pub struct Energy<'g> {
+    /// ½ ξ·Σξ.
+    pub kinetic: Expr<'g>,
+    /// A·ξ, the part that is linear in the velocity: zero unless the cost couples configuration and group element.
+    pub gyroscopic: Expr<'g>,
+    /// ℓ(t, q, ξ) − ℓ(t, q, 0) where it is not the sum of the two: a Lagrangian that is not quadratic in the velocity.
+    pub general: Option<Expr<'g>>,
+}
+
+/// The kinetic part of the continuous Lagrangian.
+pub(super) fn kinetic<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
+    if let Kinetic::Lagrangian { energy, velocities, .. } = &model.kinetic {
+        let replaced: Vec<_> = velocities.iter().copied().zip(symbols.algebra.iter().copied()).collect();
+        return declared(model, symbols, energy.substitute(&replaced));
+    }
     let derivatives = along_exponential(model, symbols, cost);
-    let energy = (model.step_size * derivatives[1] / 2).expand();
-    check_rest(model, derivatives[0])?;
-    check_scaling(model, energy)?;
-    check_quadratic(model, &derivatives)?;
-    check_rank(model, symbols, energy)?;
-    Ok(energy)
+    let second = (model.step_size * derivatives[1] / 2).expand();
+    let gyroscopic = gyroscopic(model, derivatives[0])?;
+    let kinetic = check_scaling(model, second)?;
+    let general = match is_quadratic(model, &derivatives) {
+        true => None,
+        false => Some(general(model, symbols, cost)?),
+    };
+    check_rank(model, symbols, kinetic)?;
+    Ok(Energy { kinetic, gyroscopic, general })
+}
+
+/// lim K(h, I + hξ)/h, less its value at rest.
+fn general<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
+    let h = model.step_size;
+    let along = |factor: &Factor<'g>, xi: Expr<'g>| {
+        let identity = factor.group.identity(model.graph);
+        (factor.symbol, identity + h * factor.group.wedge(xi))
+    };
+    let elements: Vec<_> = model.factors.iter().zip(&symbols.algebra).map(|(factor, xi)| along(factor, *xi)).collect();
+    let action = cost.substitute(&elements) - cost.substitute(&identities(model));
+    limit(action.expand_all() / h, h).ok_or_else(|| {
+        let f = &model.factors[0].name;
+        Diagnostic::new(model.spans.kinetic.place, "cannot read the Lagrangian off this cost")
+            .help(format!("write it in terms of `({f} - I) / h`, or give a `lagrangian` instead of a cost"))
+            .note("the cost is not quadratic, and its limit K(h, I + h ξ)/h for h to 0 is hidden in a function of h")
+            .into()
+    })
+}
+
+/// The parts of a declared Lagrangian ℓ(t, q, ξ): of second and of first order in ξ.
+fn declared<'g>(model: &Model<'g>, symbols: &Symbols<'g>, lagrangian: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
+    let zero = model.graph.integer(0);
+    let rest: Vec<_> = symbols.algebra.iter().map(|xi| (*xi, model.graph.zero(xi.shape()))).collect();
+    let directions: Vec<_> = symbols.algebra.iter().map(|xi| (*xi, *xi)).collect();
+    let first = lagrangian.differential(&directions);
+    // d/dξ along ξ itself counts the order of each term: ξ·∂ℓ is 2 T + A·ξ
+    let linear = symbols.algebra.iter().map(|xi| lagrangian.gradient(*xi).substitute(&rest).dot(*xi));
+    let gyroscopic = linear.fold(zero, |sum, term| sum + term);
+    let gyroscopic = if identity::vanishes(gyroscopic) { zero } else { gyroscopic };
+    let twice = first - gyroscopic;
+    // 2T counts twice under ξ·∂/∂ξ if and only if it is quadratic
+    let quadratic = identity::equal(&[twice.differential(&directions)], &[2 * twice]);
+    let kinetic = match quadratic {
+        true => (twice / 2).expand(),
+        false => second_order(symbols, lagrangian),
+    };
+    check_rank(model, symbols, kinetic)?;
+    let general = (!quadratic).then(|| lagrangian - lagrangian.substitute(&rest));
+    Ok(Energy { kinetic, gyroscopic, general })
+}
+
+/// ½ ξ·Hξ with the Hessian H at rest.
+fn second_order<'g>(symbols: &Symbols<'g>, lagrangian: Expr<'g>) -> Expr<'g> {
+    let rest: Vec<_> = symbols.algebra.iter().map(|xi| (*xi, xi.graph().zero(xi.shape()))).collect();
+    let mut sum = lagrangian.graph().integer(0);
+    for xi in &symbols.algebra {
+        for eta in &symbols.algebra {
+            let block = lagrangian.gradient(*xi).jacobian(*eta).substitute(&rest);
+            sum = sum + xi.dot(block * *eta);
+        }
+    }
+    (sum / 2).expand()
 }
 
 /// The first to fourth derivatives of K(h, exp εξ) at ε = 0.
 fn along_exponential<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Vec<Expr<'g>> {
     let factors = model.factors.iter().zip(&symbols.algebra);
     let directions: Vec<_> = factors
-        .map(|(factor, xi)| {
-            (factor.symbol, factor.group.translate_left(factor.symbol, xi.wedge(factor.group.algebra())))
-        })
+        .map(|(factor, xi)| (factor.symbol, factor.group.translate_left(factor.symbol, factor.group.wedge(*xi))))
         .collect();
     let at_identity = identities(model);
     let mut derivative = cost;
@@ -36,9 +104,14 @@ fn along_exponential<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g
     derivatives
 }
 
-fn check_rest<'g>(model: &Model<'g>, slope: Expr<'g>) -> Result<(), Diagnostics> {
+/// A·ξ, the limit of the slope of the cost at the identity.
+fn gyroscopic<'g>(model: &Model<'g>, slope: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
     if identity::vanishes(slope) {
-        return Ok(());
+        return Ok(model.graph.integer(0));
+    }
+    let moves = model.configurations.iter().any(|leaf| slope.depends_on(leaf.symbol)) || slope.depends_on(model.time);
+    if moves && let Some(limit) = limit(slope, model.step_size) {
+        return Ok(limit);
     }
     let f = &model.factors[0].name;
     let error = Diagnostic::new(
@@ -50,11 +123,26 @@ fn check_rest<'g>(model: &Model<'g>, slope: Expr<'g>) -> Result<(), Diagnostics>
     Err(error.into())
 }
 
-fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
+/// The limit for h → 0 of a sum of powers of h; `None` if it does not exist or cannot be read off.
+fn limit<'g>(expr: Expr<'g>, h: Expr<'g>) -> Option<Expr<'g>> {
+    let expanded = expr.expand();
+    let least = expanded.least_exponent(h)?;
+    let zero = h.graph().integer(0);
+    let limit = (least >= integer(0)).then(|| expanded.substitute(&[(h, zero)]).expand())?;
+    limit.is_defined().then_some(limit)
+}
+
+/// The limit of the second variation, h-free as that of an action has to be.
+fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
     let scaled = energy.substitute(&[(h, 2 * h)]);
     if energy == scaled || identity::equal(&[energy], &[scaled]) {
-        return Ok(());
+        return Ok(energy);
+    }
+    if let Some(limit) = limit(energy, h)
+        && !identity::vanishes(limit)
+    {
+        return Ok(limit);
     }
     let power = (-6..=6).find(|&k| identity::equal(&[scaled], &[energy.times_power_of_two(k)]));
     let error = Diagnostic::new(model.spans.kinetic.place, "the cost does not scale like an action");
@@ -79,20 +167,14 @@ fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<(), Diagnost
     Err(error.into())
 }
 
-fn check_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> Result<(), Diagnostics> {
+/// Whether derivatives of third and fourth order of the cost vanish faster than those of an action that is not quadratic.
+fn is_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> bool {
     let survives = |order: i64| {
         let derivative = derivatives[order as usize - 1];
         !identity::vanishes(derivative)
             && derivative.least_exponent(model.step_size).is_some_and(|least| least <= integer(1 - order))
     };
-    if !(survives(3) || survives(4)) {
-        return Ok(());
-    }
-    let error =
-        Diagnostic::new(model.spans.kinetic.place, "the kinetic energy of this cost is not quadratic in the velocity")
-            .help("use a quadratic form of `F - I`, divided by `2 * h`")
-            .note("costs whose Lagrangian is not quadratic come with a later version of clebsch");
-    Err(error.into())
+    !(survives(3) || survives(4))
 }
 
 fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
@@ -137,28 +219,8 @@ fn lost_direction<'g>(model: &Model<'g>, inertia: Expr<'g>) -> Lost {
         }
     }
     let is_lost = |j: &usize| identity::vanishes(inertia.block(0, *j, Shape::vector(dimension)));
-    let directions: Vec<String> = (0..dimension).filter(is_lost).map(|j| basis_direction(model, j)).collect();
+    let directions: Vec<String> = (0..dimension).filter(is_lost).map(|j| naming::basis_direction(model, j)).collect();
     if directions.is_empty() { Lost::Other } else { Lost::Basis(directions) }
-}
-
-/// The j-th basis element of all factors together, in words.
-fn basis_direction(model: &Model<'_>, mut j: usize) -> String {
-    for factor in &model.factors {
-        let dimension = factor.group.dimension();
-        if j < dimension {
-            let of = if model.factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
-            return match factor.group {
-                Group::SpecialOrthogonal(3) => format!("the rotation about `e{}`{of}", j + 1),
-                Group::SpecialOrthogonal(n) => {
-                    let pairs: Vec<_> = (1..=n).flat_map(|a| (a + 1..=n).map(move |b| (a, b))).collect();
-                    format!("the rotation in the plane of `e{}` and `e{}`{of}", pairs[j].0, pairs[j].1)
-                }
-                Group::Translation(_) => format!("the translation along `e{}`{of}", j + 1),
-            };
-        }
-        j -= dimension;
-    }
-    "a direction of the group".to_string()
 }
 
 /// Σ, the Hessian of ½ ξ·Σξ.
@@ -179,10 +241,14 @@ pub(super) fn inertia<'g>(symbols: &Symbols<'g>, energy: Expr<'g>) -> Expr<'g> {
     blocks
 }
 
-/// V(q): the declared potential and what the cost holds of one.
+/// V(t, q): the declared potential and what the cost holds of one.
 pub(super) fn potential<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
-    let energy = -(lagrangian.start / h + lagrangian.end / h);
+    let held = match lagrangian.couples {
+        true => lagrangian.kinetic.substitute(&identities(model)),
+        false => model.graph.integer(0),
+    };
+    let energy = -((lagrangian.start + held) / h + lagrangian.end / h);
     let scaled = energy.substitute(&[(h, 2 * h)]);
     match energy == scaled || identity::equal(&[energy], &[scaled]) {
         true => Ok(if energy.depends_on(h) { energy.substitute(&[(h, model.graph.integer(1))]) } else { energy }),

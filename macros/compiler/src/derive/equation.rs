@@ -1,34 +1,31 @@
-//! The implicit equation in the chart: both trivialisations of ∂_F K, denominators cleared, coupled factors together.
+//! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::Symbols;
+use super::action::identities;
+use super::closed_form::{ClosedForm, closed_form, is_solved_by_predictor};
+use super::trivialisation::Covector;
 use crate::model::{Model, Side};
 
-/// The momentum equation of factors that depend on each other.
+/// The momentum equation of blocks that depend on each other.
 pub struct Equation<'g> {
-    /// The factors, by index.
+    /// The blocks, by their indices in [`Symbols::blocks`].
+    pub blocks: Vec<usize>,
+    /// The factors that they belong to, by index.
     pub factors: Vec<usize>,
-    /// ρ(x), the components of all its factors, with μ standing for the momentum after the kick.
+    /// ρ(x), the components of all its blocks, with μ standing for the momentum after the kick.
     pub residual: Expr<'g>,
     /// Dρ(x)·δ.
     pub directional: Expr<'g>,
-    /// Whether the congruence with I ∓ Z has freed it of denominators, for each of its factors.
+    /// Whether the congruence with I ∓ Z has freed it of denominators, for each of its blocks.
     pub cleared: Vec<bool>,
     /// How it is solved.
     pub solution: Solution,
     /// The closed form, where there is one.
     pub closed_form: Option<ClosedForm<'g>>,
-}
-
-/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
-/// in one plane has sin θ = |a| and tan(θ/2) = |x|.
-#[derive(Copy, Clone)]
-pub struct ClosedForm<'g> {
-    /// x(μ).
-    pub coordinates: Expr<'g>,
-    /// |a|², which has to be below one.
-    pub sine_squared: Expr<'g>,
+    /// Whether it depends on the configuration or on the time.
+    pub moves: bool,
 }
 
 /// How an equation is solved.
@@ -42,27 +39,6 @@ pub enum Solution {
     Newton,
 }
 
-/// Arrays whose components are T* ∂_F K before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
-pub(super) fn trivialisations<'g>(model: &Model<'g>, kinetic: Expr<'g>, k: usize) -> (Expr<'g>, Expr<'g>) {
-    let factor = &model.factors[k];
-    let gradient = kinetic.gradient(factor.symbol);
-    let left = factor.group.cotangent_left(factor.symbol, gradient).expand();
-    let right = factor.group.cotangent_right(factor.symbol, gradient).expand();
-    match factor.side {
-        Side::Left => (left, right),
-        Side::Right => (right, left),
-    }
-}
-
-/// For each factor, whether both trivialisations have the same components.
-pub(super) fn agreement<'g>(model: &Model<'g>, before: &[Expr<'g>], after: &[Expr<'g>]) -> Vec<bool> {
-    let same = |k: usize| {
-        let algebra = model.factors[k].group.algebra();
-        identity::equal(&[before[k].components(algebra)], &[after[k].components(algebra)])
-    };
-    (0..model.factors.len()).map(same).collect()
-}
-
 /// What an equation is derived from.
 pub(super) struct Sources<'a, 'g> {
     pub(super) model: &'a Model<'g>,
@@ -73,60 +49,206 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) parts: i64,
 }
 
-/// The equations of all factors, coupled ones in one.
-pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, before: &[Expr<'g>]) -> Vec<Equation<'g>> {
+/// The momentum equations of a substep.
+///
+/// `before` holds T* ∂_F K; `coupling` the components of −J(q, ∂_q K) that a coupled cost adds.
+pub(super) fn equations<'g>(
+    sources: &Sources<'_, 'g>,
+    before: &[Covector<'g>],
+    coupling: Option<&[Expr<'g>]>,
+) -> Vec<Equation<'g>> {
     let (model, symbols) = (sources.model, sources.symbols);
-    let residuals: Vec<(Expr<'g>, bool)> =
-        (0..model.factors.len()).map(|k| residual(model, symbols, before, k)).collect();
-    let depends = |k: usize, j: usize| residuals[k].0.depends_on(symbols.charts[j]);
-    let groups = groups(model.factors.len(), depends);
+    let mut residuals: Vec<Residual<'g>> = Vec::new();
+    for k in 0..model.factors.len() {
+        let (residual, cleared) = residual(sources, before, coupling, k);
+        residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
+            let start = block.offset - offset(model, k);
+            Residual { rows: residual.block(start, 0, Shape::vector(block.dimension())), cleared }
+        }));
+    }
+    substitute_explicit(sources, &mut residuals);
+    let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
+    let groups = groups(residuals.len(), depends);
     groups.into_iter().map(|group| equation(sources, before, &residuals, group)).collect()
 }
 
-/// The closed form for a factor in SO(n) with kinetic energy ½κ|ξ|² whose momenta turn one plane: n ≤ 3, or spheres.
-fn closed_form<'g>(sources: &Sources<'_, 'g>, before: &[Expr<'g>], k: usize) -> Option<ClosedForm<'g>> {
-    let (model, mu) = (sources.model, sources.symbols.momenta[k]);
-    let factor = &model.factors[k];
-    let Group::SpecialOrthogonal(n) = factor.group else { return None };
-    let algebra = factor.group.algebra();
-    let offset: usize = model.factors[..k].iter().map(|factor| factor.group.dimension()).sum();
-    let kappa = sources.inertia.entry(offset, offset);
-    let step = model.step_size / sources.parts;
-    let isotropic = kappa * factor.symbol.components(algebra) / (2 * step);
-    if !identity::equal(&[before[k].components(algebra)], &[isotropic]) {
-        return None;
-    }
-    let momentum = sources.momentum_map[k];
-    let matrix = momentum.wedge(algebra);
-    let one_plane = || identity::vanishes(matrix * matrix * matrix + momentum.dot(momentum) * matrix);
-    if n > 3 && !one_plane() {
-        return None;
-    }
-    let sine = step * mu / kappa;
-    let sine_squared = sine.dot(sine);
-    let one = model.graph.integer(1);
-    Some(ClosedForm { coordinates: sine / (one + (one - sine_squared).sqrt()), sine_squared })
+/// The residual of one block.
+#[derive(Copy, Clone)]
+struct Residual<'g> {
+    rows: Expr<'g>,
+    cleared: bool,
 }
 
-/// ρ_k(x) = A (T* ∂_F K − M) Aᵀ in components, and whether A is anything but the identity.
-fn residual<'g>(model: &Model<'g>, symbols: &Symbols<'g>, before: &[Expr<'g>], k: usize) -> (Expr<'g>, bool) {
+/// The index of a factor's first component among those of all.
+pub(super) fn offset(model: &Model<'_>, k: usize) -> usize {
+    model.factors[..k].iter().map(|factor| factor.group.dimension()).sum()
+}
+
+/// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ, and its solution put into the others, where it often leaves
+/// nothing: b × hM_v = 0 for a body about its centre of mass.
+fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<'g>]) {
+    let (model, symbols) = (sources.model, sources.symbols);
+    for i in 0..residuals.len() {
+        let block = symbols.blocks[i];
+        let others = |j: &usize| *j != i;
+        let alone =
+            !(0..residuals.len()).filter(others).any(|j| residuals[i].rows.depends_on(symbols.blocks[j].coordinates));
+        if !alone || is_kept(symbols.charts[block.factor], is_moving(model, residuals[i].rows)) {
+            continue;
+        }
+        let slope = residuals[i].rows.differential(&[(block.coordinates, block.direction)]).expand();
+        let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(block.dimension()));
+        let linear = !slope.depends_on(block.coordinates) && !slope.depends_on(symbols.momenta[block.factor]);
+        if !linear || is_moving(model, slope) || !is_diagonal(inertia) {
+            continue;
+        }
+        let Some(momentum) = own_part(model, symbols, i) else { continue };
+        let (numerator, denominator) = slope_of_chart(sources, i);
+        let step = numerator * model.step_size / (denominator * sources.parts);
+        let graph = model.graph;
+        let solution: Vec<Expr<'g>> =
+            (0..block.dimension()).map(|a| step * momentum.entry(a, 0) / inertia.entry(a, a).expand()).collect();
+        let solution = graph.stack(Shape::vector(block.dimension()), solution);
+        for j in (0..residuals.len()).filter(others) {
+            if !residuals[j].rows.depends_on(block.coordinates) {
+                continue;
+            }
+            let inserted = residuals[j].rows.substitute(&[(block.coordinates, solution)]);
+            let without = without_part(model, symbols, inserted, i);
+            if identity::equal(&[inserted], &[without]) {
+                residuals[j].rows = without.expand();
+            }
+        }
+    }
+}
+
+/// The part of the momentum symbol that belongs to a block.
+pub(super) fn own_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, i: usize) -> Option<Expr<'g>> {
+    let block = symbols.blocks[i];
+    let start = block.offset - offset(model, block.factor);
+    Some(symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension())))
+}
+
+/// An expression with the momentum of a block set to zero.
+pub(super) fn without_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
+    let block = symbols.blocks[i];
+    let (start, mu) = (block.offset - offset(model, block.factor), symbols.momenta[block.factor]);
+    let keep =
+        |a: usize| if a < start || a >= start + block.dimension() { mu.entry(a, 0) } else { mu.graph().integer(0) };
+    let rest = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(keep).collect());
+    expression.substitute(&[(mu, rest)])
+}
+
+/// dx/dξ at the identity in a block.
+pub(crate) fn chart_slope(model: &Model<'_>, symbols: &Symbols<'_>, i: usize) -> (i64, i64) {
+    let block = symbols.blocks[i];
+    let group = model.factors[block.factor].group;
+    symbols.charts[block.factor].slope_at_identity(group, &model.graph.blocks(group)[block.block])
+}
+
+pub(super) fn slope_of_chart(sources: &Sources<'_, '_>, i: usize) -> (i64, i64) {
+    chart_slope(sources.model, sources.symbols, i)
+}
+
+fn is_diagonal(matrix: Expr<'_>) -> bool {
+    matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
+}
+
+/// Whether an expression depends on the configuration or on the time.
+pub(super) fn is_moving<'g>(model: &Model<'g>, expression: Expr<'g>) -> bool {
+    expression.depends_on(model.time) || model.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))
+}
+
+/// ρ_k(x), the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ; freed of denominators by A (…) C where
+/// that is possible; and whether it was.
+fn residual<'g>(
+    sources: &Sources<'_, 'g>,
+    before: &[Covector<'g>],
+    coupling: Option<&[Expr<'g>]>,
+    k: usize,
+) -> (Expr<'g>, bool) {
+    let (model, symbols) = (sources.model, sources.symbols);
     let factor = &model.factors[k];
-    let algebra = factor.group.algebra();
-    let charts = model.factors.iter().zip(&symbols.charts);
-    let elements: Vec<_> =
-        charts.map(|(factor, x)| (factor.symbol, factor.group.chart().element(factor.group, *x))).collect();
-    let momentum = factor.group.momentum_matrix(symbols.momenta[k]);
-    let plain = before[k].substitute(&elements).expand();
-    let cleared =
-        factor.group.chart().clearing(factor.group, symbols.charts[k], factor.side == Side::Left).map(|clearing| {
-            let congruent = |matrix: Expr<'g>| (clearing * matrix * clearing.transpose()).expand().components(algebra);
-            congruent(plain) - congruent(momentum)
-        });
-    let plain = plain.components(algebra).expand() - symbols.momenta[k];
+    let group = factor.group;
+    // F = I + D in a chart with roots: what cancels in F − I does so before D(x) is put in
+    let late: Vec<(Expr<'g>, Expr<'g>)> = (0..model.factors.len())
+        .filter(|&j| is_kept(symbols.charts[j], coupling.is_some()))
+        .map(|j| (symbols.increments[j], symbols.chart_increment(model, j)))
+        .collect();
+    let element = |j: usize| match late.iter().any(|(increment, _)| *increment == symbols.increments[j]) {
+        true => model.factors[j].group.identity(model.graph) + symbols.increments[j],
+        false => symbols.chart_element(model, j),
+    };
+    let mut elements: Vec<_> = (0..model.factors.len()).map(|j| (model.factors[j].symbol, element(j))).collect();
+    elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
+    let array = before[k].array.substitute(&elements).expand();
+    let mu = symbols.momenta[k] + at_identity(model, before, coupling, k);
+    let mut plain = group.components(array).expand() - mu;
+    if let Some(coupling) = coupling {
+        plain = plain + coupling[k].substitute(&elements).expand();
+    }
+    if let Some((gradient, slope)) = before[k].logarithmic {
+        // dexp_y^T leaves ∂K/∂y as it is where ad_y^T does: ∂K/∂y = μ, for bi-invariant energies
+        let (y, zero) = (symbols.logarithms[k], model.graph.zero(symbols.momenta[k].shape()));
+        let invariant =
+            identity::equal(&[group.ad(y).transpose() * gradient, group.components(before[k].array)], &[zero; 2]);
+        if coupling.is_none() && invariant {
+            return ((gradient.substitute(&elements) - mu).expand(), true);
+        }
+        // freed of dexp⁻¹ by dexp, which is regular near the identity
+        let (gradient, slope) = (gradient.substitute(&elements), slope.substitute(&elements));
+        let freed = slope.transpose() * plain;
+        return match late.is_empty() {
+            true => (gradient.expand() + freed.expand(), true),
+            false => ((gradient + freed).substitute(&late), true),
+        };
+    }
+    if coupling.is_some() || !late.is_empty() {
+        return (plain.substitute(&late), false);
+    }
+    let coordinates = symbols.coordinates(k);
+    let momentum = group.momentum_matrix(mu);
+    let clearing = symbols.charts[k].clearing(group, &coordinates, factor.side == Side::Left);
+    let cleared = clearing.map(|(left, right)| {
+        let congruent = |matrix: Expr<'g>| group.components((left * matrix * right).expand());
+        congruent(array) - congruent(momentum)
+    });
     match cleared {
         Some(cleared) if plain.has_inverse() && !cleared.has_inverse() => (cleared, true),
-        _ => (plain, false),
+        _ => (without_denominators(&coordinates, group, plain), false),
     }
+}
+
+/// Whether D(x) = F − I is put in late and its products are not distributed, which would make them many times longer: in a chart with
+/// roots, and with exponentials where the cost couples configuration and group element.
+fn is_kept(chart: Chart, couples: bool) -> bool {
+    chart == Chart::Root || chart == Chart::Exponential && couples
+}
+
+/// r(q, I), the momentum of the motion that rests.
+pub(super) fn at_identity<'g>(
+    model: &Model<'g>,
+    before: &[Covector<'g>],
+    coupling: Option<&[Expr<'g>]>,
+    k: usize,
+) -> Expr<'g> {
+    let kinetic = before[k].components(model.factors[k].group);
+    let whole = coupling.map_or(kinetic, |coupling| kinetic + coupling[k]);
+    let value = whole.substitute(&identities(model)).expand();
+    if identity::vanishes(value) { value.graph().zero(value.shape()) } else { value }
+}
+
+/// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.
+fn without_denominators<'g>(coordinates: &[Expr<'g>], group: Group, plain: Expr<'g>) -> Expr<'g> {
+    if group != Group::UnitQuaternions {
+        return plain;
+    }
+    let square = coordinates[0].graph().integer(1) + coordinates[0].norm_squared();
+    let exponent = |expression: Expr<'g>| expression.least_exponent(square);
+    let negative =
+        |expression: Expr<'g>| exponent(expression).is_some_and(|least| least < clebsch_symbolic::integer(0));
+    let scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand()).find(|scaled| !negative(*scaled));
+    scaled.unwrap_or(plain)
 }
 
 /// The finest partition of 0..count in which what depends on each other is together.
@@ -146,34 +268,42 @@ fn groups(count: usize, depends: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize
 
 fn equation<'g>(
     sources: &Sources<'_, 'g>,
-    before: &[Expr<'g>],
-    residuals: &[(Expr<'g>, bool)],
-    factors: Vec<usize>,
+    before: &[Covector<'g>],
+    residuals: &[Residual<'g>],
+    blocks: Vec<usize>,
 ) -> Equation<'g> {
     let (model, symbols) = (sources.model, sources.symbols);
-    let dimension = factors.iter().map(|&k| model.factors[k].group.dimension()).sum();
+    let dimension = blocks.iter().map(|&i| symbols.blocks[i].dimension()).sum();
     let shape = Shape::vector(dimension);
     let mut residual = model.graph.zero(shape);
     let mut row = 0;
-    for &k in &factors {
-        residual = residual + residuals[k].0.embed(shape, row, 0);
-        row += model.factors[k].group.dimension();
+    for &i in &blocks {
+        residual = residual + residuals[i].rows.embed(shape, row, 0);
+        row += symbols.blocks[i].dimension();
     }
-    let directions: Vec<_> = factors.iter().map(|&k| (symbols.charts[k], symbols.directions[k])).collect();
-    let directional = residual.differential(&directions).expand();
-    let affine = !factors
-        .iter()
-        .any(|&k| directional.depends_on(symbols.charts[k]) || directional.depends_on(symbols.momenta[k]));
-    let identity_charts = factors.iter().all(|&k| model.factors[k].group.chart() == Chart::Identity);
-    let closed_form = match factors.as_slice() {
-        [only] => closed_form(sources, before, *only),
+    let mut factors: Vec<usize> = blocks.iter().map(|&i| symbols.blocks[i].factor).collect();
+    factors.dedup();
+    let directions: Vec<_> =
+        blocks.iter().map(|&i| (symbols.blocks[i].coordinates, symbols.blocks[i].direction)).collect();
+    let moves = is_moving(model, residual);
+    let slope = residual.differential(&directions);
+    let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
+    let directional = if kept { slope } else { slope.expand() };
+    let affine = !moves
+        && !directional.depends_on(model.time)
+        && !blocks.iter().any(|&i| directional.depends_on(symbols.blocks[i].coordinates))
+        && !factors.iter().any(|&k| directional.depends_on(symbols.momenta[k]));
+    let closed_form = match blocks.as_slice() {
+        [only] if !moves => closed_form(sources, before, residual, *only),
         _ => None,
     };
     let solution = match closed_form {
         Some(_) => Solution::ClosedForm,
-        None if affine && identity_charts => Solution::Explicit,
+        // where Σ changes with the configuration there is no predictor
+        _ if is_moving(model, sources.inertia) => Solution::Newton,
+        None if affine || !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
         None => Solution::Newton,
     };
-    let cleared = factors.iter().map(|&k| residuals[k].1).collect();
-    Equation { factors, residual, directional, cleared, solution, closed_form }
+    let cleared = blocks.iter().map(|&i| residuals[i].cleared).collect();
+    Equation { blocks, factors, residual, directional, cleared, solution, closed_form, moves }
 }

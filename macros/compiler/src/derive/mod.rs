@@ -1,30 +1,42 @@
 //! The third stage: from the model to its formulas, by calculus on matrices and groups.
 //!
-//! Everything is derived from one discrete Lagrangian ℓd(q, F) = K(F) + U₀(q) + U₁(Φ_F q), the cost with the potential placed by
-//! the order, in the form of the discrete Clebsch problem that holds for every group: solve T* ∂_F K = N + J(q, ∂U₀) for F, move,
-//! and let N⁺ = Ad* of the left side plus J(q⁺, ∂U₁).
+//! Everything is derived from one discrete Lagrangian ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), the cost with the potential
+//! placed by the order, in the form of the discrete Clebsch problem that holds for every group: solve
+//! r(F) = T* ∂_F K − J(q, ∂_q K) = N + J(q, ∂U₀) for F, move, and let N⁺ be the other trivialisation of ∂_F K (which is Ad* of
+//! r where K does not depend on q) plus J(q⁺, ∂U₁).
 
 mod action;
+mod closed_form;
 mod discrete_lagrangian;
 mod energy;
 mod equation;
+mod naming;
 mod print;
 mod reference;
+mod signature;
 mod symbols;
+mod symmetry;
+mod trivialisation;
+mod velocity;
 
 use std::cell::OnceCell;
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, identity};
 
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Model;
 
 pub(crate) use action::generator_columns;
+pub use closed_form::ClosedForm;
 pub use discrete_lagrangian::DiscreteLagrangian;
-pub use equation::{ClosedForm, Equation, Solution};
+pub use energy::Energy;
+pub(crate) use equation::chart_slope;
+pub use equation::{Equation, Solution};
 pub use print::Formula;
 pub use reference::Reference;
-pub use symbols::Symbols;
+pub use symbols::{ChartBlock, Symbols};
+pub use symmetry::{ConservedMomentum, Symmetries};
+use trivialisation::Covector;
 
 /// What is derived, as matrix expressions.
 pub struct Formulas<'g> {
@@ -44,13 +56,15 @@ pub struct Formulas<'g> {
     pub cotangent_lift: Vec<Expr<'g>>,
     /// Σ, the Hessian of ℓ(ξ) in the components of all factors.
     pub inertia: Expr<'g>,
-    /// ½ ξ·Σξ.
-    pub kinetic_energy: Expr<'g>,
+    /// The kinetic part of the continuous Lagrangian, ½ ξ·Σξ + A·ξ.
+    pub energy: Energy<'g>,
     /// V(q), that of the cost included.
     pub potential_energy: Expr<'g>,
+    /// What is conserved.
+    pub symmetries: Symmetries<'g>,
     /// The declared discrete Lagrangian.
     pub lagrangian: DiscreteLagrangian<'g>,
-    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂U₀).
+    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂_q K) − J(q, ∂U₀).
     pub legendre: Vec<Expr<'g>>,
     /// F⁺ℓd(q, F) for each factor without its last kick: the other trivialisation of ∂_F K.
     pub legendre_next: Vec<Expr<'g>>,
@@ -69,38 +83,56 @@ pub struct Substep<'g> {
     pub parts: i64,
     /// The discrete Lagrangian, in terms of the whole step h.
     pub lagrangian: DiscreteLagrangian<'g>,
-    /// J(q, ∂U₀(q)) for each factor, before the solve; `None` if there is none.
+    /// How much later than the whole step it starts.
+    pub begins: Expr<'g>,
+    /// How much later than the start of the whole step it ends.
+    pub ends: Expr<'g>,
+    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`; `None` if there is none.
     pub start: Option<Vec<Expr<'g>>>,
+    /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
+    pub rest: Option<Vec<Expr<'g>>>,
     /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
     pub end: Option<Vec<Expr<'g>>>,
     /// The momentum equations, each for the factors that depend on each other.
     pub equations: Vec<Equation<'g>>,
-    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree.
+    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
     pub unchanged: Vec<bool>,
+    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
+    /// changes with the time.
+    pub other: Option<Vec<Expr<'g>>>,
 }
 
 /// Derives the formulas of a model.
 ///
 /// # Errors
-/// A kinetic part that is degenerate, does not scale like an action, is not quadratic, or couples q and F.
+/// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
+    symbols::check_chart(&model)?;
     let symbols = Symbols::new(&model);
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
-    let cost = discrete_lagrangian::kinetic_cost(&model)?;
-    let kinetic_energy = energy::kinetic(&model, &symbols, cost)?;
-    let lagrangian = discrete_lagrangian::separate(&model, cost)?;
+    let cost = velocity::kinetic_cost(&model)?;
+    let energy = energy::kinetic(&model, &symbols, cost)?;
+    let lagrangian = discrete_lagrangian::separate(&model, cost);
+    check_unmoved(&model, &lagrangian)?;
     let potential_energy = energy::potential(&model, &lagrangian)?;
-    let inertia = energy::inertia(&symbols, kinetic_energy);
+    let inertia = energy::inertia(&symbols, energy.kinetic);
     let sources =
         |parts| equation::Sources { model: &model, symbols: &symbols, momentum_map: &momentum_map, inertia, parts };
     let substeps = discrete_lagrangian::substeps(&model, &lagrangian)
         .into_iter()
-        .map(|(parts, lagrangian)| substep(&sources(parts), lagrangian))
+        .enumerate()
+        .map(|(index, (parts, lagrangian))| {
+            let part = model.step_size / parts;
+            let begins = if index == 1 { part } else { model.graph.integer(0) };
+            substep(&sources(parts), lagrangian, begins)
+        })
         .collect();
     let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
-    let (legendre_kick, start) = (impulse(lagrangian.end), impulse(lagrangian.start));
-    let (legendre, legendre_next) = legendre(&model, &lagrangian, start);
+    let legendre_kick = impulse(lagrangian.end);
+    let (legendre, legendre_next) = legendre(&sources(1), &lagrangian);
+    let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia);
+    check_offers(&model, &symmetries)?;
     Ok(Formulas {
         legendre,
         legendre_next,
@@ -114,29 +146,115 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         symbols,
         generator,
         momentum_map,
-        kinetic_energy,
+        energy,
         potential_energy,
+        symmetries,
         lagrangian,
         substeps,
     })
 }
 
-fn substep<'g>(sources: &equation::Sources<'_, 'g>, lagrangian: DiscreteLagrangian<'g>) -> Substep<'g> {
-    let model = sources.model;
-    let impulse = |potential: Expr<'g>| action::impulse(model, sources.symbols, sources.momentum_map, potential);
-    let (before, after): (Vec<_>, Vec<_>) =
-        (0..model.factors.len()).map(|k| equation::trivialisations(model, lagrangian.kinetic, k)).unzip();
+/// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.
+fn check_unmoved<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<(), Diagnostics> {
+    let (before, after) = trivialised(model, lagrangian);
+    let agrees = trivialisation::agreement(model, &before, &after);
+    let Some(factor) = model.factors.iter().zip(agrees).find(|(factor, agrees)| !factor.moves && !agrees) else {
+        return Ok(());
+    };
+    let (name, group) = (&factor.0.name, factor.0.group.name(model.graph));
+    let error = Diagnostic::new(factor.0.span, format!("the factor `{name}: {group}` moves nothing"))
+        .help(format!("let it move a configuration, as in `R * {name}`, or give it a cost that is invariant under conjugation, as `({name} - I).norm_squared() / (2 * h)`"))
+        .note(format!("without a configuration to move it has no side, and this cost is not the same for {name} and g*{name}*g⁻¹"));
+    Err(error.into())
+}
+
+/// An offered symmetry has to be one.
+fn check_offers(model: &Model<'_>, symmetries: &Symmetries<'_>) -> Result<(), Diagnostics> {
+    let Some(&index) = symmetries.refused.first() else { return Ok(()) };
+    let offered = &model.symmetries[index];
+    let error = Diagnostic::new(
+        offered.written.place,
+        format!("`{}` is not a symmetry of the cost and the potential", offered.written.text),
+    )
+    .help("leave it out, or offer the part of the group that leaves both unchanged")
+    .note("it has to leave them unchanged for all values of the configuration, the group element and the parameters, and to move the configuration as some motion of the declared group does");
+    Err(error.into())
+}
+
+fn substep<'g>(
+    sources: &equation::Sources<'_, 'g>,
+    lagrangian: DiscreteLagrangian<'g>,
+    begins: Expr<'g>,
+) -> Substep<'g> {
+    let (model, momentum_map) = (sources.model, sources.momentum_map);
+    let impulse = |potential: Expr<'g>| action::impulse(model, sources.symbols, momentum_map, potential);
+    let (before, after) = trivialised(model, &lagrangian);
+    let coupling =
+        lagrangian.couples.then(|| action::coupling(model, sources.symbols, momentum_map, lagrangian.kinetic));
+    let rest = at_rest(model, &before, coupling.as_deref());
+    // impulses are functions of the time of the configuration, K of the time at which the whole step starts
+    let earlier = |rest: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        rest.iter().map(|part| part.substitute(&[(model.time, model.time - begins)])).collect()
+    };
+    let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
+    let unchanged = match lagrangian.couples || changes {
+        true => vec![false; model.factors.len()],
+        false => trivialisation::agreement(model, &before, &after),
+    };
     Substep {
+        begins,
+        ends: begins + model.step_size / sources.parts,
         parts: sources.parts,
-        start: impulse(lagrangian.start),
+        start: total(impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest))),
         end: impulse(lagrangian.end),
-        equations: equation::equations(sources, &before),
-        unchanged: equation::agreement(model, &before, &after),
+        equations: equation::equations(sources, &before, coupling.as_deref()),
+        other: (lagrangian.couples || changes).then(|| components(model, &after)),
+        unchanged,
+        rest,
         lagrangian,
     }
 }
 
+/// T* ∂_F K before the step and after it, for each factor.
+fn trivialised<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
+    (0..model.factors.len()).map(|k| trivialisation::trivialisations(model, lagrangian.kinetic, k)).unzip()
+}
+
+fn components<'g>(model: &Model<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
+    model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).collect()
+}
+
+/// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.
+fn at_rest<'g>(model: &Model<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
+    let rest: Vec<_> = (0..model.factors.len()).map(|k| -equation::at_identity(model, before, coupling, k)).collect();
+    rest.iter().any(|part| !identity::vanishes(*part)).then_some(rest)
+}
+
+/// The sum of two impulses.
+fn total<'g>(one: Option<Vec<Expr<'g>>>, other: Option<Vec<Expr<'g>>>) -> Option<Vec<Expr<'g>>> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.into_iter().zip(other).map(|(a, b)| a + b).collect()),
+        (one, other) => one.or(other),
+    }
+}
+
 impl Formulas<'_> {
+    /// How many directions the kinetic energy is positive and negative in, for positive parameters.
+    pub fn signature(&self) -> Option<(usize, usize)> {
+        signature::signature(self.inertia)
+    }
+
+    /// Whether the cost or the potential depends on the time.
+    pub fn is_timed(&self) -> bool {
+        let lagrangian = &self.lagrangian;
+        [lagrangian.kinetic, lagrangian.start, lagrangian.end].iter().any(|part| part.depends_on(self.model.time))
+    }
+
+    /// Whether the kinetic energy changes with the configuration or the time.
+    pub fn inertia_moves(&self) -> bool {
+        equation::is_moving(&self.model, self.inertia)
+    }
+
     /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
     pub fn parts(&self) -> usize {
         if self.substeps.len() == 1 { 1 } else { 2 }
@@ -145,14 +263,18 @@ impl Formulas<'_> {
 
 /// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.
 fn legendre<'g>(
-    model: &Model<'g>,
+    sources: &equation::Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
-    start: Option<Vec<Expr<'g>>>,
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    let transforms = model.factors.iter().enumerate().map(|(k, factor)| {
-        let (before, after) = equation::trivialisations(model, lagrangian.kinetic, k);
-        let (before, after) = (before.components(factor.group.algebra()), after.components(factor.group.algebra()));
-        (start.as_ref().map_or(before, |start| before - start[k]), after)
-    });
-    transforms.unzip()
+    let (model, momentum_map) = (sources.model, sources.momentum_map);
+    let (before, after) = trivialised(model, lagrangian);
+    let mut before = components(model, &before);
+    if lagrangian.couples {
+        let coupling = action::coupling(model, sources.symbols, momentum_map, lagrangian.kinetic);
+        before.iter_mut().zip(coupling).for_each(|(before, coupling)| *before = *before + coupling);
+    }
+    if let Some(start) = action::impulse(model, sources.symbols, momentum_map, lagrangian.start) {
+        before.iter_mut().zip(start).for_each(|(before, start)| *before = *before - start);
+    }
+    (before, components(model, &after))
 }

@@ -95,26 +95,48 @@ impl<'g> Formulas<'g> {
             Formula::new(
                 "inertia",
                 format!("Σ{}", self.letter(&self.symbols.algebra)),
-                &self.symbols.algebra.iter().map(|xi| self.kinetic_energy.gradient(*xi).expand()).collect::<Vec<_>>(),
+                &self.symbols.algebra.iter().map(|xi| self.energy.kinetic.gradient(*xi).expand()).collect::<Vec<_>>(),
             ),
             Formula::new(
                 "kinetic energy",
                 format!("T({})", self.letter(&self.symbols.algebra)),
-                &[self.kinetic_energy],
+                &[self.energy.kinetic + self.energy.gyroscopic],
+            ),
+            Formula::new(
+                "Lagrangian",
+                format!("ℓ({})", self.letter(&self.symbols.algebra)),
+                &self.energy.general.into_iter().collect::<Vec<_>>(),
             ),
             self.formula_of_potential(),
             self.formula_of_hamiltonian(),
-            Formula::new("discrete Lagrangian", format!("K(h, {f})"), &[self.lagrangian.kinetic]),
+            Formula::new("discrete Lagrangian", self.kinetic_symbol(), &[self.lagrangian.kinetic]),
             Formula::new("", format!("U₀(h, {q})"), &[self.lagrangian.start]),
             Formula::new("", format!("U₁(h, {q}⁺)"), &[self.lagrangian.end]),
             self.formula_of_legendre(),
             self.formula_of_legendre_next(),
         ];
+        formulas.extend(self.formulas_of_conserved());
         for substep in self.substeps.iter().take(self.parts()) {
             formulas.extend(self.formulas_of_substep(substep));
         }
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
         formulas
+    }
+
+    fn chart_symbols(&self) -> Vec<Expr<'g>> {
+        self.symbols.blocks.iter().map(|block| block.coordinates).collect()
+    }
+
+    fn direction_symbols(&self) -> Vec<Expr<'g>> {
+        self.symbols.blocks.iter().map(|block| block.direction).collect()
+    }
+
+    /// K(h, F), with what else it depends on.
+    fn kinetic_symbol(&self) -> String {
+        let timed = self.lagrangian.kinetic.depends_on(self.model.time);
+        let (time, q) =
+            (if timed { "t, " } else { "" }, if self.lagrangian.couples { self.q() + ", " } else { String::new() });
+        format!("K({time}h, {q}{})", self.f())
     }
 
     /// J(q, p).
@@ -148,6 +170,14 @@ impl<'g> Formulas<'g> {
         let inertia = graph.symbol("Σ", shape, Role::Auxiliary(1), Property::Symmetric);
         let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
         Formula::new("Hamiltonian", format!("H({}, {mu})", self.q()), &[kinetic + self.potential_energy])
+    }
+
+    /// The conserved momenta by their names.
+    pub fn formulas_of_conserved(&self) -> Vec<Formula> {
+        let conserved = self.symmetries.conserved.iter();
+        conserved
+            .map(|momentum| Formula::new("conserved", momentum.name.clone(), &readable(&[momentum.value])))
+            .collect()
     }
 
     /// F⁻ℓd(q, F).
@@ -195,25 +225,29 @@ impl<'g> Formulas<'g> {
     /// ρ(x) = 0.
     pub fn formula_of_equation(&self, equation: &Equation<'g>) -> Formula {
         let title = if equation.solution == Solution::Explicit { "equation (explicit)" } else { "equation" };
-        Formula::new(title, format!("0 = ρ({})", self.letter(&self.symbols.charts)), &[equation.residual])
+        Formula::new(title, format!("0 = ρ({})", self.letter(&self.chart_symbols())), &[equation.residual])
     }
 
     /// Dρ(x)·δ.
     pub fn formula_of_jacobian(&self, equation: &Equation<'g>) -> Formula {
-        let (x, direction) = (self.letter(&self.symbols.charts), self.letter(&self.symbols.directions));
+        let (x, direction) = (self.letter(&self.chart_symbols()), self.letter(&self.direction_symbols()));
         Formula::new("Jacobian", format!("Dρ({x})·{direction}"), &[equation.directional])
     }
 
     /// x(μ), where there is a closed form.
     pub fn formula_of_solution(&self, equation: &Equation<'g>) -> Option<Formula> {
         let closed_form = equation.closed_form.as_ref()?;
-        Some(Formula::new("solution", self.letter(&self.symbols.charts), &[closed_form.coordinates]))
+        Some(Formula::new("solution", self.letter(&self.chart_symbols()), &[closed_form.coordinates]))
     }
 
     fn formula_of_update(&self, substep: &Substep<'g>) -> Formula {
+        if let Some(other) = &substep.other {
+            return Formula::new("momentum update", "M⁺", &readable(other));
+        }
         let update = |k: usize| {
             let factor = &self.model.factors[k];
             let mu = self.symbols.momenta[k];
+            let mu = substep.rest.as_ref().map_or(mu, |rest| mu - rest[k]);
             match (substep.unchanged[k], factor.side) {
                 (true, _) => mu,
                 (false, Side::Left) => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),

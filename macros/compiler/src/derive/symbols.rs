@@ -1,8 +1,9 @@
 //! The symbols of the derivation: covectors, momenta, algebra elements, chart coordinates, increments.
 
-use clebsch_symbolic::{Expr, Property, Role, Shape};
+use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use crate::model::Model;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{ChartChoice, Discretization, Kinetic, Model};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
 pub struct Symbols<'g> {
@@ -12,17 +13,67 @@ pub struct Symbols<'g> {
     pub algebra: Vec<Expr<'g>>,
     /// μ in components, for each factor.
     pub momenta: Vec<Expr<'g>>,
-    /// The chart coordinates x of F, for each factor.
-    pub charts: Vec<Expr<'g>>,
-    /// A direction in which the chart coordinates move, for each factor.
-    pub directions: Vec<Expr<'g>>,
+    /// The chart of each factor.
+    pub charts: Vec<Chart>,
+    /// The chart coordinates of all factors, one vector for each block of their algebras.
+    pub blocks: Vec<ChartBlock<'g>>,
     /// The increment F − I (F itself for translations), for each factor.
     pub increments: Vec<Expr<'g>>,
+    /// The coordinates of log F, for each factor: what a Lagrangian that is discretised by the exponential depends on.
+    pub logarithms: Vec<Expr<'g>>,
     /// The representing matrix of the momentum, for each factor.
     pub momentum_matrices: Vec<Expr<'g>>,
 }
 
+/// The chart coordinates in a block of a factor's Lie algebra.
+#[derive(Copy, Clone)]
+pub struct ChartBlock<'g> {
+    /// The factor, by index.
+    pub factor: usize,
+    /// The index of the block among those of its factor.
+    pub block: usize,
+    /// The index of its first component among the components of all factors.
+    pub offset: usize,
+    /// The coordinates x.
+    pub coordinates: Expr<'g>,
+    /// A direction in which they move.
+    pub direction: Expr<'g>,
+}
+
+impl ChartBlock<'_> {
+    /// The number of coordinates.
+    pub fn dimension(&self) -> usize {
+        self.coordinates.shape().rows
+    }
+}
+
 impl<'g> Symbols<'g> {
+    /// The chart coordinates of a factor, one vector for each of its blocks.
+    pub fn coordinates(&self, factor: usize) -> Vec<Expr<'g>> {
+        self.blocks.iter().filter(|block| block.factor == factor).map(|block| block.coordinates).collect()
+    }
+
+    /// The chart coordinates of a factor in one vector.
+    pub fn stacked_coordinates(&self, factor: usize) -> Expr<'g> {
+        let shape = self.logarithms[factor].shape();
+        let blocks = self.blocks.iter().filter(|block| block.factor == factor);
+        let start = self.blocks.iter().find(|block| block.factor == factor).map_or(0, |block| block.offset);
+        let parts = blocks.map(|block| block.coordinates.embed(shape, block.offset - start, 0));
+        parts.fold(self.logarithms[factor].graph().zero(shape), |sum, part| sum + part)
+    }
+
+    /// The element of a factor in its chart.
+    pub fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+        self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))
+    }
+
+    /// The increment F − I of a factor in its chart, without cancellation.
+    pub fn chart_increment(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+        let (numerator, denominator) =
+            self.charts[factor].increment(model.factors[factor].group, &self.coordinates(factor));
+        numerator / denominator
+    }
+
     pub(super) fn new(model: &Model<'g>) -> Symbols<'g> {
         let graph = model.graph;
         let taken = taken(model);
@@ -43,12 +94,81 @@ impl<'g> Symbols<'g> {
             covectors: covectors.collect(),
             algebra: factor(&["ξ", "η", "ζ"], Role::Algebra, false),
             momenta: factor(&["μ", "ν", "λ"], Role::Momentum, false),
-            charts: factor(&["x", "c", "z"], Role::Chart, false),
-            directions: factor(&["δ", "ε", "γ"], Role::Auxiliary, false),
+            charts: model.factors.iter().map(|factor| chart(model, factor)).collect(),
+            blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
+            logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
             increments: factor(&["D", "Δ", "B"], Role::Increment, true),
             momentum_matrices: factor(&["M", "N", "P"], Role::MomentumMatrix, true),
         }
     }
+}
+
+/// The symbol of the coordinates of log F.
+pub(super) fn logarithm<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
+    let factor = &model.factors[k];
+    let name = format!("log({})", factor.name);
+    let shape = Shape::vector(factor.group.dimension());
+    model.graph.symbol(&name, shape, Role::Logarithm(k), Property::General)
+}
+
+/// The chart of a factor: what the velocity is made with, for then ξ is a multiple of x; else the user's choice, or that of the
+/// group.
+fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
+    if factor.group.is_translation() {
+        return Chart::Identity;
+    }
+    let discretization = match &model.kinetic {
+        Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
+        Kinetic::Cost(_) => None,
+    };
+    match (discretization, model.chart) {
+        (Some(Discretization::Exponential), _) | (_, Some(ChartChoice::Exponential)) => Chart::Exponential,
+        (_, Some(ChartChoice::Cayley)) => Chart::Cayley,
+        (Some(Discretization::Cayley), None) if factor.group.has_cayley_chart(model.graph) => Chart::Cayley,
+        _ => factor.group.chart(model.graph),
+    }
+}
+
+/// Every factor has to have the chart that the user has chosen.
+pub(super) fn check_chart(model: &Model<'_>) -> Result<(), Diagnostics> {
+    let missing = model.factors.iter().find(|factor| {
+        model.chart == Some(ChartChoice::Cayley)
+            && !factor.group.is_translation()
+            && !factor.group.has_cayley_chart(model.graph)
+    });
+    let Some(factor) = missing else { return Ok(()) };
+    let name = factor.group.name(model.graph);
+    let error = Diagnostic::new(factor.span, format!("`{name}` has no Cayley chart"))
+        .help("write `chart = exponential`, or leave the choice to the group")
+        .note(format!("(I - Z)⁻¹(I + Z) is not in {name} for every Z of its Lie algebra"));
+    Err(error.into())
+}
+
+/// The chart coordinates and their directions, numbered through all factors.
+fn blocks<'g>(model: &Model<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'g>> {
+    let graph = model.graph;
+    let shapes: Vec<(usize, usize, usize)> = model
+        .factors
+        .iter()
+        .enumerate()
+        .flat_map(|(factor, data)| {
+            let blocks = graph.blocks(data.group);
+            let sizes: Vec<usize> = blocks.iter().map(|block| block.algebra.dimension()).collect();
+            sizes.into_iter().enumerate().map(move |(block, size)| (factor, block, size))
+        })
+        .collect();
+    let mut offset = 0;
+    let mut made = Vec::new();
+    for (index, &(factor, block, size)) in shapes.iter().enumerate() {
+        let symbol = |letter: &str, role: Role| {
+            graph.symbol(&subscripted(letter, index, shapes.len()), Shape::vector(size), role, Property::General)
+        };
+        let (coordinates, direction) =
+            (symbol(letters[0], Role::Chart(index)), symbol(letters[1], Role::Auxiliary(index)));
+        made.push(ChartBlock { factor, block, offset, coordinates, direction });
+        offset += size;
+    }
+    made
 }
 
 /// The first letters of the user's own names, which the derivation does not take.

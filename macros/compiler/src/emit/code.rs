@@ -1,6 +1,6 @@
 //! Tokens of straight-line code.
 
-use clebsch_symbolic::{Rational, Role, Shape, integer};
+use clebsch_symbolic::{Function, Group, Rational, Role, Shape, integer};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -22,8 +22,21 @@ pub struct Scope<'a, 'g> {
     pub constant_names: &'a [String],
     /// Which of all momentum components the vectors `mu` and `x` hold, in order.
     pub components: Vec<usize>,
+    /// The index of the first component of each chart block among those of all factors.
+    pub blocks: Vec<usize>,
     /// The name of the momentum argument.
     pub momentum: &'static str,
+    /// The user's struct as a type, for the methods behind an opaque potential.
+    pub item: TokenStream,
+}
+
+/// The nesting of what a kernel returns.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub enum Nesting {
+    /// That of the configuration.
+    Configuration,
+    /// That of the group element.
+    Element,
 }
 
 /// Tokens that reach a leaf: `.0[1]`.
@@ -52,7 +65,8 @@ impl Scope<'_, '_> {
             Role::Increment(k) => leaf("d", factor(k)),
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
             Role::Momentum(k) => self.component(self.momentum, k, input.row),
-            Role::Chart(k) | Role::Algebra(k) => self.component("x", k, input.row),
+            Role::Chart(block) => self.at_component("x", self.blocks[block] + input.row),
+            Role::Algebra(k) | Role::Logarithm(k) => self.component("x", k, input.row),
             Role::Auxiliary(_) => match &self.constants {
                 Some(constants) => quote!(#constants.inertia_inverse #index),
                 None => quote!(inertia_inverse #index),
@@ -63,7 +77,11 @@ impl Scope<'_, '_> {
     /// The entry of a flat vector that belongs to a component of a factor.
     fn component(&self, vector: &str, factor: usize, row: usize) -> TokenStream {
         let offset: usize = self.model.factors[..factor].iter().map(|factor| factor.group.dimension()).sum();
-        let position = self.components.iter().position(|&component| component == offset + row).unwrap_or(offset + row);
+        self.at_component(vector, offset + row)
+    }
+
+    fn at_component(&self, vector: &str, wanted: usize) -> TokenStream {
+        let position = self.components.iter().position(|&component| component == wanted).unwrap_or(wanted);
         let (vector, position) = (format_ident!("{vector}"), Literal::usize_unsuffixed(position));
         quote!(#vector[#position])
     }
@@ -140,10 +158,24 @@ impl Scope<'_, '_> {
                     (self.code(x, false), self.number(&clebsch_symbolic::rational(*numerator, *denominator)));
                 quote!(#private::Scalar::powf(#x, #exponent))
             }
+            Code::Call(callee, arguments) => self.call(callee, arguments),
+            Code::Output(local, callee, output) => self.output(*local, callee, *output),
+            Code::Function(Function::Stumpff(k), x) => {
+                let (k, x) = (Literal::u8_unsuffixed(*k), self.code(x, false));
+                quote!(#private::stumpff(#k, #x))
+            }
             Code::Function(function, x) => {
                 let (name, x) = (format_ident!("{}", function.name()), self.code(x, false));
                 quote!(#private::Scalar::#name(#x))
             }
+        }
+    }
+
+    /// Whether a leaf of a nesting is a quaternion.
+    fn is_quaternion(&self, nesting: Nesting, leaf: usize) -> bool {
+        match nesting {
+            Nesting::Configuration => self.model.configurations[leaf].is_quaternion,
+            Nesting::Element => self.model.factors[leaf].group == Group::UnitQuaternions,
         }
     }
 
@@ -232,12 +264,21 @@ fn decimal(value: &Rational) -> Option<String> {
     None
 }
 
-/// The body of a kernel that returns its outputs nested as `structure`, or its only output.
-pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, structure: Option<&Structure>) -> TokenStream {
+/// The body of a kernel that returns its outputs nested as configuration or element, or its only output.
+pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, nesting: Option<Nesting>) -> TokenStream {
     let locals = locals(scope, kernel);
-    let value = match structure {
-        Some(structure) => nested(structure, &mut |leaf| grid(scope, kernel.outputs[leaf].0, &kernel.outputs[leaf].1)),
-        None => grid(scope, kernel.outputs[0].0, &kernel.outputs[0].1),
+    let value = match nesting {
+        Some(nesting) => {
+            let structure = match nesting {
+                Nesting::Configuration => &scope.model.configuration,
+                Nesting::Element => &scope.model.element,
+            };
+            nested(structure, &mut |leaf| {
+                let (shape, entries) = &kernel.outputs[leaf];
+                grid(scope, *shape, entries, scope.is_quaternion(nesting, leaf))
+            })
+        }
+        None => grid(scope, kernel.outputs[0].0, &kernel.outputs[0].1, false),
     };
     quote!(#locals #value)
 }
@@ -251,11 +292,12 @@ pub fn locals(scope: &Scope<'_, '_>, kernel: &Kernel) -> TokenStream {
     quote!(#(#locals)*)
 }
 
-/// A matrix or vector of entries.
-pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStream {
+/// A matrix, vector or quaternion of entries.
+pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code], is_quaternion: bool) -> TokenStream {
     let private = &scope.paths.private;
     let entries: Vec<TokenStream> = entries.iter().map(|entry| scope.code(entry, false)).collect();
     match shape.columns {
+        _ if is_quaternion => quote!(#private::quaternion([#(#entries),*])),
         1 => quote!(#private::vector([#(#entries),*])),
         columns => {
             let rows = entries.chunks(columns).map(|row| quote!([#(#row),*]));

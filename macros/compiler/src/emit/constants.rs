@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 
 use super::{Emitter, code, docs};
 use crate::derive::Solution;
+use crate::lower::Solve;
 use crate::model::Promise;
 
 impl Emitter<'_, '_> {
@@ -14,6 +15,7 @@ impl Emitter<'_, '_> {
         let names = self.program.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = self.paths.matrix(self.dimension(), self.dimension());
+        let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
         quote! {
@@ -22,18 +24,23 @@ impl Emitter<'_, '_> {
             pub struct #name #generics {
                 #(#names: #scalar,)*
                 #(#orientations: #private::Orientation,)*
-                inertia_inverse: #inverse,
+                #inverse
             }
         }
     }
 
-    /// For each equation that Newton's method solves: the name of its orientation, and its components.
+    /// Whether the orientation of an equation is a constant, made of Σ.
+    pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
+        solve.solution == Solution::Newton && !solve.moves && !self.program.formulas.inertia_moves()
+    }
+
+    /// For each equation whose orientation is a constant: the name of its orientation, and its components.
     pub(super) fn implicit_solves(&self) -> impl Iterator<Item = (proc_macro2::Ident, Vec<usize>)> {
         let solves = self.program.steps.iter().enumerate().flat_map(|(index, step)| {
             let suffix = self.program.suffix(index);
             step.solves.iter().enumerate().map(move |(number, solve)| (suffix, number, solve))
         });
-        let implicit = solves.filter(|(_, _, solve)| solve.solution == Solution::Newton);
+        let implicit = solves.filter(|(_, _, solve)| self.has_orientation(solve));
         implicit.map(|(suffix, number, solve)| {
             (format_ident!("orientation{suffix}_{}", number + 1), solve.components.clone())
         })
@@ -44,7 +51,15 @@ impl Emitter<'_, '_> {
         let (private, scalar, krate) = (&self.paths.private, &self.paths.scalar, &self.paths.krate);
         let scope = self.scope_of_system();
         let (constants, checks) = (&self.names.constants, self.checks());
-        let inertia = code::body(&scope, &self.program.inertia, None);
+        let moves = self.program.formulas.inertia_moves();
+        let inertia = (!moves).then(|| {
+            let inertia = code::body(&scope, &self.program.inertia, None);
+            quote! {
+                let inertia = { #inertia };
+                let inertia_inverse = #private::invert(&inertia)?;
+            }
+        });
+        let inverse = (!moves).then(|| quote!(inertia_inverse,));
         let locals = code::locals(&scope, &self.program.constants);
         let fields =
             self.program.constant_names.iter().zip(&self.program.constants.outputs).map(|(name, (_, entries))| {
@@ -74,13 +89,12 @@ impl Emitter<'_, '_> {
             #documentation
             fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
                 #checks
-                let inertia = { #inertia };
-                let inertia_inverse = #private::invert(&inertia)?;
+                #inertia
                 #locals
                 ::core::result::Result::Ok(#constants {
                     #(#fields)*
                     #(#orientations)*
-                    inertia_inverse,
+                    #inverse
                 })
             }
         }

@@ -2,9 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::derive::Solution;
+use clebsch_symbolic::Chart;
+
+use crate::derive::{Equation, Solution};
 use crate::lower::Program;
-use crate::model::{Model, Order, Side};
+use crate::model::{Isotropy, Model, Order, Side};
 
 /// The text of `DERIVATION`.
 pub fn derivation(program: &Program<'_>) -> String {
@@ -12,9 +14,11 @@ pub fn derivation(program: &Program<'_>) -> String {
     // by construction: writing to a string does not fail
     let _ = write!(
         text,
-        "{}\n\n{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
+        "{}\n\n{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
         program.formulas.model.item.ident,
         frames(&program.formulas.model),
+        energy(program),
+        conserved(program),
         scheme(program),
         left_out(program),
         program.formulas,
@@ -27,6 +31,15 @@ pub fn derivation(program: &Program<'_>) -> String {
 fn frames(model: &Model<'_>) -> String {
     let mut text = String::new();
     for factor in &model.factors {
+        if !factor.moves {
+            let _ = writeln!(
+                text,
+                "{} in {} moves no configuration; its cost is invariant under conjugation, so it has no side.",
+                factor.name,
+                factor.group.name(model.graph),
+            );
+            continue;
+        }
         let (side, frame) = match factor.side {
             Side::Left => ("left", "spatial"),
             Side::Right => ("right", "body"),
@@ -35,11 +48,87 @@ fn frames(model: &Model<'_>) -> String {
             text,
             "{} in {} acts from the {side}: momenta and velocities are {frame}, in the basis of {}.",
             factor.name,
-            factor.group.name(),
-            factor.group.name(),
+            factor.group.name(model.graph),
+            factor.group.name(model.graph),
         );
     }
     text + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
+}
+
+/// The kinetic energy in coordinates, for a look at what the cost stands for.
+fn energy(program: &Program<'_>) -> String {
+    let formulas = &program.formulas;
+    let names: Vec<String> = formulas
+        .symbols
+        .algebra
+        .iter()
+        .flat_map(|xi| (0..xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i + 1))))
+        .collect();
+    let mut terms = String::new();
+    for (i, first) in names.iter().enumerate() {
+        for (j, second) in names.iter().enumerate().skip(i) {
+            let Some(text) = program.energy_coefficient(i, j) else { continue };
+            let square = if i == j { format!("{first}²") } else { format!("{first} {second}") };
+            let text = if text == "1" { String::new() } else { format!("{} ", grouped(&text)) };
+            let _ = write!(terms, "{}{text}{square}", if terms.is_empty() { "" } else { " + " });
+        }
+    }
+    let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
+    let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
+    let signature = match formulas.signature() {
+        Some((_, 0)) => "positive definite for positive parameters".to_string(),
+        Some((0, _)) => "negative definite for positive parameters".to_string(),
+        Some((positive, negative)) => {
+            format!(
+                "indefinite, of signature ({positive}, {negative}) for positive parameters: extremals are no minima"
+            )
+        }
+        None => "of a signature that depends on the parameters".to_string(),
+    };
+    format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
+}
+
+fn grouped(text: &str) -> String {
+    if text.contains(' ') || text.starts_with('-') { format!("({text})") } else { text.to_string() }
+}
+
+fn subscript(index: usize) -> String {
+    index.to_string().bytes().filter_map(|digit| char::from_u32('₀' as u32 + u32::from(digit - b'0'))).collect()
+}
+
+/// What is conserved, and what is not known to be.
+fn conserved(program: &Program<'_>) -> String {
+    let symmetries = &program.formulas.symmetries;
+    let mut text = String::new();
+    for momentum in &symmetries.conserved {
+        let _ = writeln!(text, "Conserved: the momentum {}.", momentum.name);
+    }
+    if symmetries.conserved.is_empty() {
+        let known = if symmetries.undecided { " that could be proved" } else { "" };
+        let _ = writeln!(text, "Conserved: no momentum{known}, for general values of the parameters.");
+    }
+    for sentence in for_any_axis(&symmetries.special) {
+        let _ = writeln!(text, "Conserved too: the momentum {sentence}.");
+    }
+    if symmetries.undecided {
+        text += "Not proved: whether more momenta are conserved; roots and functions are compared by their arguments alone.\n";
+    }
+    text
+}
+
+/// Sentences that say the same of e1, e2 and e3 become one of ek.
+fn for_any_axis(sentences: &[String]) -> Vec<String> {
+    let general =
+        |sentence: &String| ["e1", "e2", "e3"].iter().fold(sentence.clone(), |text, axis| text.replace(axis, "ek"));
+    let mut told: Vec<String> = Vec::new();
+    for sentence in sentences {
+        let alike = sentences.iter().filter(|other| general(other) == general(sentence)).count();
+        let text = if alike == 3 { format!("{}, k = 1, 2, 3", general(sentence)) } else { sentence.clone() };
+        if !told.contains(&text) {
+            told.push(text);
+        }
+    }
+    told
 }
 
 /// How a step goes and how accurate it is.
@@ -47,6 +136,9 @@ fn scheme(program: &Program<'_>) -> String {
     let model = &program.formulas.model;
     let order = match (model.order, program.formulas.parts()) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
+        (Order::Second, 1) if program.formulas.lagrangian.couples => {
+            "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
+        }
         (Order::Second, 1) if program.formulas.potential_energy.is_zero() => {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), so the step is of second order."
         }
@@ -62,17 +154,11 @@ fn scheme(program: &Program<'_>) -> String {
     for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts()) {
         for equation in &substep.equations {
             let names: Vec<&str> = equation.factors.iter().map(|&k| model.factors[k].name.as_str()).collect();
-            let how = match equation.solution {
-                Solution::Explicit => "is linear in the chart: solved explicitly".to_string(),
-                Solution::ClosedForm => {
-                    "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
-                }
-                Solution::Newton if equation.cleared.iter().all(|cleared| *cleared) => {
-                    "is solved by Newton's method in the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)".to_string()
-                }
-                Solution::Newton => "is solved by Newton's method in the chart".to_string(),
-            };
-            told.push(format!("The momentum equation for {} {how}.\n", names.join(", ")));
+            told.push(format!(
+                "The momentum equation for {} {}.\n",
+                part(program, equation, &names),
+                how(program, equation)
+            ));
         }
         if kernels.update.is_none() {
             told.push("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
@@ -84,6 +170,46 @@ fn scheme(program: &Program<'_>) -> String {
     text
 }
 
+/// The factors of an equation, with the components that are meant where it holds not all of them.
+fn part(program: &Program<'_>, equation: &Equation<'_>, names: &[&str]) -> String {
+    let formulas = &program.formulas;
+    let whole: usize = equation.factors.iter().map(|&k| formulas.model.factors[k].group.dimension()).sum();
+    let names = names.join(", ");
+    if equation.residual.shape().rows == whole {
+        return names;
+    }
+    let blocks = equation.blocks.iter().map(|&i| formulas.symbols.blocks[i].coordinates.to_string());
+    format!("{names} in the coordinates {}", blocks.collect::<Vec<_>>().join(", "))
+}
+
+/// How an equation is solved, and in which chart.
+fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
+    let formulas = &program.formulas;
+    let cleared = equation.cleared.iter().all(|cleared| *cleared);
+    let chart = match formulas.symbols.charts[equation.factors[0]] {
+        Chart::Cayley if cleared => {
+            "the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)"
+        }
+        Chart::Cayley => "the Cayley chart",
+        Chart::Affine => "the chart F = I + x^ (coordinates of the second kind), in which it is a polynomial",
+        Chart::Product => "the chart of Cayley's map for the rotation and of the translation as it is",
+        Chart::Root => "the chart F = (I + x^) det(I + x^)^(−1/n), as the Cayley map leaves the group",
+        Chart::Exponential if cleared => "the exponential chart, freed of dexp⁻¹ by dexp",
+        Chart::Exponential => "the exponential chart",
+        Chart::Identity => "the coordinates of the translation",
+    };
+    match equation.solution {
+        Solution::Explicit if formulas.symbols.charts[equation.factors[0]] == Chart::Exponential => {
+            "is solved by the velocity itself, x = h Σ⁻¹μ, which commutes with the momentum: no iteration".to_string()
+        }
+        Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
+        Solution::ClosedForm => {
+            "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
+        }
+        Solution::Newton => format!("is solved by Newton's method in {chart}"),
+    }
+}
+
 /// What this problem does not need, and what was not proved.
 fn left_out(program: &Program<'_>) -> String {
     let formulas = &program.formulas;
@@ -91,15 +217,15 @@ fn left_out(program: &Program<'_>) -> String {
     if formulas.potential_energy.is_zero() {
         text += "Left out: the kick, as there is no potential.\n";
     }
-    if formulas.is_free {
+    if formulas.model.isotropy == Isotropy::Free && !formulas.is_free {
+        text += "Left out, as asked for by `isotropy = free`: the check of 𝔤_q^⊥; motions that fix the configuration are motions too.\n";
+    } else if formulas.is_free {
         text += "Left out: the check of 𝔤_q^⊥, as only the identity fixes a general configuration.\n";
     } else {
         text += "Some motions fix the configuration: state() demands momenta in 𝔤_q^⊥.\n";
     }
-    if formulas.substeps.iter().all(|substep| substep.equations.len() == formulas.model.factors.len())
-        && formulas.model.factors.len() > 1
-    {
-        text += "The factors do not couple in the momentum equation: one small solve for each.\n";
+    if formulas.substeps.iter().all(|substep| substep.equations.len() > 1) {
+        text += "The momentum equation uncouples: one small solve for each part.\n";
     }
     text
 }

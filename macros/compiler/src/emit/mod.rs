@@ -1,10 +1,13 @@
 //! The fifth stage: the program as Rust, documented with the formulas it computes.
 
+mod call;
 mod code;
 mod constants;
 mod derivation;
 mod docs;
+mod equation;
 mod names;
+mod opaque;
 mod path;
 mod step;
 mod stub;
@@ -121,21 +124,21 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let groups = self.groups();
         let constants = self.constants_type();
         let system = self.system();
+        let conserves = self.conserves();
         let step = self.step_type();
-        let equations = self.equations();
-        quote!(#groups #constants #system #step #equations)
+        let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
+        quote!(#groups #constants #system #conserves #check #step #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
     fn groups(&self) -> TokenStream {
         let krate = &self.paths.krate;
-        let types = self.model.factors.iter().map(|factor| {
-            let (name, n) = match factor.group {
-                Group::SpecialOrthogonal(n) => ("SO", n),
-                Group::Translation(n) => ("Translation", n),
-            };
-            let (name, n) = (Ident::new(name, factor.span), Literal::usize_unsuffixed(n));
-            quote!(const _: ::core::option::Option<#krate::group::#name<#n>> = ::core::option::Option::None;)
+        let built_in = self.model.factors.iter().filter(|factor| !factor.group.is_declared());
+        let types = built_in.map(|factor| {
+            let (name, sizes) = factor.group.symbol();
+            let name = Ident::new(name, factor.span);
+            let sizes = sizes.into_iter().map(Literal::usize_unsuffixed);
+            quote!(const _: ::core::option::Option<#krate::group::#name<#(#sizes),*>> = ::core::option::Option::None;)
         });
         quote!(#(#types)*)
     }
@@ -171,8 +174,32 @@ impl<'a, 'g> Emitter<'a, 'g> {
             constants,
             constant_names: &self.program.constant_names,
             components: (0..dimension).collect(),
+            blocks: self.program.formulas.symbols.blocks.iter().map(|block| block.offset).collect(),
             momentum: "mu",
+            item: self.item_type(),
         }
+    }
+
+    /// The user's struct with its generics.
+    fn item_type(&self) -> TokenStream {
+        let (ident, arguments) = (&self.model.item.ident, &self.generics.arguments);
+        if arguments.is_empty() { quote!(#ident) } else { quote!(#ident<#arguments>) }
+    }
+
+    /// Whether the cost or the potential depends on the time, so that steps are told it.
+    fn is_timed(&self) -> bool {
+        self.program.formulas.is_timed()
+    }
+
+    /// The time as an argument of a part of a step, where it matters.
+    fn time_parameter(&self) -> TokenStream {
+        let scalar = &self.paths.scalar;
+        if self.is_timed() { quote!(t: #scalar,) } else { quote!() }
+    }
+
+    /// The time as it is handed on.
+    fn time_argument(&self) -> TokenStream {
+        if self.is_timed() { quote!(t,) } else { quote!() }
     }
 
     /// The number of components of a momentum.
@@ -182,15 +209,15 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     fn configuration_type(&self) -> TokenStream {
         nested_type(&self.model.configuration, &|leaf| {
-            let shape = self.model.configurations[leaf].shape;
-            self.paths.matrix(shape.rows, shape.columns)
+            let configuration = &self.model.configurations[leaf];
+            self.paths.leaf(configuration.shape, configuration.is_quaternion)
         })
     }
 
     fn element_type(&self) -> TokenStream {
         nested_type(&self.model.element, &|factor| {
-            let shape = self.model.factors[factor].group.element_shape();
-            self.paths.matrix(shape.rows, shape.columns)
+            let group = self.model.factors[factor].group;
+            self.paths.leaf(group.element_shape(), group == Group::UnitQuaternions)
         })
     }
 

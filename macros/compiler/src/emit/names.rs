@@ -15,6 +15,8 @@ pub struct Names {
     pub constants: Ident,
     /// The struct whose methods are the parts of a step.
     pub step: Ident,
+    /// The struct of the equation of the velocity of a momentum.
+    pub velocity: Ident,
     /// The lifetime of its references.
     pub lifetime: Lifetime,
 }
@@ -34,6 +36,7 @@ impl Names {
         Names {
             constants: free("Constants", &taken),
             step: free("Step", &taken),
+            velocity: free("Velocity", &taken),
             lifetime: Lifetime::new(&lifetime, proc_macro2::Span::call_site()),
             taken,
         }

@@ -1,5 +1,6 @@
 //! What generated code names of the runtime; the other side of this file is the runtime's module `__private`.
 
+use clebsch_symbolic::Shape;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -25,6 +26,12 @@ impl Paths {
             ScalarType::Parameter(ident) => quote!(#ident),
         };
         Paths { krate: quote!(#krate), private: quote!(#krate::__private), scalar }
+    }
+
+    /// The type of an array of this shape, or of a quaternion.
+    pub fn leaf(&self, shape: Shape, is_quaternion: bool) -> TokenStream {
+        let (private, scalar) = (&self.private, &self.scalar);
+        if is_quaternion { quote!(#private::Quaternion<#scalar>) } else { self.matrix(shape.rows, shape.columns) }
     }
 
     /// `SMatrix<T, r, c>`, or `SVector<T, r>`.

@@ -1,14 +1,14 @@
 //! The type `Step`, a method for each part of a step, and the equations that it solves.
 
-use clebsch_symbolic::{Chart, Shape};
+use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
-use crate::derive::{Equation, Formula, Solution};
+use crate::derive::{Formula, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
-use crate::model::Structure;
 
 impl Emitter<'_, '_> {
     /// The struct `Step` and its methods.
@@ -44,10 +44,10 @@ impl Emitter<'_, '_> {
         formulas: &[Formula],
         signature: TokenStream,
         kernel: &Kernel,
-        structure: Option<&Structure>,
+        nesting: Option<Nesting>,
     ) -> TokenStream {
         let documentation = docs::formulas(title, formulas, Some(kernel));
-        let body = code::body(&self.scope_of_step(), kernel, structure);
+        let body = code::body(&self.scope_of_step(), kernel, nesting);
         quote! {
             #documentation
             #[inline]
@@ -61,13 +61,13 @@ impl Emitter<'_, '_> {
     fn parts(&self, index: usize, step: &StepKernels) -> TokenStream {
         let suffix = self.program.suffix(index);
         let name = |name: &str| format_ident!("{name}{suffix}");
-        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
+        let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
         let substep = &self.program.formulas.substeps[index];
         let kick = |name: Ident, title: &str, kernel: &Kernel, parts: &Option<Vec<clebsch_symbolic::Expr<'_>>>| {
             let mut formula = self.program.formulas.formula_of_momentum_map();
             formula.symbol = "kick".into();
             formula.text = parts.iter().flatten().map(|part| part.to_string()).collect();
-            self.part(title, &[formula], quote!(#name(&self, q: &#configuration) -> #momentum), kernel, None)
+            self.part(title, &[formula], quote!(#name(&self, #time q: &#configuration) -> #momentum), kernel, None)
         };
         let start = step
             .start
@@ -76,8 +76,8 @@ impl Emitter<'_, '_> {
         let end = step.end.as_ref().filter(|_| !step.end_is_start);
         let end = end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, &substep.end));
         let gradient = |name: Ident, title: &str, kernel: &Kernel| {
-            let signature = quote!(#name(&self, q: &#configuration) -> #configuration);
-            self.part(title, &[], signature, kernel, Some(&self.model.configuration))
+            let signature = quote!(#name(&self, #time q: &#configuration) -> #configuration);
+            self.part(title, &[], signature, kernel, Some(Nesting::Configuration))
         };
         let start_gradient = step.start_gradient.as_ref();
         let start_gradient = start_gradient.map(|kernel| {
@@ -88,25 +88,37 @@ impl Emitter<'_, '_> {
             gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel)
         });
         let element = self.element_type();
+        let rest = step.rest.as_ref().map(|kernel| {
+            kick(name("rest_kick"), "What the cost gives at F = I, with the other sign.", kernel, &substep.rest)
+        });
+        let coupled_gradient = step.coupled_gradient.as_ref().map(|kernel| {
+            let name = name("coupled_gradient");
+            let signature = quote!(#name(&self, #time q: &#configuration, d: &#element) -> #configuration);
+            let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
+            self.part(title, &[], signature, kernel, Some(Nesting::Configuration))
+        });
         let update = step.update.as_ref().map(|kernel| {
             let (signature, formulas) = (name("update"), self.program.formulas.titled("momentum update"));
-            let signature = quote!(#signature(&self, mu: &#momentum, d: &#element) -> #momentum);
+            let from = if step.couples { quote!(#time q: &#configuration) } else { quote!(mu: &#momentum) };
+            let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
             self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
         });
         let solve = self.solve(name("solve"), suffix, step);
-        quote!(#start #end #start_gradient #end_gradient #solve #update)
+        quote!(#start #rest #end #start_gradient #end_gradient #coupled_gradient #solve #update)
     }
 
     /// The chart coordinates of all factors, equation by equation.
     fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
         let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
+        let (place, parameters) = (self.time_argument(), self.place_parameters(step));
         let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
             let (name, solution) = (self.names.equation(suffix, number), format_ident!("x{}", number + 1));
             let target = self.part_of("mu", &solve.components);
-            let equation = quote!(#name { system: self.system, constants: self.constants });
+            let place = if solve.moves { quote!(, #place q) } else { quote!() };
+            let equation = quote!(#name { system: self.system, constants: self.constants #place });
             match solve.solution {
                 Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
-                Solution::Explicit => quote!(let #solution = #private::Equation::predict(&#equation, &#target);),
+                Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target);),
                 Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
             }
         });
@@ -124,11 +136,23 @@ impl Emitter<'_, '_> {
         quote! {
             #documentation
             #[inline]
-            fn #name(&self, mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
+            fn #name(&self, #parameters mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
                 #(#solutions)*
                 ::core::result::Result::Ok(#result)
             }
         }
+    }
+
+    /// The time and the configuration as parameters of a solve that depends on them.
+    fn place_parameters(&self, step: &StepKernels) -> TokenStream {
+        let (time, configuration) = (self.time_parameter(), self.configuration_type());
+        if step.solves.iter().any(|solve| solve.moves) { quote!(#time q: &#configuration,) } else { quote!() }
+    }
+
+    /// The time and the configuration as they are handed to such a solve.
+    fn place_arguments(&self, step: &StepKernels) -> TokenStream {
+        let time = self.time_argument();
+        if step.solves.iter().any(|solve| solve.moves) { quote!(#time &q,) } else { quote!() }
     }
 
     /// Some components of a flat vector; all of them are the vector itself.
@@ -153,21 +177,21 @@ impl Emitter<'_, '_> {
             &[],
             quote!(increment(&self, x: &#momentum) -> #element),
             &step.increment,
-            Some(&self.model.element),
+            Some(Nesting::Element),
         );
         let advance = self.part(
             "The configuration that F = I + D moves q to.",
             &self.program.formulas.titled("action"),
             quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
             &step.advance,
-            Some(&self.model.configuration),
+            Some(Nesting::Configuration),
         );
         let lift = self.part(
             "The covector p carried along by F = I + D, at q⁺.",
             &self.program.formulas.titled("cotangent lift"),
             quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
             &self.program.cotangent_lift,
-            Some(&self.model.configuration),
+            Some(Nesting::Configuration),
         );
         quote!(#increment #advance #lift)
     }
@@ -183,11 +207,13 @@ impl Emitter<'_, '_> {
         let whole = self.program.steps.len() - 1;
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
+        let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
         quote! {
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
             #[inline]
             fn euler_poincare(
                 &self,
+                #time
                 q: &#configuration,
                 mu: &#momentum,
                 impulse: &#impulse,
@@ -199,11 +225,11 @@ impl Emitter<'_, '_> {
             }
             #symmetric
             /// F with momentum μ at q.
-            fn inverse_legendre(&self, q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
+            fn inverse_legendre(&self, #time q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
                 let mu = *mu;
                 let q = *q;
                 #kicked
-                let x = self.#solve(&mu)?;
+                let x = self.#solve(#place &mu)?;
                 let d = self.increment(&x);
                 #inverse
             }
@@ -218,10 +244,11 @@ impl Emitter<'_, '_> {
     /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
     fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
         let start = format_ident!("start_kick{}", self.program.suffix(index));
+        let time = self.time_argument();
         match (&step.start, with_impulse && index == 0 && self.shares_impulse()) {
             (None, _) => quote!(),
             (Some(_), true) => quote!(let mu = mu + *impulse;),
-            (Some(_), false) => quote!(let mu = mu + self.#start(&q);),
+            (Some(_), false) => quote!(let mu = mu + self.#start(#time &q);),
         }
     }
 
@@ -229,19 +256,25 @@ impl Emitter<'_, '_> {
         let suffix = self.program.suffix(index);
         let (solve, update) = (format_ident!("solve{suffix}"), format_ident!("update{suffix}"));
         let kicked = self.kicked(index, step, true);
-        let updated = step.update.as_ref().map(|_| quote!(let mu = self.#update(&mu, &d);));
+        let (time, place) = (self.time_argument(), self.place_arguments(step));
+        let updated = step.update.as_ref().map(|_| match step.couples {
+            true => quote!(let mu = self.#update(#time &from, &d);),
+            false => quote!(let mu = self.#update(&mu, &d);),
+        });
+        let from = step.couples.then(|| quote!(let from = q;));
         let last = index + 1 == self.program.formulas.parts();
         let end = match (&step.end, last && self.shares_impulse()) {
             (None, _) | (Some(_), true) => quote!(),
             (Some(_), false) => {
                 let end = format_ident!("{}{suffix}", if step.end_is_start { "start_kick" } else { "end_kick" });
-                quote!(let mu = mu + self.#end(&q);)
+                quote!(let mu = mu + self.#end(#time &q);)
             }
         };
         quote! {
             #kicked
-            let x = self.#solve(&mu)?;
+            let x = self.#solve(#place &mu)?;
             let d = self.increment(&x);
+            #from
             let q = self.advance(&q, &d);
             #updated
             #end
@@ -250,10 +283,16 @@ impl Emitter<'_, '_> {
 
     /// The last kick, kept for the next step where it is the same.
     fn next_impulse(&self) -> TokenStream {
-        let start = format_ident!("start_kick{}", self.program.suffix(0));
+        // where time matters, the kick at the end of the last substep is the one that knows its time
+        let last = self.program.formulas.parts() - 1;
+        let kick = match self.is_timed() {
+            true => format_ident!("end_kick{}", self.program.suffix(last)),
+            false => format_ident!("start_kick{}", self.program.suffix(0)),
+        };
+        let time = self.time_argument();
         match self.shares_impulse() {
             true => quote! {
-                let impulse = self.#start(&q);
+                let impulse = self.#kick(#time &q);
                 let mu = mu + impulse;
             },
             false => quote!(let impulse = ();),
@@ -261,27 +300,36 @@ impl Emitter<'_, '_> {
     }
 
     fn symmetric(&self) -> TokenStream {
-        let (krate, configuration) = (&self.paths.krate, self.configuration_type());
+        let (krate, configuration, time) = (&self.paths.krate, self.configuration_type(), self.time_parameter());
         let substeps = self.stepped().map(|(index, step)| {
             let suffix = self.program.suffix(index);
             let solve = format_ident!("solve{suffix}");
-            let kick = |name: &str| {
+            let (time, place) = (self.time_argument(), self.place_arguments(step));
+            let kick = |name: &str, increment: TokenStream| {
                 let name = format_ident!("{name}{suffix}");
                 let sum = code::nested(&self.model.configuration, &mut |leaf| {
                     let access = code::accessor(&self.model.configurations[leaf].accessor);
                     quote!(p #access + gradient #access)
                 });
                 quote! {
-                    let gradient = self.#name(&q);
+                    let gradient = self.#name(#time &q #increment);
                     let p = #sum;
                 }
             };
-            let start = step.start_gradient.as_ref().map(|_| kick("start_gradient"));
-            let end = step.end_gradient.as_ref().map(|_| kick("end_gradient"));
+            let start = step.start_gradient.as_ref().map(|_| kick("start_gradient", quote!()));
+            let end = step.end_gradient.as_ref().map(|_| kick("end_gradient", quote!()));
+            let coupled = step.coupled_gradient.as_ref().map(|_| kick("coupled_gradient", quote!(, &d)));
+            let rest = step.rest.as_ref().map(|_| {
+                let name = format_ident!("rest_kick{suffix}");
+                quote!(let mu = mu + self.#name(#time &q);)
+            });
             quote! {
                 #start
-                let x = self.#solve(&#krate::Clebsch::momentum_map(self.system, &q, &p))?;
+                let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
+                #rest
+                let x = self.#solve(#place &mu)?;
                 let d = self.increment(&x);
+                #coupled
                 let q = self.advance(&q, &d);
                 let p = self.lift(&q, &p, &d);
                 #end
@@ -291,6 +339,7 @@ impl Emitter<'_, '_> {
             /// (q, p) ↦ (q⁺, p⁺), with the momentum J(q, p).
             fn symmetric(
                 &self,
+                #time
                 q: &#configuration,
                 p: &#configuration,
             ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
@@ -306,139 +355,12 @@ impl Emitter<'_, '_> {
         let private = &self.paths.private;
         let element = code::nested(&self.model.element, &mut |k| {
             let access = code::accessor(&self.model.factors[k].accessor);
-            match self.model.factors[k].group.chart() {
-                Chart::Identity => quote!(d #access),
-                Chart::Cayley => quote!(#private::from_increment(&d #access)),
+            match self.model.factors[k].group {
+                Group::Translation(_) => quote!(d #access),
+                Group::UnitQuaternions => quote!(#private::quaternion_from_increment(&d #access)),
+                _ => quote!(#private::from_increment(&d #access)),
             }
         });
         quote!(::core::result::Result::Ok(#element))
-    }
-
-    /// The types of the equations.
-    pub(super) fn equations(&self) -> TokenStream {
-        let mut types = TokenStream::new();
-        for (index, step) in self.program.steps.iter().enumerate() {
-            for (number, solve) in step.solves.iter().enumerate() {
-                types.extend(match &solve.sine_squared {
-                    Some(sine_squared) => self.closed_form(index, number, solve, sine_squared),
-                    None => self.equation(index, number, solve),
-                });
-            }
-        }
-        types
-    }
-
-    /// The struct of an equation: the system and the constants, with the equation as its documentation.
-    fn equation_structure(&self, name: &Ident, derived: &Equation<'_>) -> TokenStream {
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
-        let Names { lifetime, constants: constants_name, .. } = &self.names;
-        let formula = self.program.formulas.formula_of_equation(derived);
-        let documentation = docs::formulas("The momentum equation in the chart.", &[formula], None);
-        quote! {
-            #documentation
-            struct #name<#lifetime, #parameters> #predicates {
-                system: &#lifetime #ident<#arguments>,
-                constants: &#lifetime #constants_name #constants,
-            }
-        }
-    }
-
-    /// The type of an equation that is solved by a formula.
-    fn closed_form(&self, index: usize, number: usize, solve: &Solve, sine_squared: &Kernel) -> TokenStream {
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (private, krate) = (&self.paths.private, &self.paths.krate);
-        let lifetime = &self.names.lifetime;
-        let name = self.names.equation(self.program.suffix(index), number);
-        let mut scope = self.scope_of_step();
-        scope.components = solve.components.clone();
-        scope.momentum = "target";
-        let vector = self.paths.matrix(solve.dimension, 1);
-        let (locals, sine) = (code::locals(&scope, sine_squared), scope.code(&sine_squared.outputs[0].1[0], false));
-        let solution = code::body(&scope, &solve.predict, None);
-        let derived = &self.program.formulas.substeps[index].equations[number];
-        let structure = self.equation_structure(&name, derived);
-        let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
-        let solved = docs::formulas(
-            "The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.",
-            &solved,
-            Some(&solve.predict),
-        );
-        quote! {
-            #structure
-
-            impl<#lifetime, #parameters> #name<#lifetime, #arguments> #predicates {
-                #solved
-                #[inline]
-                fn closed_form(&self, target: &#vector) -> ::core::result::Result<#vector, #krate::Error> {
-                    #private::check_sine_squared({ #locals #sine })?;
-                    ::core::result::Result::Ok({ #solution })
-                }
-            }
-        }
-    }
-
-    fn equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let lifetime = &self.names.lifetime;
-        let suffix = self.program.suffix(index);
-        let dimension = Literal::usize_unsuffixed(solve.dimension);
-        let name = self.names.equation(suffix, number);
-        let mut scope = self.scope_of_step();
-        scope.components = solve.components.clone();
-        scope.momentum = "target";
-        let (vector, jacobian) =
-            (self.paths.matrix(solve.dimension, 1), quote!(#private::SMatrix<#scalar, #dimension, #dimension>));
-        let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
-        let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
-        let (prepare_locals, predict) =
-            (code::locals(&scope, &solve.prepare), code::body(&scope, &solve.predict, None));
-        let locals = code::locals(&scope, &solve.linearize);
-        let square = Shape::square(solve.dimension);
-        let residual = code::grid(&scope, solve.linearize.outputs[0].0, &solve.linearize.outputs[0].1);
-        let rows = code::grid(&scope, square, &solve.linearize.outputs[1].1);
-        let derived = &self.program.formulas.substeps[index].equations[number];
-        let formulas =
-            [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
-        let structure = self.equation_structure(&name, derived);
-        let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
-        let orientation = (solve.solution == Solution::Newton).then(|| {
-            let field = format_ident!("orientation{suffix}_{}", number + 1);
-            quote! {
-                #[inline]
-                fn orientation(&self) -> ::core::option::Option<#private::Orientation> {
-                    ::core::option::Option::Some(self.constants.#field)
-                }
-            }
-        });
-        quote! {
-            #structure
-
-            impl<#lifetime, #parameters> #private::Equation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
-                type Terms = [#scalar; #terms];
-
-                #[inline]
-                fn prepare(&self, target: &#vector) -> Self::Terms {
-                    #prepare_locals
-                    [#(#prepared),*]
-                }
-
-                /// The solution to first order in h.
-                #[inline]
-                fn predict(&self, target: &#vector) -> #vector {
-                    #predict
-                }
-
-                #linearized
-                #[inline]
-                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #jacobian) {
-                    #locals
-                    (#residual, #rows)
-                }
-
-                #orientation
-            }
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! What is emitted beside an error: an implementation with the right types, so that the user sees that error alone and the
 //! editor keeps working. It is never run, because the error is there.
 
+use clebsch_symbolic::Group;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -28,11 +29,18 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     };
     let configuration = nested_type(&outline.configuration, &|leaf| {
         let shape = outline.shapes[leaf];
-        matrix(shape.rows, shape.columns)
+        match outline.quaternions[leaf] {
+            true => quote!(#krate::__private::Quaternion<#scalar>),
+            false => matrix(shape.rows, shape.columns),
+        }
     });
+    let time = if outline.takes_time { quote!(#krate::__private::Clock<#scalar>) } else { quote!(()) };
     let element = nested_type(&outline.element, &|factor| {
         let shape = outline.groups[factor].element_shape();
-        matrix(shape.rows, shape.columns)
+        match outline.groups[factor] {
+            Group::UnitQuaternions => quote!(#krate::__private::Quaternion<#scalar>),
+            _ => matrix(shape.rows, shape.columns),
+        }
     });
     let momentum = matrix(outline.groups.iter().map(|group| group.dimension()).sum(), 1);
     let methods = methods(&krate, &scalar);
@@ -47,6 +55,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             type Momentum = #momentum;
             type MomentumMatrix = #element;
             type Impulse = ();
+            type Time = #time;
             type Constants = ();
             const NAME: &'static ::core::primitive::str = #name;
             const ORDER: ::core::primitive::u32 = 0;
@@ -68,18 +77,19 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(act(&self, f: &Self::Element, q: &#configuration) -> #configuration),
         quote!(momentum_map(&self, q: &#configuration, p: &#configuration) -> Self::Momentum),
         quote!(coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum),
-        quote!(legendre(&self, h: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
-        quote!(legendre_next(&self, h: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
-        quote!(inverse_legendre(&self, constants: &(), q: &#configuration, mu: &Self::Momentum) -> #element),
-        quote!(impulse(&self, constants: &(), q: &#configuration)),
-        quote!(step(&self, constants: &(), q: &#configuration, mu: &Self::Momentum, impulse: &()) -> #step),
-        quote!(step_symmetric(&self, constants: &(), q: &#configuration, p: &#configuration) -> #symmetric),
-        quote!(potential(&self, q: &#configuration) -> #scalar),
-        quote!(kinetic_energy(&self, constants: &(), mu: &Self::Momentum) -> #scalar),
+        quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
+        quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
+        quote!(inverse_legendre(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #element),
+        quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration)),
+        quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &()) -> #step),
+        quote!(step_symmetric(&self, constants: &(), t: #scalar, q: &#configuration, p: &#configuration) -> #symmetric),
+        quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar),
+        quote!(kinetic_energy(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #scalar),
         quote!(momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix),
         quote!(momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum),
-        quote!(orbit_defect(q: &#configuration) -> #scalar),
-        quote!(isotropy_defect(q: &#configuration, mu: &Self::Momentum) -> #scalar),
+        quote!(orbit_defect(&self, q: &#configuration) -> #scalar),
+        quote!(isotropy_defect(&self, q: &#configuration, mu: &Self::Momentum) -> #scalar),
+        quote!(project_momentum(&self, q: &#configuration, mu: &Self::Momentum) -> Self::Momentum),
     ];
     quote!(#(fn #signatures { ::core::unreachable!("the declaration has an error") })*)
 }

@@ -1,13 +1,15 @@
 //! The implementation of the trait `Clebsch` for the user's struct.
 
-use clebsch_symbolic::Group;
-use proc_macro2::TokenStream;
+use clebsch_symbolic::{Group, Property};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::code::Nesting;
+use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::Formula;
 use crate::lower::Kernel;
-use crate::model::{Order, Space, Structure};
+use crate::model::{Order, Space};
 
 impl Emitter<'_, '_> {
     /// The impl block.
@@ -18,6 +20,8 @@ impl Emitter<'_, '_> {
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let (impulse, (_, constants_arguments)) = (self.impulse_type(), self.constants_generics());
         let constants_name = &self.names.constants;
+        let private = &self.paths.private;
+        let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order: u32 = if self.model.order == Order::First { 1 } else { 2 };
         let derivation = super::derivation(self.program);
         let (constants, formulas, dynamics, checks) =
@@ -31,6 +35,7 @@ impl Emitter<'_, '_> {
                 type Momentum = #momentum;
                 type MomentumMatrix = #element;
                 type Impulse = #impulse;
+                type Time = #time;
                 type Constants = #constants_name #constants_arguments;
 
                 const NAME: &'static ::core::primitive::str = #name;
@@ -45,16 +50,43 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The implementation of `Conserves`, where something is conserved.
+    pub(super) fn conserves(&self) -> TokenStream {
+        let Some(kernel) = &self.program.conserved else { return TokenStream::new() };
+        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let ident = &self.model.item.ident;
+        let names = self.program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.as_str());
+        let count = Literal::usize_unsuffixed(self.program.formulas.symmetries.conserved.len());
+        let scope = self.scope_of_system();
+        let (locals, entries) = (code::locals(&scope, kernel), &kernel.outputs[0].1);
+        let entries = entries.iter().map(|entry| scope.code(entry, false));
+        let formulas = self.program.formulas.formulas_of_conserved();
+        let documentation = docs::formulas("The momenta that no step changes.", &formulas, Some(kernel));
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #krate::Conserves for #ident<#arguments> #predicates {
+                type Conserved = #private::Conserved<#scalar, #count>;
+
+                #documentation
+                fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved {
+                    #locals
+                    #private::Conserved::new([#(#names),*], [#(#entries),*])
+                }
+            }
+        }
+    }
+
     /// A method that is one kernel.
     fn method(
         &self,
         documentation: (&str, &[Formula]),
         signature: TokenStream,
         kernel: &Kernel,
-        structure: Option<&Structure>,
+        nesting: Option<Nesting>,
     ) -> TokenStream {
         let documentation = docs::formulas(documentation.0, documentation.1, Some(kernel));
-        let body = code::body(&self.scope_of_system(), kernel, structure);
+        let body = code::body(&self.scope_of_system(), kernel, nesting);
         quote! {
             #documentation
             fn #signature {
@@ -70,7 +102,7 @@ impl Emitter<'_, '_> {
                 ("The action.", &formulas.titled("action")),
                 quote!(act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration),
                 &program.act,
-                Some(&self.model.configuration),
+                Some(Nesting::Configuration),
             ),
             self.method(
                 (
@@ -92,7 +124,7 @@ impl Emitter<'_, '_> {
                     "The discrete Legendre transform: the momentum N before the step that moves q by F.",
                     &formulas.titled("Legendre transform"),
                 ),
-                quote!(legendre(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
+                quote!(legendre(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre,
                 None,
             ),
@@ -101,7 +133,7 @@ impl Emitter<'_, '_> {
                     "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
                     &formulas.titled("next Legendre transform"),
                 ),
-                quote!(legendre_next(&self, h: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
+                quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre_next,
                 None,
             ),
@@ -109,7 +141,7 @@ impl Emitter<'_, '_> {
                 ("The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.", &[]),
                 quote!(momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix),
                 &program.momentum_matrix,
-                Some(&self.model.element),
+                Some(Nesting::Element),
             ),
             self.method(
                 ("The components μ_i = tr(MᵀE_i) of a momentum.", &[]),
@@ -123,7 +155,7 @@ impl Emitter<'_, '_> {
     }
 
     fn potential(&self) -> TokenStream {
-        let (scalar, private) = (&self.paths.scalar, &self.paths.private);
+        let scalar = &self.paths.scalar;
         let formulas = &self.program.formulas;
         let scope = self.scope_of_system();
         let locals = code::locals(&scope, &self.program.potential);
@@ -131,43 +163,113 @@ impl Emitter<'_, '_> {
         let potential =
             docs::formulas("The potential energy.", &[formulas.formula_of_potential()], Some(&self.program.potential));
         let kinetic = docs::formulas("The kinetic energy.", &[formulas.formula_of_hamiltonian()], None);
+        let energy = self.kinetic_energy();
         quote! {
             #potential
-            fn potential(&self, q: &Self::Configuration) -> #scalar {
+            fn potential(&self, t: #scalar, q: &Self::Configuration) -> #scalar {
                 #locals
                 #value
             }
             #kinetic
-            fn kinetic_energy(&self, constants: &Self::Constants, mu: &Self::Momentum) -> #scalar {
-                #private::kinetic_energy(&constants.inertia_inverse, mu)
+            fn kinetic_energy(
+                &self,
+                constants: &Self::Constants,
+                t: #scalar,
+                q: &Self::Configuration,
+                mu: &Self::Momentum,
+            ) -> #scalar {
+                #energy
+            }
+        }
+    }
+
+    /// ½ (μ − A)·Σ⁻¹(μ − A), with Σ⁻¹ from the constants where it does not change.
+    fn kinetic_energy(&self) -> TokenStream {
+        let private = &self.paths.private;
+        if self.program.velocity.is_some() {
+            let velocity = &self.names.velocity;
+            return quote!(#private::legendre_fenchel(&#velocity { system: self, t, q }, mu));
+        }
+        let scope = self.scope_of_system();
+        let (shift, mu) = match &self.program.gyroscopic {
+            Some(kernel) => {
+                let slope = code::body(&scope, kernel, None);
+                (quote!(let mu = *mu - { #slope };), quote!(&mu))
+            }
+            None => (quote!(), quote!(mu)),
+        };
+        let energy = match self.program.formulas.inertia_moves() {
+            true => {
+                let inertia = code::body(&scope, &self.program.inertia, None);
+                quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
+            }
+            false => quote!(#private::kinetic_energy(&constants.inertia_inverse, #mu)),
+        };
+        quote!(#shift #energy)
+    }
+
+    /// The equation of the velocity that has a momentum, of a Lagrangian that is not quadratic.
+    pub(super) fn velocity(&self) -> TokenStream {
+        let Some(kernel) = &self.program.velocity else { return TokenStream::new() };
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (private, scalar, ident) = (&self.paths.private, &self.paths.scalar, &self.model.item.ident);
+        let Names { lifetime, velocity: name, .. } = &self.names;
+        let (configuration, dimension) = (self.configuration_type(), Literal::usize_unsuffixed(self.dimension()));
+        let scope = self.scope(quote!(self.system), None);
+        let locals = code::locals(&scope, kernel);
+        let value = scope.code(&kernel.outputs[0].1[0], false);
+        let grid = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
+        let (gradient, hessian) = (grid(1), grid(2));
+        let documentation = docs::formulas(
+            "The Lagrangian of a velocity, its gradient and its Hessian.",
+            &self.program.formulas.titled("Lagrangian"),
+            Some(kernel),
+        );
+        quote! {
+            #[doc = " The velocity that has a momentum: ∂ℓ/∂ξ = μ."]
+            struct #name<#lifetime, #parameters> #predicates {
+                system: &#lifetime #ident<#arguments>,
+                t: #scalar,
+                q: &#lifetime #configuration,
+            }
+
+            impl<#lifetime, #parameters> #private::VelocityEquation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
+                #documentation
+                fn linearize(
+                    &self,
+                    x: &#private::SVector<#scalar, #dimension>,
+                ) -> (#scalar, #private::SVector<#scalar, #dimension>, #private::SMatrix<#scalar, #dimension, #dimension>) {
+                    let (t, q) = (self.t, self.q);
+                    #locals
+                    (#value, #gradient, #hessian)
+                }
             }
         }
     }
 
     /// Steps, handed to the type `Step`.
     fn dynamics(&self) -> TokenStream {
-        let (krate, step) = (&self.paths.krate, &self.names.step);
+        let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
+        let time = self.time_argument();
+        let kick = if self.program.formulas.parts() == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let impulse = match self.shares_impulse() {
-            true => quote!(#step::start_kick(&#step { system: self, constants }, q)),
+            true => quote!(#step::#kick(&#step { system: self, constants }, #time q)),
             false => quote!(()),
-        };
-        let impulse = match (self.program.formulas.parts(), self.shares_impulse()) {
-            (2, true) => quote!(#step::start_kick_first(&#step { system: self, constants }, q)),
-            _ => impulse,
         };
         quote! {
             /// The group element that is connected to the identity and has this momentum.
             fn inverse_legendre(
                 &self,
                 constants: &Self::Constants,
+                t: #scalar,
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                #step::inverse_legendre(&#step { system: self, constants }, q, mu)
+                #step::inverse_legendre(&#step { system: self, constants }, #time q, mu)
             }
             /// The kick that the end of a step and the start of the next share.
             #[inline]
-            fn impulse(&self, constants: &Self::Constants, q: &Self::Configuration) -> Self::Impulse {
+            fn impulse(&self, constants: &Self::Constants, t: #scalar, q: &Self::Configuration) -> Self::Impulse {
                 #impulse
             }
             /// One step of the discrete Euler–Poincaré representation.
@@ -175,57 +277,75 @@ impl Emitter<'_, '_> {
             fn step(
                 &self,
                 constants: &Self::Constants,
+                t: #scalar,
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
                 impulse: &Self::Impulse,
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
-                #step::euler_poincare(&#step { system: self, constants }, q, mu, impulse)
+                #step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse)
             }
             /// One step of the discrete symmetric representation.
             fn step_symmetric(
                 &self,
                 constants: &Self::Constants,
+                t: #scalar,
                 q: &Self::Configuration,
                 p: &Self::Configuration,
             ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                #step::symmetric(&#step { system: self, constants }, q, p)
+                #step::symmetric(&#step { system: self, constants }, #time q, p)
             }
         }
     }
 
-    /// `orbit_defect` and `isotropy_defect`.
+    /// `orbit_defect`, `isotropy_defect` and `project_momentum`.
     fn space_checks(&self) -> TokenStream {
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         let defects = self.model.configurations.iter().filter_map(|leaf| {
             let access = code::accessor(&leaf.accessor);
             match leaf.space {
-                Space::Group(Group::SpecialOrthogonal(_)) => Some(quote!(#private::orthogonality_defect(&q #access))),
+                Space::Group(group) if group.element_property() == Property::Orthogonal => {
+                    Some(quote!(#private::orthogonality_defect(&q #access)))
+                }
+                Space::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
+                    Some(quote!(#private::orientation_defect(&q #access)))
+                }
                 Space::Unit => Some(quote!(#private::length_defect(&q #access))),
-                Space::Vectors | Space::Group(Group::Translation(_)) => None,
+                Space::Vectors | Space::Group(_) => None,
             }
         });
-        let defects: Vec<_> = defects.collect();
-        let isotropy = match &self.program.generator {
-            None => quote!(<#scalar as #private::Zero>::zero()),
+        let mut defects: Vec<_> = defects.collect();
+        let scope = self.scope_of_system();
+        let membership = self.program.membership.as_ref().map(|kernel| {
+            let (locals, (_, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
+            defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
+            locals
+        });
+        let (defect, projection) = match &self.program.generator {
+            None => (quote!(<#scalar as #private::Zero>::zero()), quote!(*mu)),
             Some(kernel) => {
-                let scope = self.scope_of_system();
                 let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
                 let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
                 let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
-                quote! {
-                    #locals
-                    #private::annihilator_defect(&[#(#rows),*], mu)
-                }
+                let rows = quote!(&[#(#rows),*]);
+                (
+                    quote!(#locals #private::annihilator_defect(#rows, mu)),
+                    quote!(#locals #private::annihilator_projection(#rows, mu)),
+                )
             }
         };
         quote! {
             /// By how much q violates what the declaration promises.
-            fn orbit_defect(q: &Self::Configuration) -> #scalar {
+            fn orbit_defect(&self, q: &Self::Configuration) -> #scalar {
+                #membership
                 #private::largest([#(#defects),*])
             }
             /// The size of the component of μ that no motion of q can have.
-            fn isotropy_defect(q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
-                #isotropy
+            fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
+                #defect
+            }
+            /// The momentum without that component.
+            fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
+                #projection
             }
         }
     }

@@ -5,9 +5,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use clebsch_symbolic::{Algebra, Expr, Rational, Role, Shape, View, WordTerm, integer};
+use clebsch_symbolic::{Algebra, Basis, Expr, Graph, Rational, Role, Shape, Sparse, View, WordTerm, integer};
 
-use super::scalar::{Input, Scalar, Scalars};
+use super::scalar::{Call, Callee, Input, Scalar, Scalars};
 
 /// A matrix of scalars, row by row.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl<'a, 'g> Lowering<'a, 'g> {
         match expr.view() {
             View::Symbol(symbol) => self.symbol(&symbol),
             View::Pi => one(self.scalars.pi()),
-            View::Sum(terms) => self.terms(shape, terms),
+            View::Sum(terms) => self.terms(expr.graph(), shape, terms),
             View::Literal(entries) => {
                 Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() }
             }
@@ -81,8 +81,26 @@ impl<'a, 'g> Lowering<'a, 'g> {
                 Grid::from_fn(shape, |(i, j)| a.at(j, i))
             }
             View::Inverse(a) => {
+                // I + Z with Z skew has no small pivots
+                let z = a - a.graph().identity(a.shape().rows);
+                let stable = (z + z.transpose()).is_zero();
                 let a = self.grid(a);
-                self.inverse(&a)
+                if a.shape.rows <= 3 || stable {
+                    self.inverse(&a)
+                } else {
+                    self.call(Callee::Inverse, vec![a], 0, shape)
+                }
+            }
+            View::Analytic(function, a) => {
+                let a = self.grid(a);
+                self.call(Callee::Analytic(function), vec![a], 0, shape)
+            }
+            View::Opaque(name, output, arguments) => {
+                let arguments = arguments.into_iter().map(|argument| self.grid(argument)).collect();
+                match output {
+                    0 => self.call(Callee::Value(name), arguments, 0, shape),
+                    leaf => self.call(Callee::Gradient(name), arguments, leaf - 1, shape),
+                }
             }
             View::Determinant(a) => {
                 let a = self.grid(a);
@@ -117,18 +135,23 @@ impl<'a, 'g> Lowering<'a, 'g> {
             }
             View::Wedge(algebra, a) => {
                 let a = self.grid(a);
-                self.wedge(algebra, &a)
+                self.wedge(&expr.graph().basis(algebra), &a)
             }
             View::Components(algebra, a) => {
                 let a = self.grid(a);
-                self.components(algebra, &a)
+                self.components(&expr.graph().basis(algebra), &a)
             }
         }
     }
 
+    fn call(&mut self, callee: Callee, arguments: Vec<Grid>, leaf: usize, shape: Shape) -> Grid {
+        let arguments = arguments.into_iter().map(|grid| (grid.shape, grid.entries)).collect();
+        Grid { shape, entries: self.scalars.call(Call { callee, arguments }, leaf, shape) }
+    }
+
     fn symbol(&mut self, symbol: &clebsch_symbolic::Symbol) -> Grid {
         use clebsch_symbolic::Property;
-        let is_vector = symbol.shape.is_column();
+        let (is_vector, is_scalar) = (symbol.shape.is_column(), symbol.shape.is_scalar());
         let zero = self.scalars.zero();
         Grid::from_fn(symbol.shape, |(i, j)| {
             let (row, column) = match symbol.property {
@@ -136,30 +159,37 @@ impl<'a, 'g> Lowering<'a, 'g> {
                 Property::Diagonal if i != j => return zero,
                 _ => (i, j),
             };
-            self.scalars.input(Input { role: symbol.role, name: symbol.name.clone(), row, column, is_vector })
+            self.scalars.input(Input {
+                role: symbol.role,
+                name: symbol.name.clone(),
+                row,
+                column,
+                is_vector,
+                is_scalar,
+            })
         })
     }
 
-    fn wedge(&mut self, algebra: Algebra, a: &Grid) -> Grid {
-        let shape = algebra.matrix_shape();
+    fn wedge(&mut self, basis: &Basis, a: &Grid) -> Grid {
+        let shape = basis.shape;
         let zero = self.scalars.zero();
         let mut matrix = Grid::from_fn(shape, |_| zero);
-        for (k, entries) in algebra.sparse_basis().into_iter().enumerate() {
+        for (k, entries) in basis.elements.iter().enumerate() {
             for (i, j, value) in entries {
-                let entry = self.scalars.scale(a.at(k, 0), integer(value));
-                matrix.entries[i * shape.columns + j] = self.scalars.add(matrix.at(i, j), entry);
+                let entry = self.scalars.scale(a.at(k, 0), value.clone());
+                matrix.entries[i * shape.columns + j] = self.scalars.add(matrix.at(*i, *j), entry);
             }
         }
         matrix
     }
 
-    fn components(&mut self, algebra: Algebra, a: &Grid) -> Grid {
-        let component = |entries: Vec<(usize, usize, i64)>| {
-            let terms: Vec<_> = entries.into_iter().map(|(i, j, value)| (a.at(i, j), integer(value))).collect();
+    fn components(&mut self, basis: &Basis, a: &Grid) -> Grid {
+        let component = |entries: &Sparse| {
+            let terms: Vec<_> = entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())).collect();
             self.scalars.sum(integer(0), terms)
         };
-        let entries = algebra.sparse_basis().into_iter().map(component).collect();
-        Grid { shape: Shape::vector(algebra.dimension()), entries }
+        let entries = basis.elements.iter().map(component).collect();
+        Grid { shape: Shape::vector(basis.elements.len()), entries }
     }
 
     /// The product of letters, associated so that vectors are multiplied first.
@@ -185,7 +215,7 @@ impl<'a, 'g> Lowering<'a, 'g> {
     }
 
     /// A sum of terms: components of one algebra are taken of the sum, constant letters are summed before they are multiplied.
-    fn terms(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
+    fn terms(&mut self, graph: &'g Graph, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
         let mut under: BTreeMap<Algebra, Vec<WordTerm<'g>>> = BTreeMap::new();
         let mut rest = Vec::new();
         for term in terms {
@@ -200,7 +230,7 @@ impl<'a, 'g> Lowering<'a, 'g> {
         let mut grids = Vec::new();
         for (algebra, inner) in under {
             let matrix = self.gathered(algebra.matrix_shape(), inner);
-            grids.push(self.components(algebra, &matrix));
+            grids.push(self.components(&graph.basis(algebra), &matrix));
         }
         grids.push(self.gathered(shape, rest));
         self.total(shape, &grids)

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use clebsch_symbolic::{Function, Rational, Role, Shape, integer};
 
+use super::scalar::{CallId, Callee, Output};
 use super::{Input, Node, Rate, Scalar, Scalars};
 
 /// Straight-line code of one output entry or shared term.
@@ -31,21 +32,10 @@ pub enum Code {
     Root(Box<Code>, (i64, i64)),
     /// An elementary function.
     Function(Function, Box<Code>),
-}
-
-/// The operations of a kernel.
-#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
-pub struct Cost {
-    /// Additions and subtractions.
-    pub additions: usize,
-    /// Multiplications.
-    pub multiplications: usize,
-    /// Divisions and reciprocals.
-    pub divisions: usize,
-    /// Square and other roots.
-    pub roots: usize,
-    /// Calls of elementary functions.
-    pub calls: usize,
+    /// A call of a function of matrices: always a shared term.
+    Call(Callee, Vec<(Shape, Vec<Code>)>),
+    /// An entry of a call, by the index of that term.
+    Output(usize, Callee, Output),
 }
 
 /// Straight-line code.
@@ -95,6 +85,11 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting:
     builder.code(&outputs)
 }
 
+/// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
+const LONGEST_EXPRESSION: usize = 256;
+/// A sum of more terms is cut into sums, for the same reason.
+const LONGEST_SUM: usize = 96;
+
 /// The index of an operation of a kernel.
 type Id = usize;
 
@@ -108,6 +103,8 @@ enum Operation {
     Reciprocal(Id),
     Root(Id, (i64, i64)),
     Function(Function, Id),
+    Call(Callee, Vec<(Shape, Vec<Id>)>),
+    Output(Id, Callee, Output),
 }
 
 struct Builder<'a, 'b> {
@@ -175,10 +172,24 @@ impl Builder<'_, '_> {
                 let x = self.convert(x);
                 self.intern(Operation::Function(function, x))
             }
+            Node::Output(call, output) => {
+                let (id, callee) = self.convert_call(call);
+                self.intern(Operation::Output(id, callee, output))
+            }
             Node::Input(_) | Node::Pi => self.intern(Operation::Leaf(scalar)),
         };
         self.known.insert(scalar, id);
         id
+    }
+
+    fn convert_call(&mut self, call: CallId) -> (Id, Callee) {
+        let call = self.scalars.call_of(call).clone();
+        let arguments = call
+            .arguments
+            .into_iter()
+            .map(|(shape, entries)| (shape, entries.into_iter().map(|entry| self.convert(entry)).collect()));
+        let arguments = arguments.collect();
+        (self.intern(Operation::Call(call.callee.clone(), arguments)), call.callee)
     }
 
     fn scaled(&mut self, coefficient: Rational, id: Id) -> Id {
@@ -209,6 +220,11 @@ impl Builder<'_, '_> {
                 Node::Product(factors) => self.convert_product(coefficient, &factors),
                 _ => (coefficient, self.convert(term)),
             });
+        }
+        while parts.len() > LONGEST_SUM {
+            let tail = parts.split_off(parts.len() - LONGEST_SUM);
+            let tail = self.intern(Operation::Sum(integer(0), tail));
+            parts.push((integer(1), tail));
         }
         match parts.as_slice() {
             [(coefficient, only)] if constant == integer(0) && *coefficient == integer(1) => *only,
@@ -285,6 +301,10 @@ impl Builder<'_, '_> {
             Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
             Operation::Product(factors) => factors.clone(),
             Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
+            Operation::Call(_, arguments) => {
+                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
+            }
+            Operation::Output(call, ..) => vec![*call],
         }
     }
 
@@ -296,8 +316,17 @@ impl Builder<'_, '_> {
         }
         let mut locals = Vec::new();
         let mut names: HashMap<Id, usize> = HashMap::new();
+        let mut sizes = vec![0; self.operations.len()];
         for id in order {
-            if uses[id] > 1 && self.is_shared(id) {
+            let inner: usize = self
+                .operands(id)
+                .iter()
+                .filter(|&operand| !names.contains_key(operand))
+                .map(|&operand| sizes[operand])
+                .sum();
+            sizes[id] = 1 + inner;
+            let long = sizes[id] > LONGEST_EXPRESSION;
+            if matches!(self.operations[id], Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id) {
                 let code = self.operation(id, &names);
                 locals.push(code);
                 names.insert(id, locals.len() - 1);
@@ -323,7 +352,7 @@ impl Builder<'_, '_> {
     /// Whether a value is worth a name of its own when it is used more than once: a read or a change of sign is not.
     fn is_shared(&self, id: Id) -> bool {
         match &self.operations[id] {
-            Operation::Leaf(_) => false,
+            Operation::Leaf(_) | Operation::Output(..) => false,
             Operation::Sum(constant, terms) => {
                 !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1))
             }
@@ -352,6 +381,16 @@ impl Builder<'_, '_> {
             Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),
             Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
             Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
+            Operation::Call(callee, arguments) => {
+                let argument = |(shape, entries): (Shape, Vec<Id>)| {
+                    (shape, entries.into_iter().map(|entry| self.reference(entry, names)).collect())
+                };
+                Code::Call(callee, arguments.into_iter().map(argument).collect())
+            }
+            // by construction: calls are always shared terms, and come before their entries
+            Operation::Output(call, callee, output) => {
+                Code::Output(names.get(&call).copied().unwrap_or(0), callee, output)
+            }
         }
     }
 
@@ -379,50 +418,4 @@ fn without_pair(factors: &[Id], a: Id, b: Id) -> Option<Vec<Id>> {
     let second = rest.iter().position(|&factor| factor == b)?;
     rest.remove(second);
     Some(rest)
-}
-
-impl Kernel {
-    /// The operations of this kernel.
-    pub fn cost(&self) -> Cost {
-        let mut cost = Cost::default();
-        self.locals.iter().for_each(|code| cost.count(code));
-        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|code| cost.count(code));
-        cost
-    }
-}
-
-impl Cost {
-    /// All operations.
-    pub fn total(self) -> usize {
-        self.additions + self.multiplications + self.divisions + self.roots + self.calls
-    }
-
-    fn count(&mut self, code: &Code) {
-        match code {
-            Code::Sum(constant, terms) => {
-                self.additions += terms.len() - 1 + (*constant != integer(0)) as usize;
-                for (coefficient, term) in terms {
-                    self.multiplications += !(*coefficient == integer(1) || *coefficient == integer(-1)) as usize;
-                    self.count(term);
-                }
-            }
-            Code::Product(factors) => {
-                self.multiplications += factors.len() - 1;
-                factors.iter().for_each(|factor| self.count(factor));
-            }
-            Code::Reciprocal(x) => {
-                self.divisions += 1;
-                self.count(x);
-            }
-            Code::Root(x, _) => {
-                self.roots += 1;
-                self.count(x);
-            }
-            Code::Function(_, x) => {
-                self.calls += 1;
-                self.count(x);
-            }
-            Code::Read(_) | Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) => {}
-        }
-    }
 }

@@ -3,6 +3,7 @@
 //! A kernel is one small function of generated code. Three rates decide where a value is computed: once per stepper (the
 //! constants), once per solve (the terms), or where it is used.
 
+mod cost;
 mod grid;
 mod kernel;
 mod names;
@@ -14,14 +15,19 @@ use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
 use crate::derive::Formulas;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Factor, Isotropy, Space};
 
+pub use cost::Cost;
 pub use grid::{Grid, Lowering};
-pub use kernel::{Code, Cost, Hoisted, Hoisting, Kernel};
-pub use scalar::{Input, Node, Rate, Scalar, Scalars};
+pub use kernel::{Code, Hoisted, Hoisting, Kernel};
+pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
 pub use stepping::{Solve, StepKernels};
 
 /// More operations than this in one expansion are refused: unrolled code of that size helps nobody.
 const LARGEST_PROGRAM: usize = 60_000;
+
+/// More operations than this in one function are refused: optimising compilers take minutes for them, or give up.
+const LARGEST_KERNEL: usize = 20_000;
 
 /// All kernels of a system.
 pub struct Program<'g> {
@@ -41,11 +47,21 @@ pub struct Program<'g> {
     pub potential: Kernel,
     /// Σ.
     pub inertia: Kernel,
+    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy: what its print in coordinates is made of.
+    pub energy_coefficients: Kernel,
     /// The representing matrices of μ.
     pub momentum_matrix: Kernel,
     /// The components of momentum matrices.
     pub momentum_components: Kernel,
-    /// The matrix of ξ ↦ ξ_Q(q), unless the action is free.
+    /// ℓ(ξ), its gradient and its Hessian, where the Lagrangian is not quadratic.
+    pub velocity: Option<Kernel>,
+    /// The slope A of a kinetic energy that is linear in the velocity too; `None` if there is none.
+    pub gyroscopic: Option<Kernel>,
+    /// The conserved momenta, from q and μ; `None` if there is none.
+    pub conserved: Option<Kernel>,
+    /// What vanishes where the leaves of the configuration lie on their groups, apart from rotations and unit vectors.
+    pub membership: Option<Kernel>,
+    /// The matrix of ξ ↦ ξ_Q(q), unless the action is free, or motions that fix q are asked for.
     pub generator: Option<Kernel>,
     /// The kernels of each substep.
     pub steps: Vec<StepKernels>,
@@ -72,7 +88,8 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
-    let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, expressions);
+    let inverses = inverses(&formulas);
+    let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
     let after = legendre_next(&formulas);
     let names = names::constants(&scalars, &hoisted);
     let constants = kernel::kernel(
@@ -80,7 +97,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         &hoisted.scalars.iter().map(|&scalar| (Shape::scalar(), vec![scalar])).collect::<Vec<_>>(),
         Hoisting::Nothing,
     );
-    let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| stack(scalars, parts);
+    let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| stack(scalars, &replaced(parts, &inverses));
     let program = Program {
         act: outputs(&mut scalars, &formulas.model.action),
         momentum_map: stacked(&formulas.momentum_map, &mut scalars),
@@ -89,9 +106,15 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         legendre_next: stacked(&after, &mut scalars),
         potential: outputs(&mut scalars, &[formulas.potential_energy]),
         inertia: outputs(&mut scalars, &[formulas.inertia]),
+        energy_coefficients: energy_coefficients(&formulas, &mut scalars),
         momentum_matrix: outputs(&mut scalars, &momentum_matrices(&formulas)),
         momentum_components: stacked(&momentum_components(&formulas), &mut scalars),
-        generator: (!formulas.is_free).then(|| generator(&formulas, &mut scalars)),
+        velocity: velocity(&formulas, &mut scalars),
+        gyroscopic: gyroscopic(&formulas, &mut scalars),
+        conserved: conserved(&formulas, &mut scalars),
+        membership: membership(&formulas, &mut scalars),
+        generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed)
+            .then(|| generator(&formulas, &mut scalars)),
         cotangent_lift: lift,
         needs_inertia_inverse: hoisted.scalars.iter().any(|&scalar| uses_inertia_inverse(&scalars, scalar)),
         constants,
@@ -99,12 +122,15 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         steps,
         formulas,
     };
-    let operations = program.cost().total();
-    if operations > LARGEST_PROGRAM {
-        return Err(too_large(
-            &program.formulas,
-            format!("{operations} scalar operations, {LARGEST_PROGRAM} is the most"),
-        ));
+    let whole = program.cost().total();
+    let kernel = program.kernels().into_iter().map(|(_, kernel)| kernel.cost().total()).max().unwrap_or(0);
+    for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
+        if operations > most {
+            return Err(too_large(
+                &program.formulas,
+                format!("{operations} scalar operations{of}, {most} is the most"),
+            ));
+        }
     }
     Ok(program)
 }
@@ -113,16 +139,32 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
 fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     let Some(kick) = &formulas.legendre_kick else { return formulas.legendre_next.clone() };
     let leaves = formulas.model.configurations.iter().zip(&formulas.model.action);
-    let moved: Vec<_> = leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect();
+    let mut moved: Vec<_> = leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect();
+    moved.push((formulas.model.time, formulas.model.time + formulas.model.step_size));
     formulas.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&moved)).collect()
 }
 
 fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
-    let groups: Vec<String> = formulas.model.factors.iter().map(|factor| factor.group.name()).collect();
+    let groups: Vec<String> =
+        formulas.model.factors.iter().map(|factor| factor.group.name(formulas.model.graph)).collect();
     Diagnostic::new(formulas.model.spans.action.place, format!("{} is too large to unroll: {size}", groups.join(" × ")))
-        .help("use a smaller group, or fewer factors")
+        .help("use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller")
         .note("code that keeps its matrix operations for large systems comes with a later version of clebsch")
         .into()
+}
+
+/// F⁻¹ of each factor, by the formula that its group has for it, and log F.
+fn inverses<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let explicit = |(factor, y): (&Factor<'g>, &Expr<'g>)| {
+        let mut replacements = stepping::inverse_by(factor.group, factor.symbol, factor.symbol);
+        replacements.push((*y, factor.group.logarithm(factor.symbol)));
+        replacements
+    };
+    formulas.model.factors.iter().zip(&formulas.symbols.logarithms).flat_map(explicit).collect()
+}
+
+fn replaced<'g>(expressions: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+    expressions.iter().map(|expression| expression.substitute(replacements)).collect()
 }
 
 /// Several expressions, one output each, nothing taken out.
@@ -151,16 +193,105 @@ fn momentum_matrices<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
 
 fn momentum_components<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     let factors = formulas.model.factors.iter().zip(&formulas.symbols.momentum_matrices);
-    factors.map(|(factor, matrix)| matrix.components(factor.group.algebra())).collect()
+    factors.map(|(factor, matrix)| factor.group.components(*matrix)).collect()
 }
 
 /// The rows of ξ ↦ ξ_Q(q) on all components, one row for each entry of the configuration.
 fn generator(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     let columns = crate::derive::generator_columns(&formulas.symbols, &formulas.generator);
     let graph = formulas.model.graph;
-    let shape = Shape::new(columns[0].len(), columns.len());
-    let matrix = graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect());
+    // a factor that moves nothing has its own motion: any momentum of it is one
+    let free = |(factor, from): (&Factor<'_>, usize)| (!factor.moves).then(|| from..from + factor.group.dimension());
+    let offsets = formulas.model.factors.iter().scan(0, |next, factor| {
+        let from = *next;
+        *next += factor.group.dimension();
+        Some((factor, from))
+    });
+    let free: Vec<usize> = offsets.filter_map(free).flatten().collect();
+    let rows = columns[0].len();
+    let entry = |(i, j): (usize, usize)| match i.checked_sub(rows) {
+        Some(extra) => graph.integer((free[extra] == j) as i64),
+        None => columns[j][i],
+    };
+    let shape = Shape::new(rows + free.len(), columns.len());
+    let matrix = graph.stack(shape, shape.positions().map(entry).collect());
     plain(scalars, &[matrix])
+}
+
+/// Σ with its diagonal halved.
+fn energy_coefficients(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+    let (shape, mut entries) = grids(scalars, &[formulas.inertia]).remove(0);
+    for i in 0..shape.rows {
+        let diagonal = i * shape.columns + i;
+        let halved = match scalars.node(entries[diagonal]).clone() {
+            Node::Sum(constant, terms) => {
+                let half = clebsch_symbolic::rational(1, 2);
+                let terms: Vec<_> = terms.into_iter().map(|(term, weight)| (term, weight * &half)).collect();
+                scalars.sum(constant * &half, terms)
+            }
+            _ => scalars.scale(entries[diagonal], clebsch_symbolic::rational(1, 2)),
+        };
+        entries[diagonal] = halved;
+    }
+    kernel::kernel(scalars, &[(shape, entries)], Hoisting::Nothing)
+}
+
+/// ℓ(ξ) with its gradient and its Hessian.
+fn velocity<'g>(formulas: &Formulas<'g>, scalars: &mut Scalars) -> Option<Kernel> {
+    let lagrangian = formulas.energy.general?;
+    let (graph, algebra) = (formulas.model.graph, &formulas.symbols.algebra);
+    let shape = Shape::vector(formulas.inertia.shape().rows);
+    let stacked = |parts: Vec<Expr<'g>>| {
+        let mut row = 0;
+        parts.into_iter().fold(graph.zero(shape), |sum, part| {
+            let placed = part.embed(shape, row, 0);
+            row += part.shape().rows;
+            sum + placed
+        })
+    };
+    let gradient = stacked(algebra.iter().map(|xi| lagrangian.gradient(*xi)).collect());
+    let mut hessian = graph.zero(Shape::square(shape.rows));
+    let mut column = 0;
+    for xi in algebra {
+        hessian = hessian + gradient.jacobian(*xi).embed(Shape::square(shape.rows), 0, column);
+        column += xi.shape().rows;
+    }
+    Some(plain(scalars, &[lagrangian, gradient, hessian]))
+}
+
+/// A, the gradient of A·ξ, in the components of all factors.
+fn gyroscopic(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+    let gradients: Vec<_> =
+        formulas.symbols.algebra.iter().map(|xi| formulas.energy.gyroscopic.gradient(*xi)).collect();
+    gradients.iter().any(|gradient| !identity::vanishes(*gradient)).then(|| stack(scalars, &gradients))
+}
+
+/// The values of the conserved momenta, in one vector. Inverses are those of configurations, by the formulas of their groups.
+fn conserved(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+    let leaves = formulas.model.configurations.iter().filter_map(|leaf| match leaf.space {
+        Space::Group(group) => Some(stepping::inverse_by(group, leaf.symbol, leaf.symbol)),
+        _ => None,
+    });
+    let inverses: Vec<_> = leaves.flatten().collect();
+    let values: Vec<_> =
+        formulas.symmetries.conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
+    (!values.is_empty()).then(|| stack(scalars, &values))
+}
+
+/// The equations of the groups that leaves of the configuration are promised to lie on, in one vector. Those of SO(n) and of the
+/// unit sphere are the runtime's.
+fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+    let equations = formulas.model.configurations.iter().flat_map(|leaf| match leaf.space {
+        Space::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
+        _ => Vec::new(),
+    });
+    let entries: Vec<Scalar> = grids(scalars, &equations.collect::<Vec<_>>())
+        .into_iter()
+        .flat_map(|(_, entries)| entries)
+        .filter(|&entry| !scalars.is_zero(entry))
+        .collect();
+    (!entries.is_empty())
+        .then(|| kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing))
 }
 
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.

@@ -2,9 +2,11 @@
 
 use std::fmt;
 
-use clebsch_symbolic::integer;
+use clebsch_symbolic::{Analytic, integer};
 
-use super::{Code, Cost, Input, Kernel, Program};
+use crate::derive::Solution;
+
+use super::{Callee, Code, Cost, Input, Kernel, Program};
 
 impl Cost {
     /// The sum of two costs.
@@ -50,6 +52,10 @@ impl Program<'_> {
             ("momentum_components".into(), &self.momentum_components),
             ("cotangent_lift".into(), &self.cotangent_lift),
         ];
+        kernels.extend(self.velocity.iter().map(|kernel| ("velocity".to_string(), kernel)));
+        kernels.extend(self.gyroscopic.iter().map(|kernel| ("gyroscopic".to_string(), kernel)));
+        kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
+        kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
         kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
         for (index, step) in self.steps.iter().enumerate() {
             let suffix = self.suffix(index);
@@ -61,15 +67,21 @@ impl Program<'_> {
                 };
                 if let Some(sine_squared) = &solve.sine_squared {
                     kernels.push((of("sine_squared"), sine_squared));
-                    kernels.push((of("closed_form"), &solve.predict));
+                    kernels.extend(solve.predict.iter().map(|kernel| (of("closed_form"), kernel)));
+                    continue;
+                }
+                if solve.solution == Solution::Explicit {
+                    kernels.extend(solve.predict.iter().map(|kernel| (of("explicit"), kernel)));
                     continue;
                 }
                 kernels.push((of("prepare"), &solve.prepare));
-                kernels.push((of("predict"), &solve.predict));
+                kernels.extend(solve.predict.iter().map(|kernel| (of("predict"), kernel)));
                 kernels.push((of("linearize"), &solve.linearize));
             }
             kernels.push((named("increment"), &step.increment));
             kernels.push((named("advance"), &step.advance));
+            kernels.extend(step.rest.iter().map(|kernel| (named("rest_kick"), kernel)));
+            kernels.extend(step.coupled_gradient.iter().map(|kernel| (named("coupled_gradient"), kernel)));
             kernels.extend(step.update.iter().map(|kernel| (named("update"), kernel)));
             if !step.end_is_start {
                 kernels.extend(step.end.iter().map(|kernel| (named("end_kick"), kernel)));
@@ -107,6 +119,13 @@ impl fmt::Display for Program<'_> {
 }
 
 impl Program<'_> {
+    /// The coefficient of ξ_i ξ_j in the kinetic energy as text; `None` where it is zero.
+    pub fn energy_coefficient(&self, i: usize, j: usize) -> Option<String> {
+        let (shape, entries) = &self.energy_coefficients.outputs[0];
+        let code = inlined(&self.energy_coefficients, &entries[i * shape.columns + j]);
+        (code != Code::Number(integer(0))).then(|| self.text(&code, 0))
+    }
+
     /// The text of a code; `place` is 0 in a sum, 1 in a product, 2 below a fraction bar.
     fn text(&self, code: &Code, place: usize) -> String {
         match code {
@@ -143,13 +162,56 @@ impl Program<'_> {
             Code::Reciprocal(x) => format!("(1/{})", self.text(x, 2)),
             Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
             Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
+            Code::Call(callee, arguments) => {
+                let argument = |(_, entries): &(clebsch_symbolic::Shape, Vec<Code>)| {
+                    let entries: Vec<String> = entries.iter().map(|entry| self.text(entry, 0)).collect();
+                    format!("[{}]", entries.join(", "))
+                };
+                let arguments: Vec<String> = arguments.iter().map(argument).collect();
+                format!("{callee}({})", arguments.join(", "))
+            }
+            Code::Output(local, callee, output) => match callee {
+                Callee::Value(_) => format!("t{local}"),
+                Callee::Gradient(_) => format!("t{local}.{}[{},{}]", output.leaf, output.row, output.column),
+                _ => format!("t{local}[{},{}]", output.row, output.column),
+            },
             Code::Function(function, x) => format!("{}({})", function.name(), self.text(x, 0)),
+        }
+    }
+}
+
+/// A code with the shared terms of its kernel put in.
+fn inlined(kernel: &Kernel, code: &Code) -> Code {
+    let inner = |code: &Code| inlined(kernel, code);
+    match code {
+        Code::Local(index) => inner(&kernel.locals[*index]),
+        Code::Sum(constant, terms) => {
+            Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
+        }
+        Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
+        Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
+        Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
+        Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
+        other => other.clone(),
+    }
+}
+
+impl fmt::Display for Callee {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Callee::Analytic(Analytic::Exponential) => f.write_str("exponential"),
+            Callee::Analytic(Analytic::Phi) => f.write_str("phi"),
+            Callee::Analytic(Analytic::Logarithm) => f.write_str("logarithm"),
+            Callee::Inverse => f.write_str("inverse"),
+            Callee::Value(name) => f.write_str(name),
+            Callee::Gradient(name) => write!(f, "gradient of {name}"),
         }
     }
 }
 
 fn read(input: &Input) -> String {
     match input.is_vector {
+        true if input.is_scalar => input.name.clone(),
         true => format!("{}[{}]", input.name, input.row),
         false => format!("{}[{},{}]", input.name, input.row, input.column),
     }

@@ -3,7 +3,7 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 
-use clebsch_symbolic::{Function, One, Rational, Role, Zero, integer, product};
+use clebsch_symbolic::{Analytic, Function, One, Rational, Role, Shape, Zero, integer, product};
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -33,6 +33,47 @@ pub struct Input {
     pub column: usize,
     /// Whether the input is a vector or a scalar, which have one index or none.
     pub is_vector: bool,
+    /// Whether it is a scalar.
+    pub is_scalar: bool,
+}
+
+/// A function of matrices that generated code calls as a whole.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Callee {
+    /// A power series of a matrix.
+    Analytic(Analytic),
+    /// The inverse of a matrix, with pivoting.
+    Inverse,
+    /// A method of the user's.
+    Value(String),
+    /// The gradient method beside it, with one matrix for each argument of the configuration.
+    Gradient(String),
+}
+
+/// A call with its arguments, entry by entry.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Call {
+    /// What is called.
+    pub callee: Callee,
+    /// Its arguments.
+    pub arguments: Vec<(Shape, Vec<Scalar>)>,
+}
+
+/// The identity of a call in its arena.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct CallId(u32);
+
+/// An entry of what a call returns.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Output {
+    /// The leaf of a gradient.
+    pub leaf: usize,
+    /// The row of the entry.
+    pub row: usize,
+    /// Its column.
+    pub column: usize,
+    /// The shape of the returned matrix.
+    pub shape: Shape,
 }
 
 /// A scalar expression.
@@ -52,6 +93,8 @@ pub enum Node {
     Root(Scalar, (i64, i64)),
     /// An elementary function.
     Function(Function, Scalar),
+    /// An entry of what a call returns.
+    Output(CallId, Output),
 }
 
 /// Owns scalars.
@@ -59,6 +102,7 @@ pub enum Node {
 pub struct Scalars {
     nodes: Vec<(Node, Rate)>,
     index: HashMap<Node, Scalar>,
+    calls: Vec<Call>,
 }
 
 impl Scalars {
@@ -270,6 +314,23 @@ impl Scalars {
         self.intern(Node::Function(function, x), rate)
     }
 
+    /// The entries of what a call returns.
+    pub fn call(&mut self, call: Call, leaf: usize, shape: Shape) -> Vec<Scalar> {
+        let rate = self.rate_of(call.arguments.iter().flat_map(|(_, entries)| entries.iter().copied()));
+        let known = self.calls.iter().position(|other| *other == call);
+        let index = known.unwrap_or_else(|| {
+            self.calls.push(call);
+            self.calls.len() - 1
+        });
+        let entry = |(row, column)| Node::Output(CallId(index as u32), Output { leaf, row, column, shape });
+        shape.positions().map(entry).map(|node| self.intern(node, rate)).collect()
+    }
+
+    /// The call behind an identity.
+    pub fn call_of(&self, id: CallId) -> &Call {
+        &self.calls[id.0 as usize]
+    }
+
     /// The scalars that a scalar is made of.
     pub fn children(&self, scalar: Scalar) -> Vec<Scalar> {
         match self.node(scalar) {
@@ -277,6 +338,9 @@ impl Scalars {
             Node::Sum(_, terms) => terms.iter().map(|(term, _)| *term).collect(),
             Node::Product(factors) => factors.iter().map(|(factor, _)| *factor).collect(),
             Node::Reciprocal(x) | Node::Root(x, _) | Node::Function(_, x) => vec![*x],
+            Node::Output(call, _) => {
+                self.call_of(*call).arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
+            }
         }
     }
 }

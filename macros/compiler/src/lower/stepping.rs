@@ -1,11 +1,11 @@
 //! The kernels of a step: kick, solve, move, update.
 
-use clebsch_symbolic::{Chart, Expr, Group, Shape};
+use clebsch_symbolic::{Expr, Group, Shape, identity};
 
 use super::kernel::kernel;
 use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, is_diagonal, plain};
-use crate::derive::{Equation, Formulas, Solution, Substep};
-use crate::model::Side;
+use crate::derive::{Equation, Formulas, Solution, Substep, chart_slope};
+use crate::model::{Factor, Side};
 
 /// The kernels of one substep.
 pub struct StepKernels {
@@ -25,8 +25,14 @@ pub struct StepKernels {
     pub increment: Kernel,
     /// q⁺, from q and the increments.
     pub advance: Kernel,
-    /// M⁺, from M and the increments; `None` if M does not change.
+    /// M⁺, from M and the increments; from q and the increments where the cost couples them; `None` if M does not change.
     pub update: Option<Kernel>,
+    /// Whether M⁺ is made from q and the increments.
+    pub couples: bool,
+    /// −r(q, I) of a cost that couples or has a term that is linear in the velocity, from q.
+    pub rest: Option<Kernel>,
+    /// ∂_q K of a coupled cost for each leaf, from q and the increments.
+    pub coupled_gradient: Option<Kernel>,
 }
 
 /// The kernels of a momentum equation.
@@ -39,12 +45,14 @@ pub struct Solve {
     pub solution: Solution,
     /// What is computed once per solve, one output each.
     pub prepare: Kernel,
-    /// The starting point, or the solution where there is a formula for it.
-    pub predict: Kernel,
+    /// The starting point, or the solution where there is a formula for it; `None` where the inertia changes with the configuration.
+    pub predict: Option<Kernel>,
     /// |a|² of the closed form, which has to be below one.
     pub sine_squared: Option<Kernel>,
     /// ρ(x) and Dρ(x).
     pub linearize: Kernel,
+    /// Whether the equation depends on the configuration or on the time.
+    pub moves: bool,
 }
 
 /// The kernels of all substeps.
@@ -54,6 +62,7 @@ pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mu
     // what serves the inverse Legendre transform alone is never stepped
     for step in steps.iter_mut().skip(formulas.parts()) {
         (step.end, step.start_gradient, step.end_gradient, step.update) = (None, None, None, None);
+        (step.rest, step.coupled_gradient) = (None, None);
     }
     steps
 }
@@ -72,13 +81,31 @@ fn step<'g>(
     let stacked = |parts: &Option<Vec<Expr<'g>>>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
         parts.as_ref().map(|parts| stack(scalars, hoisted, parts))
     };
-    let start = stacked(&substep.start, scalars, hoisted);
-    let end = stacked(&substep.end, scalars, hoisted);
-    let start_gradient =
-        substep.start.as_ref().map(|_| separate(scalars, hoisted, &gradients(substep.lagrangian.start)));
-    let end_gradient = substep.end.as_ref().map(|_| separate(scalars, hoisted, &gradients(substep.lagrangian.end)));
+    // kicks are functions of the time of the configuration; their kernels, of the time at which the whole step starts
+    let model = &formulas.model;
+    let at = |later: Expr<'g>, parts: &Option<Vec<Expr<'g>>>| -> Option<Vec<Expr<'g>>> {
+        let moved = [(model.time, model.time + later)];
+        parts.as_ref().map(|parts| parts.iter().map(|part| part.substitute(&moved)).collect())
+    };
+    let start = stacked(&at(substep.begins, &substep.start), scalars, hoisted);
+    let end = stacked(&at(substep.ends, &substep.end), scalars, hoisted);
+    let gradient = |later: Expr<'g>, potential: Expr<'g>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
+        let gradients = gradients(potential.substitute(&[(model.time, model.time + later)]));
+        let acts = gradients.iter().any(|gradient| !identity::vanishes(*gradient));
+        acts.then(|| separate(scalars, hoisted, &gradients))
+    };
+    let start_gradient = gradient(substep.begins, substep.lagrangian.start, scalars, hoisted);
+    let end_gradient = gradient(substep.ends, substep.lagrangian.end, scalars, hoisted);
+    let couples = substep.other.is_some();
+    let rest = stacked(&substep.rest, scalars, hoisted);
+    let coupled_gradient = substep.lagrangian.couples.then(|| {
+        let moved = increments(formulas);
+        let gradients: Vec<_> =
+            gradients(substep.lagrangian.kinetic).iter().map(|gradient| gradient.substitute(&moved)).collect();
+        separate(scalars, hoisted, &gradients)
+    });
     StepKernels {
-        end_is_start: substep.start == substep.end,
+        end_is_start: substep.start == substep.end && !formulas.is_timed(),
         start,
         end,
         start_gradient,
@@ -86,7 +113,10 @@ fn step<'g>(
         solves,
         increment: increment(formulas, scalars),
         advance: advance(formulas, scalars),
-        update: update(formulas, substep, scalars),
+        update: update(formulas, substep, scalars, hoisted),
+        couples,
+        rest,
+        coupled_gradient,
     }
 }
 
@@ -109,12 +139,12 @@ fn solve<'g>(
     hoisted: &mut Hoisted,
 ) -> Solve {
     let predict = match &equation.closed_form {
-        Some(closed_form) => stack(scalars, hoisted, &[closed_form.coordinates]),
-        None => stack(scalars, hoisted, &predictor(formulas, substep, equation)),
+        Some(closed_form) => Some(stack(scalars, hoisted, &[closed_form.coordinates])),
+        None => predictor(formulas, substep, equation).map(|predictor| stack(scalars, hoisted, &predictor)),
     };
     let sine_squared =
         equation.closed_form.as_ref().map(|closed_form| stack(scalars, hoisted, &[closed_form.sine_squared]));
-    if sine_squared.is_some() {
+    if equation.solution != Solution::Newton {
         return Solve {
             dimension: equation.residual.shape().rows,
             components: components(formulas, equation),
@@ -123,6 +153,7 @@ fn solve<'g>(
             predict,
             sine_squared,
             linearize: kernel(scalars, &[], Hoisting::Nothing),
+            moves: false,
         };
     }
     let residual = grids(scalars, &[equation.residual]).remove(0);
@@ -144,13 +175,14 @@ fn solve<'g>(
         predict,
         sine_squared,
         linearize,
+        moves: equation.moves,
     }
 }
 
 /// For each unknown of the equation, the replacement of the directions by the unit vector of that unknown.
 fn directions<'g>(formulas: &Formulas<'g>, equation: &Equation<'g>) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
     let graph = formulas.model.graph;
-    let symbols: Vec<Expr<'g>> = equation.factors.iter().map(|&k| formulas.symbols.directions[k]).collect();
+    let symbols: Vec<Expr<'g>> = equation.blocks.iter().map(|&i| formulas.symbols.blocks[i].direction).collect();
     let mut all = Vec::new();
     for moving in &symbols {
         for i in 0..moving.shape().rows {
@@ -166,21 +198,16 @@ fn directions<'g>(formulas: &Formulas<'g>, equation: &Equation<'g>) -> Vec<Vec<(
 
 /// The indices of the equation's components among those of all factors.
 fn components(formulas: &Formulas<'_>, equation: &Equation<'_>) -> Vec<usize> {
-    let mut offset = 0;
-    let mut components = Vec::new();
-    for (k, factor) in formulas.model.factors.iter().enumerate() {
-        let dimension = factor.group.dimension();
-        if equation.factors.contains(&k) {
-            components.extend(offset..offset + dimension);
-        }
-        offset += dimension;
-    }
-    components
+    let blocks = equation.blocks.iter().map(|&i| &formulas.symbols.blocks[i]);
+    blocks.flat_map(|block| block.offset..block.offset + block.dimension()).collect()
 }
 
-/// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity: the solution to first order in h.
-fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equation<'g>) -> Vec<Expr<'g>> {
+/// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity: the solution to first order in h. `None` where Σ changes with the configuration.
+fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equation<'g>) -> Option<Vec<Expr<'g>>> {
     let graph = formulas.model.graph;
+    if formulas.inertia_moves() {
+        return None;
+    }
     let components = components(formulas, equation);
     let shape = Shape::square(components.len());
     let block = |matrix: Expr<'g>| {
@@ -188,9 +215,7 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
         graph.stack(shape, shape.positions().map(entry).collect())
     };
     let inertia = block(formulas.inertia);
-    let momenta: Vec<Expr<'g>> = equation.factors.iter().map(|&k| formulas.symbols.momenta[k]).collect();
-    let momentum: Vec<Expr<'g>> =
-        momenta.iter().flat_map(|mu| (0..mu.shape().rows).map(move |i| mu.entry(i, 0))).collect();
+    let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momentum_entry(formulas, component)).collect();
     let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
         true => (0..shape.rows).map(|i| momentum[i] / inertia.entry(i, i).expand()).collect(),
         false => {
@@ -201,38 +226,58 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
         }
     };
     let mut slopes = Vec::new();
-    for &k in &equation.factors {
-        let group = formulas.model.factors[k].group;
-        let (numerator, denominator) = group.chart().slope_at_identity();
-        slopes.extend(std::iter::repeat_n(graph.rational(numerator, denominator * substep.parts), group.dimension()));
+    for &i in &equation.blocks {
+        let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, i);
+        let slope = graph.rational(numerator, denominator * substep.parts);
+        slopes.extend(std::iter::repeat_n(slope, formulas.symbols.blocks[i].dimension()));
     }
     let h = formulas.model.step_size;
-    velocity.into_iter().zip(slopes).map(|(velocity, slope)| slope * h * velocity).collect()
+    Some(velocity.into_iter().zip(slopes).map(|(velocity, slope)| slope * h * velocity).collect())
+}
+
+/// A component of the momentum, counted through all factors.
+fn momentum_entry<'g>(formulas: &Formulas<'g>, mut component: usize) -> Expr<'g> {
+    for mu in &formulas.symbols.momenta {
+        if component < mu.shape().rows {
+            return mu.entry(component, 0);
+        }
+        component -= mu.shape().rows;
+    }
+    formulas.model.graph.integer(0)
 }
 
 /// F − I of each factor, from the chart coordinates.
 fn increment(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let factors = formulas.model.factors.iter().zip(&formulas.symbols.charts);
-    let increments: Vec<_> = factors
-        .map(|(factor, x)| {
-            let (numerator, denominator) = factor.group.chart().increment(factor.group, *x);
-            numerator / denominator
-        })
-        .collect();
+    let increments = (0..formulas.model.factors.len()).map(|k| formulas.symbols.chart_increment(&formulas.model, k));
+    let increments: Vec<_> = increments.collect();
     plain(scalars, &increments)
 }
 
-/// The replacement of each group element by I + D (D for translations).
+/// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
 fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let factors = formulas.model.factors.iter().zip(&formulas.symbols.increments);
-    factors.map(|(factor, increment)| (factor.symbol, from_increment(factor.group, *increment))).collect()
+    let symbols = &formulas.symbols;
+    let factors = formulas.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
+    let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
+        let element = from_increment(factor.group, *increment);
+        let mut replacements = inverse_by(factor.group, factor.symbol, element);
+        replacements.push((*y, factor.group.logarithm(element)));
+        replacements.push((factor.symbol, element));
+        replacements
+    };
+    factors.flat_map(element).collect()
+}
+
+/// The replacement of the letters F⁻¹ and F⁻ᵀ by the explicit inverse of an element.
+pub(super) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    if group.is_translation() || group.is_orthogonal() || group == Group::UnitQuaternions {
+        return Vec::new();
+    }
+    let inverse = group.explicit_inverse(element);
+    vec![(symbol.inverse(), inverse), (symbol.transpose().inverse(), inverse.transpose())]
 }
 
 fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
-    match group.chart() {
-        Chart::Cayley => group.identity(increment.graph()) + increment,
-        Chart::Identity => increment,
-    }
+    if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
 }
 
 /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation.
@@ -242,24 +287,36 @@ fn advance(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     plain(scalars, &images)
 }
 
-/// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one.
-fn update(formulas: &Formulas<'_>, substep: &Substep<'_>, scalars: &mut Scalars) -> Option<Kernel> {
-    if substep.unchanged.iter().all(|unchanged| *unchanged) {
+/// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one; the other trivialisation of ∂_F K where the cost couples.
+fn update(
+    formulas: &Formulas<'_>,
+    substep: &Substep<'_>,
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> Option<Kernel> {
+    let elements = increments(formulas);
+    if let Some(other) = &substep.other {
+        let updates: Vec<_> = other.iter().map(|update| update.substitute(&elements).expand()).collect();
+        return Some(stack(scalars, hoisted, &updates));
+    }
+    if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {
         return None;
     }
-    let elements = increments(formulas);
+    // what is solved for is M − r(I)
+    let momenta = formulas.symbols.momenta.iter().enumerate();
+    let momenta = momenta.map(|(k, mu)| substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]));
     let updates: Vec<_> = formulas
         .model
         .factors
         .iter()
-        .zip(&formulas.symbols.momenta)
+        .zip(momenta)
         .zip(&substep.unchanged)
         .map(|((factor, mu), unchanged)| match (unchanged, factor.side) {
-            (true, _) => *mu,
+            (true, _) => mu,
             (false, Side::Left) => {
-                factor.group.coadjoint(factor.group.inverse(factor.symbol), *mu).substitute(&elements).expand()
+                factor.group.coadjoint(factor.group.inverse(factor.symbol), mu).substitute(&elements).expand()
             }
-            (false, Side::Right) => factor.group.coadjoint(factor.symbol, *mu).substitute(&elements).expand(),
+            (false, Side::Right) => factor.group.coadjoint(factor.symbol, mu).substitute(&elements).expand(),
         })
         .collect();
     Some(super::stack(scalars, &updates))

@@ -3,9 +3,9 @@
 
 use clebsch_symbolic::{Expr, Graph, Role, identity};
 
-use super::action_errors::ascii;
+use super::membership::{Verdict, lies_on};
 use super::{Configuration, Factor, Side, Space};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::Diagnostics;
 use crate::parse::Closure;
 
 /// The action with what it acts on.
@@ -18,10 +18,22 @@ pub(super) struct Action<'a, 'g> {
     pub value: &'a [Expr<'g>],
 }
 
-/// Checks all laws and returns the side of each factor.
-pub(super) fn check(action: &Action, diagnostics: &mut Diagnostics) -> Option<Vec<Side>> {
+/// How a factor acts.
+#[derive(Copy, Clone)]
+pub(super) struct Law {
+    /// Its side.
+    pub side: Side,
+    /// Whether it moves anything.
+    pub moves: bool,
+}
+
+/// Checks all laws and returns how each factor acts.
+pub(super) fn check(action: &Action, diagnostics: &mut Diagnostics) -> Option<Vec<Law>> {
     let before = diagnostics.len();
     action.stays_in_space(diagnostics);
+    if diagnostics.len() > before {
+        return None;
+    }
     if !identity::equal(&action.of_identity(), &action.points()) {
         diagnostics.push(action.identity_moves());
         return None;
@@ -37,18 +49,20 @@ enum Sides {
     Left,
     Right,
     Both,
+    /// It moves nothing.
+    Neither,
 }
 
-/// A factor on which both laws hold takes the side of the others, else left.
-fn settle(sides: &[Sides]) -> Vec<Side> {
+/// A factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none.
+fn settle(sides: &[Sides]) -> Vec<Law> {
     let any = |wanted: Sides| sides.contains(&wanted);
     let open = if any(Sides::Right) && !any(Sides::Left) { Side::Right } else { Side::Left };
     let side = |sides: &Sides| match sides {
         Sides::Left => Side::Left,
         Sides::Right => Side::Right,
-        Sides::Both => open,
+        Sides::Both | Sides::Neither => open,
     };
-    sides.iter().map(side).collect()
+    sides.iter().map(|sides| Law { side: side(sides), moves: *sides != Sides::Neither }).collect()
 }
 
 impl<'g> Action<'_, 'g> {
@@ -85,37 +99,24 @@ impl<'g> Action<'_, 'g> {
     /// A promise about the configuration has to survive the action.
     fn stays_in_space(&self, diagnostics: &mut Diagnostics) {
         for (leaf, &moved) in self.configurations.iter().zip(self.value) {
-            let (norm, fixed, promise) = match leaf.space {
-                Space::Vectors => continue,
-                Space::Unit => (moved.norm_squared(), self.graph.integer(1), "a unit vector".to_string()),
-                Space::Group(group) => {
-                    (moved.transpose() * moved, self.graph.identity(leaf.shape.rows), format!("in {}", group.name()))
-                }
+            let verdict = match leaf.space {
+                Space::Vectors => Verdict::Inside,
+                Space::Unit if identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]) => Verdict::Inside,
+                Space::Unit => Verdict::Outside,
+                Space::Group(group) => lies_on(moved, group),
             };
-            if !identity::equal(&[norm], &[fixed]) {
-                let message =
-                    format!("the action moves `{}` to `{}`, which is not always {promise}", leaf.name, ascii(moved));
-                let plain = match leaf.shape.is_column() {
-                    true => format!("Vector{}", leaf.shape.rows),
-                    false => format!("Matrix{}", leaf.shape.rows),
-                };
-                let error = Diagnostic::new(Place::of(&self.closure.body), message);
-                diagnostics.push(error.help(format!("write `{}: {plain}` if any value is a configuration", leaf.name)));
+            if verdict != Verdict::Inside {
+                diagnostics.push(self.leaves_space(leaf, moved, verdict));
             }
         }
     }
 
     /// The sides on which a factor's composition law holds.
     fn sides(&self, index: usize, diagnostics: &mut Diagnostics) -> Option<Sides> {
-        let Factor { group, symbol, name, span, .. } = &self.factors[index];
+        let Factor { group, symbol, .. } = &self.factors[index];
         let points = self.points();
         if identity::equal(&self.at(&[(index, *symbol)], &points), &points) {
-            diagnostics.push(
-                Diagnostic::new(*span, format!("the factor `{name}: {}` moves nothing", group.name()))
-                    .help(format!("leave `{name}` out of the action"))
-                    .note("a factor that moves no configuration has no side from which it acts"),
-            );
-            return None;
+            return Some(Sides::Neither);
         }
         let (first, second) = (self.element(index, 1), self.element(index, 2));
         let composed = self.at(&[(index, second)], &self.at(&[(index, first)], &points));

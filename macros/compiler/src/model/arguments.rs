@@ -1,10 +1,10 @@
 //! Arguments go by name: the action fixes the names, the other closures use those that they need, in a fixed order.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, Group};
 use syn::ext::IdentExt;
 
 use super::scope::{Missing, Scope, check_reserved};
-use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
+use super::slots::{COST, LAGRANGIAN, POTENTIAL, SYMMETRY, Slot};
 use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::{Argument, Closure, Pattern};
@@ -15,8 +15,14 @@ pub(super) struct Arguments<'d, 'g> {
     pub configuration: &'d Pattern,
     pub element_value: Option<Value<'g>>,
     pub configuration_value: Option<Value<'g>>,
+    /// The symbols that lie on a group.
+    pub members: Vec<(Expr<'g>, Group)>,
     pub step_size: Expr<'g>,
+    pub time: Expr<'g>,
 }
+
+/// The slots that the arguments of a closure take; `None` for one with an error, which was reported.
+pub(super) type Taken = Vec<Option<Slot>>;
 
 /// The two arguments of the action: the group element and the configuration, with their types.
 #[derive(Copy, Clone)]
@@ -77,11 +83,13 @@ impl<'d, 'g> Arguments<'d, 'g> {
     /// The names in the action itself.
     pub fn action_scope(&self, diagnostics: &mut Diagnostics) -> Scope<'g> {
         let mut scope = Scope::default();
+        scope.set_elements(&self.members);
         scope.add_argument(self.element, self.element_value.clone(), diagnostics);
         scope.add_argument(self.configuration, self.configuration_value.clone(), diagnostics);
         let help =
             format!("the action depends on `{}` and `{}` alone", self.element.spell(), self.configuration.spell());
-        scope.add_missing("h".into(), Missing::Foreign { help });
+        scope.add_missing("h".into(), Missing::Foreign { help: help.clone() });
+        scope.add_missing("t".into(), Missing::Foreign { help });
         scope
     }
 
@@ -97,26 +105,54 @@ impl<'d, 'g> Arguments<'d, 'g> {
         self.scope(closure, POTENTIAL, &taken, None, diagnostics)
     }
 
+    /// The pattern of a Lagrangian's velocity, with the meaning of all its arguments.
+    pub fn velocity<'c>(&self, closure: &'c Closure, diagnostics: &mut Diagnostics) -> (Taken, Option<&'c Pattern>) {
+        let taken = self.match_slots(closure, LAGRANGIAN, diagnostics);
+        let position = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
+        (taken, position.map(|position| &closure.arguments[position].pattern))
+    }
+
     /// The names in a Lagrangian, whose last argument is new.
     pub fn lagrangian_scope(
         &self,
         closure: &Closure,
-        velocity: Option<Expr<'g>>,
+        taken: &Taken,
+        velocity: Option<Value<'g>>,
         diagnostics: &mut Diagnostics,
     ) -> Scope<'g> {
-        let taken = self.match_slots(closure, LAGRANGIAN, diagnostics);
-        let mut scope = self.scope(closure, LAGRANGIAN, &taken, velocity, diagnostics);
-        if let Some(velocity) = velocity {
-            scope.set_velocity(velocity);
+        self.scope(closure, LAGRANGIAN, taken, velocity, diagnostics)
+    }
+
+    /// The arguments of an offered symmetry, all of which it needs.
+    pub fn symmetry<'c>(&self, closure: &'c Closure, diagnostics: &mut Diagnostics) -> Option<(Taken, &'c Argument)> {
+        let taken = self.match_slots(closure, SYMMETRY, diagnostics);
+        if taken.contains(&None) {
+            return None;
         }
-        if let Some(position) = taken.iter().position(|slot| *slot == Some(Slot::Configuration)) {
-            let pattern = &closure.arguments[position].pattern;
+        if let Some(slot) = SYMMETRY.iter().find(|slot| !taken.contains(&Some(**slot))) {
+            let name = self.pattern(*slot).map_or("element of its group".into(), |name| format!("`{}`", name.spell()));
+            let offered = taken.iter().position(|slot| *slot == Some(Slot::Offered));
+            let offered = offered.map_or("S: SO<3>".into(), |position| closure.arguments[position].spell());
+            let known = [offered, self.configuration.spell(), self.element.spell()].join(", ");
             diagnostics.push(
-                Diagnostic::later(pattern.place(), "a lagrangian that depends on the configuration")
-                    .help("write the kinetic energy as `lagrangian = |omega| …`, and what depends on the configuration as `potential`"),
+                Diagnostic::new(closure.head, format!("the symmetry has no {name}"))
+                    .help(format!("write `|{known}| …`"))
+                    .note("it moves configurations and group elements together, so it takes both"),
             );
+            return None;
         }
-        scope
+        taken.iter().position(|slot| *slot == Some(Slot::Offered)).map(|position| (taken, &closure.arguments[position]))
+    }
+
+    /// The names in an offered symmetry, whose first argument is new.
+    pub fn symmetry_scope(
+        &self,
+        closure: &Closure,
+        taken: &Taken,
+        element: Option<Value<'g>>,
+        diagnostics: &mut Diagnostics,
+    ) -> Scope<'g> {
+        self.scope(closure, SYMMETRY, taken, element, diagnostics)
     }
 
     /// The scope in which arguments have the values of their slots, and what is left out has a reason.
@@ -125,30 +161,32 @@ impl<'d, 'g> Arguments<'d, 'g> {
         closure: &Closure,
         slots: &[Slot],
         taken: &[Option<Slot>],
-        velocity: Option<Expr<'g>>,
+        introduced: Option<Value<'g>>,
         diagnostics: &mut Diagnostics,
     ) -> Scope<'g> {
         let mut scope = Scope::default();
+        scope.set_elements(&self.members);
         for (argument, slot) in closure.arguments.iter().zip(taken) {
             let value = match slot {
+                Some(Slot::Time) => Some(Value::Matrix(self.time)),
                 Some(Slot::Step) => Some(Value::Matrix(self.step_size)),
                 Some(Slot::Configuration) => self.configuration_value.clone(),
                 Some(Slot::Element) => self.element_value.clone(),
-                Some(Slot::Velocity) => velocity.map(Value::Matrix),
-                _ => None,
+                Some(Slot::Velocity | Slot::Offered) => introduced.clone(),
+                None => None,
             };
             scope.add_argument(&argument.pattern, value, diagnostics);
         }
-        for slot in
-            [Slot::Step, Slot::Configuration, Slot::Element].into_iter().filter(|slot| !taken.contains(&Some(*slot)))
-        {
+        let named = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
+        for slot in named.into_iter().filter(|slot| !taken.contains(&Some(*slot))) {
             let missing = match slots.contains(&slot) {
                 true => Missing::Argument { head: self.head(taken, slots, Some(slot), closure) },
                 false => Missing::Foreign { help: self.dependence(closure, slots) },
             };
-            let names: Vec<String> = match self.pattern(slot) {
-                Some(pattern) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
-                None => vec!["h".into()],
+            let names: Vec<String> = match (self.pattern(slot), slot) {
+                (Some(pattern), _) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
+                (None, Slot::Time) => vec!["t".into()],
+                (None, _) => vec!["h".into()],
             };
             names.into_iter().for_each(|name| scope.add_missing(name, missing.clone()));
         }
@@ -157,9 +195,13 @@ impl<'d, 'g> Arguments<'d, 'g> {
 
     /// What a closure may depend on.
     fn dependence(&self, closure: &Closure, slots: &[Slot]) -> String {
+        let (key, q) = (&closure.key, self.configuration.spell());
         match slots.contains(&Slot::Velocity) {
-            true => format!("the {} depends on the velocity alone", closure.key),
-            false => format!("the {} depends on the configuration `{}` alone", closure.key, self.configuration.spell()),
+            _ if slots.contains(&Slot::Offered) => {
+                format!("the {key} depends on its own element, on `{q}` and on `{}` alone", self.element.spell())
+            }
+            true => format!("the {key} depends on the time `t`, the configuration `{q}` and the velocity alone"),
+            false => format!("the {key} depends on the time `t` and the configuration `{q}` alone"),
         }
     }
 }

@@ -1,14 +1,16 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
-use clebsch_symbolic::{Expr, Group, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use syn::{BinOp, Expr as Syntax, Stmt};
 
 use super::arguments::Arguments;
-use super::elaborate::{Context, Elaborator, shortened};
+use super::elaborate::{Context, Elaborator};
+use super::leaves::{Expected, leaves};
 use super::value::Value;
+use super::velocity::Velocity;
 use super::{Configuration, Discretization, Factor, Kinetic, Spans, Structure, Written};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
-use crate::parse::{self, Closure, Declaration, Pattern, spell};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::parse::{self, Closure, Declaration, spell};
 
 /// Φ_F(q), leaf by leaf.
 pub(super) fn action<'g>(
@@ -21,50 +23,9 @@ pub(super) fn action<'g>(
     let closure = &declaration.action;
     let scope = arguments.action_scope(&mut context.diagnostics);
     let value = Elaborator::new(context, "action", scope).elaborate(&closure.body)?;
-    let configurations = configurations?;
-    let mut leaves = Vec::new();
-    let fits = flatten(&value, structure, configurations, &mut leaves);
-    if let Err((found, expected)) = fits {
-        let body = shortened(&spell(&closure.body));
-        let message = format!("the action gives {found}, but it has to give {expected}");
-        let error = Diagnostic::new(tail(&closure.body).0, message).note(format!(
-            "`{body}` is the new value of `{}`, which has the shape of the old one",
-            arguments.configuration.spell()
-        ));
-        context.diagnostics.push(error);
-        return None;
-    }
-    Some(leaves)
-}
-
-/// Takes a value apart as the configuration nests, or says what was found and what was expected.
-fn flatten<'g>(
-    value: &Value<'g>,
-    structure: &Structure,
-    configurations: &[Configuration<'g>],
-    leaves: &mut Vec<Expr<'g>>,
-) -> Result<(), (String, String)> {
-    match (value, structure) {
-        (Value::Matrix(expr), Structure::Leaf(leaf)) if expr.shape() == configurations[*leaf].shape => {
-            leaves.push(*expr);
-            Ok(())
-        }
-        (Value::Identity(scale), Structure::Leaf(leaf)) if configurations[*leaf].shape.is_square() => {
-            leaves.push(*scale * scale.graph().identity(configurations[*leaf].shape.rows));
-            Ok(())
-        }
-        (Value::Tuple(values), Structure::Tuple(parts)) | (Value::Array(values), Structure::Array(parts))
-            if values.len() == parts.len() =>
-        {
-            values.iter().zip(parts).try_for_each(|(value, part)| flatten(value, part, configurations, leaves))
-        }
-        (value, Structure::Leaf(leaf)) => {
-            let Configuration { name, shape, .. } = &configurations[*leaf];
-            Err((value.describe(), format!("{shape} for `{name}`")))
-        }
-        (value, Structure::Tuple(parts)) => Err((value.describe(), format!("a tuple of {}", parts.len()))),
-        (value, Structure::Array(parts)) => Err((value.describe(), format!("an array of {}", parts.len()))),
-    }
+    let expected: Vec<Expected> = configurations?.iter().map(Expected::point).collect();
+    let old = arguments.configuration.spell();
+    leaves(context, &closure.body, "action", &value, structure, &expected, &old)
 }
 
 /// The cost, or the Lagrangian with its velocity.
@@ -72,15 +33,27 @@ pub(super) fn kinetic<'g>(
     context: &mut Context<'_, 'g>,
     declaration: &Declaration,
     arguments: &Arguments<'_, 'g>,
+    structure: &Structure,
     factors: Option<&[Factor<'g>]>,
 ) -> Option<Kinetic<'g>> {
     match &declaration.kinetic {
         parse::Kinetic::Cost(closure) => cost(context, closure, arguments, factors),
         parse::Kinetic::Lagrangian(closure) => {
             let discretization = declaration.dials.discretization.as_ref();
-            let discretization = discretization.map_or(Discretization::Cayley, |discretization| discretization.value);
-            lagrangian(context, closure, arguments, factors, discretization)
+            let discretization =
+                discretization.map_or_else(|| default_discretization(context.graph, factors), |chosen| chosen.value);
+            lagrangian(context, closure, arguments, structure, factors)
+                .map(|(energy, velocities, name)| Kinetic::Lagrangian { energy, velocities, name, discretization })
         }
+    }
+}
+
+/// The Cayley map where it stays in every factor: projected, it grows beyond use. The exponential elsewhere.
+fn default_discretization(graph: &Graph, factors: Option<&[Factor<'_>]>) -> Discretization {
+    let leaves = |factor: &&Factor<'_>| !factor.group.is_translation() && !factor.group.has_cayley_chart(graph);
+    match factors.is_some_and(|factors| factors.iter().any(|factor| leaves(&factor))) {
+        true => Discretization::Exponential,
+        false => Discretization::Cayley,
     }
 }
 
@@ -114,51 +87,60 @@ fn example_cost(factor: &Factor) -> String {
     }
 }
 
+/// The Lagrangian with the symbols of its velocity and the user's name for it.
 fn lagrangian<'g>(
     context: &mut Context<'_, 'g>,
     closure: &Closure,
     arguments: &Arguments<'_, 'g>,
+    structure: &Structure,
     factors: Option<&[Factor<'g>]>,
-    discretization: Discretization,
-) -> Option<Kinetic<'g>> {
-    let name = closure.arguments.last().map(|argument| argument.pattern.spell()).unwrap_or_default();
-    let velocity = match factors {
-        Some([Factor { group: Group::SpecialOrthogonal(3), .. }]) => {
-            Some(context.graph.symbol(&name, Shape::vector(3), Role::Algebra(0), Property::General))
-        }
-        Some(factors) => {
-            let groups: Vec<String> = factors.iter().map(|factor| factor.group.name()).collect();
-            let what = format!("a lagrangian on {}", groups.join(" x "));
-            let error = Diagnostic::later(closure.key.span(), what)
-                .help("declare a `cost`, the discrete kinetic energy, instead");
-            context.diagnostics.push(error);
-            None
-        }
-        None => None,
-    };
-    let scope = arguments.lagrangian_scope(closure, velocity, &mut context.diagnostics);
+) -> Option<(Expr<'g>, Vec<Expr<'g>>, String)> {
+    let (taken, pattern) = arguments.velocity(closure, &mut context.diagnostics);
+    let velocity = factors.zip(pattern).and_then(|(factors, pattern)| {
+        let graph = context.graph;
+        Velocity { graph, factors }.of(pattern, structure, &mut context.diagnostics)
+    });
+    let value = velocity.as_ref().map(|(value, _)| value.clone());
+    let velocities = velocity.map(|(_, velocities)| velocities);
+    let mut scope = arguments.lagrangian_scope(closure, &taken, value, &mut context.diagnostics);
+    if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
+        scope.set_velocities(velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).collect());
+    }
     let energy = scalar(context, closure, Elaborated { scope, needs: "a Lagrangian is a scalar" })?;
-    let velocity = velocity?;
-    if !energy.depends_on(velocity) {
-        let error =
-            Diagnostic::new(tail(&closure.body).0, format!("the lagrangian does not depend on the velocity `{name}`"));
-        context
-            .diagnostics
-            .push(error.help(format!("add the kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`")));
+    let (velocities, factors, pattern) = (velocities?, factors?, pattern?);
+    let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
+    if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
+        let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
+        let message = format!("the lagrangian does not depend on the velocity `{velocity}`{of}");
+        let example = format!("{velocity}.dot(&(self.inertia * {velocity})) / 2");
+        context.diagnostics.push(
+            Diagnostic::new(tail(&closure.body).0, message).help(format!("add the kinetic energy, as in `{example}`")),
+        );
         return None;
     }
-    Some(Kinetic::Lagrangian { energy, velocity, name, discretization })
+    Some((energy, velocities, pattern.spell()))
 }
 
-/// V(q).
+/// V(t, q); an opaque one is known by the name of its method alone.
 pub(super) fn potential<'g>(
     context: &mut Context<'_, 'g>,
     declaration: &Declaration,
     arguments: &Arguments<'_, 'g>,
+    configurations: Option<&[Configuration<'g>]>,
 ) -> Option<Expr<'g>> {
-    let closure = declaration.potential.as_ref()?;
-    let scope = arguments.potential_scope(closure, &mut context.diagnostics);
-    scalar(context, closure, Elaborated { scope, needs: "an energy is a scalar" })
+    match declaration.potential.as_ref()? {
+        parse::Potential::Closure(closure) => {
+            let scope = arguments.potential_scope(closure, &mut context.diagnostics);
+            scalar(context, closure, Elaborated { scope, needs: "an energy is a scalar" })
+        }
+        parse::Potential::Opaque(opaque) => {
+            let time = opaque.takes_time.then_some(arguments.time);
+            let points = configurations?.iter().map(|leaf| leaf.symbol);
+            let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
+            let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+            Some(context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
+        }
+    }
 }
 
 /// What a scalar closure is elaborated with.
@@ -198,6 +180,7 @@ fn to_scalar(tail: &Syntax, value: &Value) -> Option<String> {
         Value::Matrix(expr) if expr.shape().is_column() => Some(format!("take a component, as in `{text}[0]`")),
         Value::Matrix(expr) if expr.shape().is_square() => Some(format!("take the trace, as in `{text}.trace()`")),
         Value::Matrix(_) => Some(format!("take an entry, as in `{text}[(0, 0)]`")),
+        Value::Quaternion(_) => Some(format!("take its scalar part, as in `{text}.scalar()`")),
         Value::Array(_) => Some(format!("add its entries, as in `{text}.sum()`")),
         _ => None,
     }
@@ -224,7 +207,7 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
 }
 
 /// The expression that gives a body its value, and where it is.
-fn tail(body: &Syntax) -> (Place, &Syntax) {
+pub(super) fn tail(body: &Syntax) -> (Place, &Syntax) {
     match body {
         Syntax::Block(block) => match block.block.stmts.last() {
             Some(Stmt::Expr(value, None)) => tail(value),
@@ -236,46 +219,19 @@ fn tail(body: &Syntax) -> (Place, &Syntax) {
     }
 }
 
-/// The name of each leaf: the pattern's names, with accessors where one name stands for several leaves.
-pub(super) fn leaf_names(
-    pattern: &Pattern,
-    structure: &Structure,
-    diagnostics: &mut Diagnostics,
-) -> Option<Vec<String>> {
-    match (pattern, structure) {
-        (Pattern::Name(ident), _) => {
-            let name = syn::ext::IdentExt::unraw(ident).to_string();
-            Some(structure.accessors().into_iter().map(|accessor| format!("{name}{accessor}")).collect())
-        }
-        (Pattern::Tuple(patterns, _), Structure::Tuple(parts)) if patterns.len() == parts.len() => {
-            let names: Option<Vec<Vec<String>>> =
-                patterns.iter().zip(parts).map(|(pattern, part)| leaf_names(pattern, part, diagnostics)).collect();
-            names.map(|names| names.into_iter().flatten().collect())
-        }
-        (Pattern::Tuple(patterns, place), structure) => {
-            let is = match structure {
-                Structure::Leaf(_) => "no tuple".to_string(),
-                Structure::Tuple(parts) => format!("a tuple of {}", parts.len()),
-                Structure::Array(parts) => format!("an array of {}", parts.len()),
-            };
-            let message = format!("`{}` has {} names, but its type is {is}", pattern.spell(), patterns.len());
-            diagnostics
-                .push(Diagnostic::new(*place, message).help("write one name, or as many as the tuple has parts"));
-            None
-        }
-    }
-}
-
 /// The bodies as they were written.
 pub(super) fn spans(declaration: &Declaration) -> Spans {
-    let written = |closure: &Closure| Written {
-        place: Place::of(&closure.body),
-        text: spell(&closure.body),
-        arguments: closure.spell_head(),
+    let potential = match &declaration.potential {
+        Some(parse::Potential::Closure(closure)) => Some(written(closure)),
+        Some(parse::Potential::Opaque(opaque)) => {
+            Some(Written { place: opaque.place, text: opaque.spell(), arguments: String::new() })
+        }
+        None => None,
     };
-    Spans {
-        action: written(&declaration.action),
-        kinetic: written(declaration.kinetic.closure()),
-        potential: declaration.potential.as_ref().map(written),
-    }
+    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), potential }
+}
+
+/// A closure's body as it was written.
+pub(super) fn written(closure: &Closure) -> Written {
+    Written { place: Place::of(&closure.body), text: spell(&closure.body), arguments: closure.spell_head() }
 }

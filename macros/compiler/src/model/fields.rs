@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Graph, Property, Role, Shape};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt;
@@ -27,6 +27,11 @@ pub(super) struct Fields<'g> {
 }
 
 impl<'g> Fields<'g> {
+    /// No fields at all.
+    pub fn none() -> Fields<'g> {
+        Fields { known: BTreeMap::new(), parameters: Vec::new(), scalar: ScalarType::F64 }
+    }
+
     /// The value of a field: `None` if there is no such field, `Some(None)` if it has an error of its own.
     pub fn value(&self, name: &str) -> Option<&Option<Value<'g>>> {
         self.known.get(name)
@@ -79,8 +84,8 @@ pub(super) fn read<'g>(
             }
         };
         let value = parameter.as_ref().map(|parameter| {
-            let symbols: Vec<Expr<'g>> = parameter.leaves.iter().map(|leaf| leaf.symbol).collect();
-            Value::nested(&parameter.structure, &symbols)
+            let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
+            Value::nested(&parameter.structure, &leaves)
         });
         leaf_count += parameter.as_ref().map_or(0, |parameter| parameter.leaves.len());
         parameters.extend(parameter);
@@ -143,6 +148,12 @@ fn explain(field: &Field, error: Option<Diagnostic>) -> Diagnostic {
             Some("write `f64`".to_string())
         }
         "Unit" => Some("write `#[clebsch(unit)]` before the field, and the vector itself as its type".to_string()),
+        "Quaternion" | "UnitQuaternion" => {
+            let field = field.name();
+            Some(format!(
+                "write `Vector4<f64>`, and `Quaternion::new(self.{field}.w, self.{field}.x, self.{field}.y, self.{field}.z)` in the closure"
+            ))
+        }
         _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".to_string()),
         _ => hint(&name),
     };
@@ -212,8 +223,7 @@ fn check_promise(promise: Promise, span: Span, shape: Shape, field: &Field) -> R
 /// Where each field is first read: `self.name` anywhere in a closure, macros included.
 fn first_uses(declaration: &Declaration) -> BTreeMap<String, Span> {
     let mut uses = BTreeMap::new();
-    let closures = [Some(&declaration.action), Some(declaration.kinetic.closure()), declaration.potential.as_ref()];
-    for closure in closures.into_iter().flatten() {
+    for closure in declaration.closures() {
         collect_uses(closure.body.to_token_stream(), &mut uses);
     }
     uses

@@ -3,150 +3,149 @@
 mod action_errors;
 mod action_laws;
 mod arguments;
+mod chart;
 mod closures;
+mod declared;
 mod elaborate;
 mod fields;
 mod groups;
+mod leaves;
+mod membership;
 mod outline;
 mod print;
+mod quaternion;
 mod scalar;
 mod scope;
 mod sizes;
 mod slots;
 mod spaces;
 mod structure;
+mod symmetries;
+#[cfg(test)]
+mod tests;
+mod typed;
 mod types;
 mod value;
 mod vectors;
+mod velocity;
 
-pub use crate::parse::{Discretization, Emit, Order, Promise};
+pub use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise};
 pub use outline::{Outline, outline};
 pub use structure::Structure;
 pub use types::*;
 
-use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
-use self::action_laws::Action;
-use self::arguments::{Arguments, TypedArguments};
+use self::action_laws::{Action, Law};
+use self::arguments::Arguments;
+use self::declared::DeclaredGroups;
 use self::elaborate::Context;
-use self::spaces::{Product, SpaceType};
-use self::value::Value;
+use self::groups::Names;
+use self::symmetries::System;
+use self::typed::Typed;
 use crate::diagnostic::Diagnostics;
-use crate::parse::{Declaration, Pattern};
+use crate::parse::{Declaration, Potential};
 
 /// The model of a declaration.
 pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
+    let declared = DeclaredGroups::read(graph, &declaration.groups, &mut diagnostics);
+    // a type cannot name a group that has an error
+    diagnostics.propagate(())?;
+    let names = Names { generics: &declaration.generics, declared: &declared };
+    let mut diagnostics = Diagnostics::new();
     let types = arguments::of_action(&declaration.action, &mut diagnostics);
-    let generics = &declaration.generics;
-    let groups = types.and_then(|types| spaces::read_groups(types.group, generics, &mut diagnostics));
-    let spaces = types.and_then(|types| spaces::read_spaces(types.space, generics, &mut diagnostics));
+    let groups = types.and_then(|types| spaces::read_groups(types.group, names, &mut diagnostics));
+    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names, &mut diagnostics));
     let scalars: Vec<Option<&syn::Type>> =
         spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
     let fields = fields::read(graph, declaration, &scalars, &mut diagnostics);
-    let (Some(TypedArguments { element, configuration, .. }), Some(groups), Some(spaces)) = (types, groups, spaces)
-    else {
-        return diagnostics.propagate(()).and(Err(Diagnostics::new()));
-    };
-
-    let factors = factors(graph, element, &groups, &mut diagnostics);
-    let configurations = configurations(graph, configuration, &spaces, &mut diagnostics);
-    let nested = |structure: &Structure, symbols: Option<Vec<Expr<'g>>>| {
-        symbols.map(|symbols| Value::nested(structure, &symbols))
-    };
+    let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
+    let typed = Typed::new(graph, types, groups, spaces, &mut diagnostics);
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
-    let arguments = Arguments {
-        element,
-        configuration,
-        element_value: nested(
-            &groups.structure,
-            factors.as_ref().map(|factors| factors.iter().map(|factor| factor.symbol).collect()),
-        ),
-        configuration_value: nested(
-            &spaces.structure,
-            configurations.as_ref().map(|leaves| leaves.iter().map(|leaf| leaf.symbol).collect()),
-        ),
-        step_size,
-    };
-
+    let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
+    let arguments = typed.arguments(types, step_size, time);
     let mut context = Context { graph, fields: &fields, constants: Vec::new(), diagnostics };
-    let action = closures::action(&mut context, declaration, &arguments, &spaces.structure, configurations.as_deref());
-    let kinetic = closures::kinetic(&mut context, declaration, &arguments, factors.as_deref());
-    let potential = closures::potential(&mut context, declaration, &arguments);
+    let formulas = Formulas::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, mut diagnostics, .. } = context;
-
-    let sides = match (&action, &factors, &configurations) {
-        (Some(value), Some(factors), Some(configurations)) => {
-            let action = Action { graph, closure: &declaration.action, factors, configurations, value };
-            action_laws::check(&action, &mut diagnostics)
-        }
-        _ => None,
-    };
+    declared.check_used(&mut diagnostics);
+    chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &mut diagnostics);
     diagnostics.propagate(())?;
-    let (Some(mut factors), Some(configurations), Some(action), Some(sides), Some(kinetic)) =
-        (factors, configurations, action, sides, kinetic)
+    // by construction: what is missing has an error, and there were none
+    let (Some(formulas), Some(mut factors), Some(configurations)) = (formulas, typed.factors, typed.configurations)
     else {
-        // by construction: what is missing has an error, and there were none
         return Err(Diagnostics::new());
     };
-    factors.iter_mut().zip(sides).for_each(|(factor, side)| factor.side = side);
+    for (factor, law) in factors.iter_mut().zip(formulas.laws) {
+        (factor.side, factor.moves) = (law.side, law.moves);
+    }
     let dials = &declaration.dials;
     Ok(Model {
         graph,
-        item: Item {
-            ident: declaration.ident.clone(),
-            vis: declaration.vis.clone(),
-            generics: declaration.generics.clone(),
-            scalar: fields.scalar,
-            krate: dials.krate.clone().unwrap_or_else(|| syn::parse_quote!(::clebsch)),
-        },
+        item: item(declaration, fields.scalar),
         parameters: fields.parameters,
         constants,
         step_size,
+        time,
         factors,
-        element: groups.structure,
+        element: typed.element,
         configurations,
-        configuration: spaces.structure,
-        action,
-        kinetic,
-        potential,
+        configuration: typed.configuration,
+        action: formulas.action,
+        kinetic: formulas.kinetic,
+        potential: formulas.potential,
+        opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
+        symmetries: formulas.symmetries,
+        isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
+        chart: dials.chart.as_ref().map(|chart| chart.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
         emit: dials.emit,
         spans: closures::spans(declaration),
     })
 }
 
-/// The factors of the group, the side of each still open.
-fn factors<'g>(
-    graph: &'g Graph,
-    pattern: &Pattern,
-    groups: &Product<Group>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Vec<Factor<'g>>> {
-    let names = closures::leaf_names(pattern, &groups.structure, diagnostics)?;
-    let mut factors = Vec::new();
-    for (&(group, ty), (name, accessor)) in
-        groups.leaves.iter().zip(names.into_iter().zip(groups.structure.accessors()))
-    {
-        let role = Role::Element(factors.len());
-        let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
-        factors.push(Factor { group, symbol, name, side: Side::Left, accessor, span: spaces::span_of(ty) });
-    }
-    Some(factors)
+/// What the closures give.
+struct Formulas<'g> {
+    action: Vec<Expr<'g>>,
+    laws: Vec<Law>,
+    kinetic: Kinetic<'g>,
+    potential: Option<Expr<'g>>,
+    symmetries: Vec<OfferedSymmetry<'g>>,
 }
 
-fn configurations<'g>(
-    graph: &'g Graph,
-    pattern: &Pattern,
-    spaces: &Product<SpaceType>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Vec<Configuration<'g>>> {
-    let names = closures::leaf_names(pattern, &spaces.structure, diagnostics)?;
-    let mut configurations = Vec::new();
-    for ((leaf, _), (name, accessor)) in spaces.leaves.iter().zip(names.into_iter().zip(spaces.structure.accessors())) {
-        let role = Role::Configuration(configurations.len());
-        let symbol = graph.symbol(&name, leaf.shape, role, leaf.property());
-        configurations.push(Configuration { symbol, name, space: leaf.space, shape: leaf.shape, accessor });
+impl<'g> Formulas<'g> {
+    /// Elaborates all closures, so that each reports its errors; `None` if one has an error.
+    fn read(
+        context: &mut Context<'_, 'g>,
+        declaration: &Declaration,
+        arguments: &Arguments<'_, 'g>,
+        typed: &Typed<'g>,
+        names: Names,
+    ) -> Option<Formulas<'g>> {
+        let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
+        let action = closures::action(context, declaration, arguments, &typed.configuration, configurations);
+        let kinetic = closures::kinetic(context, declaration, arguments, &typed.element, factors);
+        let potential = closures::potential(context, declaration, arguments, configurations);
+        let (action, factors, configurations) = (action?, factors?, configurations?);
+        let (graph, closure) = (context.graph, &declaration.action);
+        let laws = action_laws::check(
+            &Action { graph, closure, factors, configurations, value: &action },
+            &mut context.diagnostics,
+        );
+        let (element, configuration) = (&typed.element, &typed.configuration);
+        let system = System { arguments, names, element, factors, configuration, configurations, action: &action };
+        let symmetries = symmetries::read(context, &system, &declaration.symmetries);
+        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries })
     }
-    Some(configurations)
+}
+
+/// The user's struct, as generated code has to name it.
+fn item(declaration: &Declaration, scalar: ScalarType) -> Item {
+    Item {
+        ident: declaration.ident.clone(),
+        vis: declaration.vis.clone(),
+        generics: declaration.generics.clone(),
+        scalar,
+        krate: declaration.dials.krate.clone().unwrap_or_else(|| syn::parse_quote!(::clebsch)),
+    }
 }

@@ -1,11 +1,13 @@
 //! What a declaration with errors still says: the types that its integrator would have.
 
-use clebsch_symbolic::{Group, Shape};
+use clebsch_symbolic::{Graph, Group, Shape};
 use quote::ToTokens;
 
+use super::declared::DeclaredGroups;
+use super::groups::Names;
 use super::{ScalarType, Structure, arguments, spaces};
 use crate::diagnostic::Diagnostics;
-use crate::parse::Declaration;
+use crate::parse::{Argument, Declaration, Pattern, Potential};
 
 /// The types of an integrator, without its mathematics.
 pub struct Outline {
@@ -17,23 +19,38 @@ pub struct Outline {
     pub configuration: Structure,
     /// The shapes of the leaves of the configuration.
     pub shapes: Vec<Shape>,
+    /// Which leaves of the configuration are quaternions.
+    pub quaternions: Vec<bool>,
+    /// Whether a closure takes the time.
+    pub takes_time: bool,
     /// The scalar, as far as it can be told.
     pub scalar: ScalarType,
 }
 
 /// The outline of a declaration whose action has readable types.
-pub fn outline(declaration: &Declaration) -> Option<Outline> {
+pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let mut ignored = Diagnostics::new();
+    let declared = DeclaredGroups::read(graph, &declaration.groups, &mut ignored);
+    let names = Names { generics: &declaration.generics, declared: &declared };
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
-    let groups = spaces::read_groups(types.group, &declaration.generics, &mut ignored)?;
-    let spaces = spaces::read_spaces(types.space, &declaration.generics, &mut ignored)?;
+    let groups = spaces::read_groups(types.group, names, &mut ignored)?;
+    let spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
     Some(Outline {
         element: groups.structure,
         groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
         configuration: spaces.structure,
         shapes: spaces.leaves.iter().map(|(space, _)| space.shape).collect(),
+        quaternions: spaces.leaves.iter().map(|(space, _)| space.is_quaternion).collect(),
+        takes_time: takes_time(declaration),
         scalar: scalar(declaration),
     })
+}
+
+/// Whether a closure has an argument `t`, or an opaque potential takes the time.
+fn takes_time(declaration: &Declaration) -> bool {
+    let is_time = |argument: &Argument| matches!(&argument.pattern, Pattern::Name(ident) if ident == "t");
+    let opaque = matches!(&declaration.potential, Some(Potential::Opaque(opaque)) if opaque.takes_time);
+    opaque || declaration.closures().any(|closure| closure.arguments.iter().any(is_time))
 }
 
 /// The first type parameter, or `f32` where the dial or a field says so, or `f64`.

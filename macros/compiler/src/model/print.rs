@@ -2,8 +2,13 @@
 
 use std::fmt;
 
+use clebsch_symbolic::Expr;
+
 use super::scalar::spell_scalar;
-use super::{Configuration, Discretization, Factor, Kinetic, Model, Order, Parameter, Promise, Side, Space};
+use super::{
+    ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter,
+    Promise, Side, Space,
+};
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -27,6 +32,13 @@ impl fmt::Display for Model<'_> {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
             None => writeln!(f, "  potential  none")?,
         }
+        self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
+        if self.isotropy == Isotropy::Free {
+            writeln!(f, "  isotropy   {}", self.isotropy)?;
+        }
+        if let Some(chart) = self.chart {
+            writeln!(f, "  chart      {chart}")?;
+        }
         writeln!(f, "  order      {}", self.order)
     }
 }
@@ -49,7 +61,11 @@ impl fmt::Display for Parameter<'_> {
 
 impl fmt::Display for Factor<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "factor {}: {}, {}", self.name, self.group.name(), self.side)
+        write!(f, "factor {}: {}, ", self.name, self.group.name(self.symbol.graph()))?;
+        match self.moves {
+            true => write!(f, "{}", self.side),
+            false => f.write_str("moves nothing"),
+        }
     }
 }
 
@@ -59,8 +75,22 @@ impl fmt::Display for Configuration<'_> {
         match self.space {
             Space::Vectors => Ok(()),
             Space::Unit => f.write_str(", unit"),
-            Space::Group(group) => write!(f, " in {}", group.name()),
+            Space::Group(group) => write!(f, " in {}", group.name(self.symbol.graph())),
         }
+    }
+}
+
+impl fmt::Display for OfferedSymmetry<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let images: Vec<String> = self.configurations.iter().chain(&self.elements).map(Expr::to_string).collect();
+        write!(
+            f,
+            "symmetry {}: {}, {}: {}",
+            self.name,
+            self.group.name(self.symbol.graph()),
+            self.side,
+            images.join(", ")
+        )
     }
 }
 
@@ -86,7 +116,27 @@ impl fmt::Display for Discretization {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Discretization::Cayley => "cayley",
+            Discretization::Exponential => "exponential",
+            Discretization::Projection => "projection",
             Discretization::MoserVeselov => "moser_veselov",
+        })
+    }
+}
+
+impl fmt::Display for ChartChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            ChartChoice::Cayley => "cayley",
+            ChartChoice::Exponential => "exponential",
+        })
+    }
+}
+
+impl fmt::Display for Isotropy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Isotropy::Fixed => "fixed",
+            Isotropy::Free => "free",
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The names that an expression may use, and what is known about those that it may not.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, Group};
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 
@@ -38,7 +38,8 @@ pub(super) struct Scope<'g> {
     names: Vec<(String, Option<Value<'g>>)>,
     arguments: usize,
     missing: Vec<(String, Missing)>,
-    velocity: Option<Expr<'g>>,
+    velocities: Vec<(Expr<'g>, Group)>,
+    elements: Vec<(Expr<'g>, Group)>,
 }
 
 impl<'g> Binding<'g> {
@@ -113,14 +114,24 @@ impl<'g> Scope<'g> {
         self.missing.push((name, missing));
     }
 
-    /// Notes which symbol is the velocity.
-    pub fn set_velocity(&mut self, velocity: Expr<'g>) {
-        self.velocity = Some(velocity);
+    /// Notes which symbols are velocities, each of one factor.
+    pub fn set_velocities(&mut self, velocities: Vec<(Expr<'g>, Group)>) {
+        self.velocities = velocities;
     }
 
-    /// Whether an expression is the velocity.
-    pub fn is_velocity(&self, expr: Expr<'g>) -> bool {
-        self.velocity == Some(expr)
+    /// The group whose velocity an expression is.
+    pub fn group_of_velocity(&self, expr: Expr<'g>) -> Option<Group> {
+        self.velocities.iter().find(|(velocity, _)| *velocity == expr).map(|(_, group)| *group)
+    }
+
+    /// Notes which symbols lie on a group.
+    pub fn set_elements(&mut self, elements: &[(Expr<'g>, Group)]) {
+        self.elements.extend_from_slice(elements);
+    }
+
+    /// The symbols that lie on a group.
+    pub fn elements(&self) -> impl Iterator<Item = (Expr<'g>, Group)> {
+        self.elements.iter().copied()
     }
 
     /// The value of a name, the latest first.

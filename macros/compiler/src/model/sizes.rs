@@ -26,7 +26,9 @@ pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic
     match expr {
         Expr::Lit(literal) => match &literal.lit {
             Lit::Int(number) => match number.base10_parse::<usize>() {
-                Ok(0) => Err(Diagnostic::new(number.span(), "a size of 0 leaves nothing")),
+                Ok(0) => {
+                    Err(Diagnostic::new(number.span(), "a size of 0 leaves nothing").help("write a number from 1 on"))
+                }
                 Ok(value) if value <= LARGEST => Ok(value),
                 _ => Err(Diagnostic::new(number.span(), format!("the size {number} is more than {LARGEST}"))
                     .note("the code of a step is written out at compile time and grows with the size")),

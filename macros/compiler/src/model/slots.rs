@@ -1,5 +1,7 @@
 //! Which argument stands for what: each is found by its name, and they keep their order.
 
+use syn::ext::IdentExt;
+
 use super::arguments::Arguments;
 use super::scope::check_reserved;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
@@ -13,6 +15,8 @@ pub(super) enum Slot {
     Configuration,
     Element,
     Velocity,
+    /// The element of an offered symmetry, which has a type.
+    Offered,
 }
 
 /// The arguments of a cost, in order.
@@ -21,16 +25,19 @@ pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, 
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 /// The arguments of a potential, in order.
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+/// The arguments of an offered symmetry, in order.
+pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 impl<'d> Arguments<'d, '_> {
-    /// The pattern and the meaning of a slot; the velocity has none before it is introduced.
-    fn names(&self, slot: Slot) -> Option<(String, &'static str)> {
+    /// The pattern and the meaning of a slot; a velocity and the element of a symmetry are introduced by their closures.
+    fn names(&self, slot: Slot) -> (String, &'static str) {
         match slot {
-            Slot::Time => None,
-            Slot::Step => Some(("h".into(), "the step")),
-            Slot::Configuration => Some((self.configuration.spell(), "the configuration")),
-            Slot::Element => Some((self.element.spell(), "the group element")),
-            Slot::Velocity => Some(("omega".into(), "the velocity a new name")),
+            Slot::Time => ("t".into(), "the time"),
+            Slot::Step => ("h".into(), "the step"),
+            Slot::Configuration => (self.configuration.spell(), "the configuration"),
+            Slot::Element => (self.element.spell(), "the group element"),
+            Slot::Velocity => ("omega".into(), "the velocity a new name"),
+            Slot::Offered => ("S: SO<3>".into(), "an element of the symmetry, a new name and its group"),
         }
     }
 
@@ -59,13 +66,18 @@ impl<'d> Arguments<'d, '_> {
         {
             taken[last] = Some(Slot::Velocity);
         }
+        let introduces = |argument: &Argument| argument.ty.is_some() || closure.arguments.len() == slots.len();
+        if slots.contains(&Slot::Offered) && closure.arguments.first().is_some_and(introduces) {
+            taken[0] = Some(Slot::Offered);
+        }
         for (position, argument) in closure.arguments.iter().enumerate() {
             self.check_argument(closure, argument, position, &taken, slots, diagnostics);
         }
         self.check_order(closure, &taken, slots, diagnostics);
-        if slots.contains(&Slot::Velocity) && closure.arguments.is_empty() {
+        if slots.contains(&Slot::Velocity) && !taken.contains(&Some(Slot::Velocity)) && !taken.contains(&None) {
             let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
-            diagnostics.push(error.help("write `|omega| …`"));
+            diagnostics
+                .push(error.help(format!("write `{} …`", self.head(&taken, slots, Some(Slot::Velocity), closure))));
         }
         taken
     }
@@ -93,7 +105,7 @@ impl<'d> Arguments<'d, '_> {
         diagnostics: &mut Diagnostics,
     ) {
         let (name, place) = (argument.pattern.spell(), argument.pattern.place());
-        if let Some(ty) = &argument.ty {
+        if let Some(ty) = argument.ty.as_ref().filter(|_| taken[position] != Some(Slot::Offered)) {
             diagnostics.push(
                 Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
                     .help(format!("write `{name}` without `: {}`", spell_type(ty)))
@@ -105,14 +117,22 @@ impl<'d> Arguments<'d, '_> {
                 diagnostics
                     .push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
             }
-            Some(Slot::Time) => diagnostics.push(Diagnostic::later(place, "the time `t`")),
-            Some(Slot::Velocity) => {
-                argument.pattern.names().iter().for_each(|ident| {
-                    check_reserved(ident, "the velocity", diagnostics);
-                });
-            }
+            Some(Slot::Velocity) => self.check_new(argument, "the velocity", diagnostics),
+            Some(Slot::Offered) => self.check_new(argument, "the symmetry", diagnostics),
             Some(_) => {}
             None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
+        }
+    }
+
+    /// A name that a closure introduces is no name of the action.
+    fn check_new(&self, argument: &Argument, what: &str, diagnostics: &mut Diagnostics) {
+        let of_action = || self.element.names().into_iter().chain(self.configuration.names());
+        for ident in argument.pattern.names() {
+            let free = check_reserved(ident, what, diagnostics);
+            if free && of_action().any(|known| known.unraw() == ident.unraw()) {
+                let message = format!("`{ident}` is an argument of the action and cannot be the name of {what}");
+                diagnostics.push(Diagnostic::new(ident.span(), message).help("choose another name"));
+            }
         }
     }
 
@@ -133,21 +153,20 @@ impl<'d> Arguments<'d, '_> {
         };
         let meant = self.meant(position, taken, slots);
         let head = self.head(taken, slots, meant, closure);
-        let error = match meant.and_then(|slot| self.names(slot)) {
+        let error = match meant.map(|slot| self.names(slot)) {
             Some((_, meaning)) if meant == Some(Slot::Velocity) => {
                 error.help(format!("give {meaning}: write `{head}`"))
             }
             Some((known, meaning)) => error.help(format!("the action calls {meaning} `{known}`: write `{head}`")),
             None => error.help(format!("write `{head}`")),
         };
-        let listed = slots.iter().filter_map(|&slot| self.names(slot).map(|(name, meaning)| (slot, name, meaning)));
-        let listed: Vec<String> = listed
-            .map(|(slot, name, meaning)| match slot {
-                Slot::Step => format!("`{name}`"),
-                Slot::Velocity => "a new name (velocity)".to_string(),
-                _ => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
-            })
-            .collect();
+        let describe = |slot: &Slot| match (slot, self.names(*slot)) {
+            (Slot::Time | Slot::Step, (name, _)) => format!("`{name}`"),
+            (Slot::Velocity, _) => "a new name (velocity)".to_string(),
+            (Slot::Offered, _) => "a new name with its group (symmetry)".to_string(),
+            (_, (name, meaning)) => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
+        };
+        let listed: Vec<String> = slots.iter().map(describe).collect();
         let order = if listed.len() > 1 { ", in this order" } else { "" };
         error.note(format!("arguments go by name: {}{order}", listed.join(", ")))
     }
@@ -169,14 +188,14 @@ impl<'d> Arguments<'d, '_> {
         meant: Option<Slot>,
         closure: &Closure,
     ) -> String {
-        let velocity = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
-        let wanted = slots
-            .iter()
-            .filter(|slot| **slot != Slot::Time && (taken.contains(&Some(**slot)) || Some(**slot) == meant));
+        let wanted = slots.iter().filter(|slot| taken.contains(&Some(**slot)) || Some(**slot) == meant);
         let names: Vec<String> = wanted
-            .filter_map(|&slot| match (slot, velocity) {
-                (Slot::Velocity, Some(position)) => Some(closure.arguments[position].pattern.spell()),
-                _ => self.names(slot).map(|(name, _)| name),
+            .map(|&slot| match taken.iter().position(|other| *other == Some(slot)) {
+                Some(position) => match slot {
+                    Slot::Offered => closure.arguments[position].spell(),
+                    _ => closure.arguments[position].pattern.spell(),
+                },
+                None => self.names(slot).0,
             })
             .collect();
         format!("|{}|", names.join(", "))

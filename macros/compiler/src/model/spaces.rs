@@ -4,9 +4,10 @@ use clebsch_symbolic::{Group, Property, Shape};
 use proc_macro2::Span;
 use syn::{Generics, Type};
 
-use super::groups::{group, suggestion, unknown_group};
+use super::groups::{Names, group, suggestion, unknown_group};
+use super::quaternion;
 use super::sizes::{LEAVES, size};
-use super::vectors::{arguments, hint, last_segment, vectors};
+use super::vectors::{Vectors, arguments, hint, last_segment, vectors};
 use super::{Space, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::spell_type;
@@ -23,6 +24,7 @@ pub(super) struct Product<'t, L> {
 pub(super) struct SpaceType<'t> {
     pub space: Space,
     pub shape: Shape,
+    pub is_quaternion: bool,
     /// The scalar, if it is written.
     pub scalar: Option<&'t Type>,
 }
@@ -39,23 +41,19 @@ impl SpaceType<'_> {
 }
 
 /// Reads the type of the group element.
-pub(super) fn read_groups<'t>(
-    ty: &'t Type,
-    generics: &Generics,
-    diagnostics: &mut Diagnostics,
-) -> Option<Product<'t, Group>> {
-    let leaf = |ty: &'t Type| group(ty, generics).unwrap_or_else(|| Err(unknown_group(ty)));
-    read_product(ty, generics, &leaf, diagnostics)
+pub(super) fn read_groups<'t>(ty: &'t Type, names: Names, diagnostics: &mut Diagnostics) -> Option<Product<'t, Group>> {
+    let leaf = |ty: &'t Type| group(ty, names).unwrap_or_else(|| Err(unknown_group(ty, names)));
+    read_product(ty, names.generics, &leaf, diagnostics)
 }
 
 /// Reads the type of the configuration.
 pub(super) fn read_spaces<'t>(
     ty: &'t Type,
-    generics: &Generics,
+    names: Names,
     diagnostics: &mut Diagnostics,
 ) -> Option<Product<'t, SpaceType<'t>>> {
-    let leaf = |ty: &'t Type| read_space(ty, generics);
-    read_product(ty, generics, &leaf, diagnostics)
+    let leaf = |ty: &'t Type| read_space(ty, names);
+    read_product(ty, names.generics, &leaf, diagnostics)
 }
 
 fn read_product<'t, L: Copy>(
@@ -121,46 +119,68 @@ fn too_many(ty: &Type, count: usize) -> Diagnostic {
         .note("the code of a step is written out at compile time and grows with the number of factors")
 }
 
-fn read_space<'t>(ty: &'t Type, generics: &Generics) -> Result<SpaceType<'t>, Diagnostic> {
-    if let Some(found) = group(ty, generics) {
+fn read_space<'t>(ty: &'t Type, names: Names) -> Result<SpaceType<'t>, Diagnostic> {
+    if let Some(found) = group(ty, names) {
         let group = found?;
-        // elements of Translation<n> are vectors, and every vector is one
-        let space = if matches!(group, Group::Translation(_)) { Space::Vectors } else { Space::Group(group) };
-        return Ok(SpaceType { space, shape: group.element_shape(), scalar: None });
+        let (shape, is_quaternion) = (group.element_shape(), group == Group::UnitQuaternions);
+        return Ok(SpaceType { space: space_of(group), shape, is_quaternion, scalar: None });
     }
+    let generics = names.generics;
     if let Some(found) = vectors(ty, generics) {
-        return found.map(|vectors| SpaceType { space: Space::Vectors, shape: vectors.shape, scalar: vectors.scalar });
+        return found.map(|vectors| space(Space::Vectors, &vectors));
     }
     match last_segment(ty) {
         Some(segment) if segment.ident == "Unit" => match arguments(segment).as_slice() {
             [syn::GenericArgument::Type(inner)] => match vectors(inner, generics) {
                 Some(Ok(vectors)) if vectors.shape.is_column() && vectors.shape.rows > 1 => {
-                    Ok(SpaceType { space: Space::Unit, shape: vectors.shape, scalar: vectors.scalar })
+                    Ok(space(Space::Unit, &vectors))
                 }
                 Some(Err(error)) => Err(error),
                 _ => Err(no_unit(ty)),
             },
             _ => Err(no_unit(ty)),
         },
-        Some(segment) if segment.ident == "Quaternion" || segment.ident == "UnitQuaternion" => {
-            Err(Diagnostic::later(Place::of(ty), format!("the space `{}`", spell_type(ty))).help("write `SO<3>`"))
+        Some(segment) if segment.ident == "Quaternion" => {
+            let scalar = match arguments(segment).as_slice() {
+                [] => None,
+                [syn::GenericArgument::Type(scalar)] => Some(scalar),
+                _ => return Err(unknown_space(ty, "Quaternion", names)),
+            };
+            let shape = Shape::vector(quaternion::COORDINATES);
+            Ok(SpaceType { space: Space::Vectors, shape, is_quaternion: true, scalar })
         }
-        segment => Err(unknown_space(ty, &segment.map(|segment| segment.ident.to_string()).unwrap_or_default())),
+        Some(segment) if segment.ident == "UnitQuaternion" => Err(no_unit(ty)),
+        segment => Err(unknown_space(ty, &segment.map(|segment| segment.ident.to_string()).unwrap_or_default(), names)),
     }
 }
 
+fn space<'t>(space: Space, vectors: &Vectors<'t>) -> SpaceType<'t> {
+    SpaceType { space, shape: vectors.shape, is_quaternion: false, scalar: vectors.scalar }
+}
+
+/// The space that the elements of a group make. Elements of `Translation<n>` are vectors, and every vector is one.
+pub(super) fn space_of(group: Group) -> Space {
+    if group.is_translation() { Space::Vectors } else { Space::Group(group) }
+}
+
 fn no_unit(ty: &Type) -> Diagnostic {
+    let text = spell_type(ty);
+    if text.contains("Quaternion") {
+        return Diagnostic::new(Place::of(ty), format!("`{text}` is written as a group"))
+            .help("write `SU<2>`")
+            .note("unit quaternions are the elements of SU(2)");
+    }
     Diagnostic::new(Place::of(ty), format!("`{}` is no sphere", spell_type(ty)))
         .help("write `Unit<Vector3>` for unit vectors")
 }
 
-fn unknown_space(ty: &Type, name: &str) -> Diagnostic {
+fn unknown_space(ty: &Type, name: &str, names: Names) -> Diagnostic {
     let text = spell_type(ty);
     let error = Diagnostic::new(Place::of(ty), format!("unknown space `{text}`"));
     if matches!(name, "f32" | "f64") {
         return error.help("write `Vector1` for a single coordinate");
     }
-    match suggestion(name).map(|group| format!("write `{group}`")).or_else(|| hint(name)) {
+    match suggestion(name, names).map(|group| format!("write `{group}`")).or_else(|| hint(name)) {
         Some(help) => error.help(help),
         None => {
             error.help("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)")

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::Structure;
-use crate::parse::{Discretization, Emit, Order, Promise};
+use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -18,6 +18,8 @@ pub struct Model<'g> {
     pub constants: Vec<Constant<'g>>,
     /// The symbol h.
     pub step_size: Expr<'g>,
+    /// The symbol t: the time of the step's start in a cost, of the configuration elsewhere.
+    pub time: Expr<'g>,
     /// The factors of the group, in order of their leaves.
     pub factors: Vec<Factor<'g>>,
     /// How the factors nest.
@@ -30,8 +32,16 @@ pub struct Model<'g> {
     pub action: Vec<Expr<'g>>,
     /// The kinetic part of the discrete Lagrangian, or the Lagrangian that it is to be made of.
     pub kinetic: Kinetic<'g>,
-    /// V(q); a free body has none.
+    /// V(t, q); a free body has none.
     pub potential: Option<Expr<'g>>,
+    /// The methods behind an opaque potential.
+    pub opaque: Option<Opaque>,
+    /// The symmetries that the user offers; whether cost and potential have them is still open.
+    pub symmetries: Vec<OfferedSymmetry<'g>>,
+    /// What becomes of motions of the group that move no configuration.
+    pub isotropy: Isotropy,
+    /// The chart that the user chooses.
+    pub chart: Option<ChartChoice>,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.
@@ -111,8 +121,10 @@ pub struct Factor<'g> {
     pub symbol: Expr<'g>,
     /// The user's name for the element, `F`, `F[0]`.
     pub name: String,
-    /// The side from which it acts.
+    /// The side from which it acts; if it moves nothing, that of the other factors.
     pub side: Side,
+    /// Whether it moves any configuration.
+    pub moves: bool,
     /// How it is reached in the element, `.0[1]`; empty for a single factor.
     pub accessor: String,
     /// Where its type is written.
@@ -139,6 +151,8 @@ pub struct Configuration<'g> {
     pub space: Space,
     /// Its shape.
     pub shape: Shape,
+    /// Whether its Rust type is a quaternion, whose coordinates are i, j, k, w.
+    pub is_quaternion: bool,
     /// How it is reached in the configuration, `.0[1]`; empty for a single leaf.
     pub accessor: String,
 }
@@ -156,19 +170,38 @@ pub enum Space {
 
 /// The kinetic part of a step's discrete Lagrangian.
 pub enum Kinetic<'g> {
-    /// K(h, q, F) as declared.
+    /// K(t, h, q, F) as declared.
     Cost(Expr<'g>),
     /// To be made from a Lagrangian.
     Lagrangian {
-        /// ℓ(ξ).
+        /// ℓ(t, q, ξ).
         energy: Expr<'g>,
-        /// The symbol of ξ, in the components of the group's basis.
-        velocity: Expr<'g>,
+        /// The symbols of ξ, one for each factor, in the components of its group's basis.
+        velocities: Vec<Expr<'g>>,
         /// The user's name for ξ.
         name: String,
         /// How ξ is made from F and h.
         discretization: Discretization,
     },
+}
+
+/// A symmetry that the user offers: an action of a group on configurations and group elements together, with
+/// Φ_{F′}(q′) = (Φ_F q)′. Whether the discrete Lagrangian has it is for the next stage to find.
+pub struct OfferedSymmetry<'g> {
+    /// The group.
+    pub group: Group,
+    /// The symbol of its element, S.
+    pub symbol: Expr<'g>,
+    /// The user's name for the element.
+    pub name: String,
+    /// The side from which it acts.
+    pub side: Side,
+    /// q′, one expression for each leaf of the configuration.
+    pub configurations: Vec<Expr<'g>>,
+    /// F′, one expression for each factor.
+    pub elements: Vec<Expr<'g>>,
+    /// The closure's body as written.
+    pub written: Written,
 }
 
 /// The bodies of the closures as they were written.

@@ -11,16 +11,23 @@ pub(super) enum Value<'g> {
     Matrix(Expr<'g>),
     /// A scalar times the identity, whose size comes from what it meets.
     Identity(Expr<'g>),
+    /// A quaternion, by its coordinates i, j, k, w.
+    Quaternion(Expr<'g>),
     Tuple(Vec<Value<'g>>),
     Array(Vec<Value<'g>>),
 }
 
 impl<'g> Value<'g> {
-    /// Nests expressions as a structure says.
-    pub fn nested(structure: &Structure, leaves: &[Expr<'g>]) -> Value<'g> {
+    /// A leaf of the configuration, a parameter or a group element.
+    pub fn leaf(expr: Expr<'g>, is_quaternion: bool) -> Value<'g> {
+        if is_quaternion { Value::Quaternion(expr) } else { Value::Matrix(expr) }
+    }
+
+    /// Nests values as a structure says.
+    pub fn nested(structure: &Structure, leaves: &[Value<'g>]) -> Value<'g> {
         let parts = |parts: &[Structure]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
         match structure {
-            Structure::Leaf(leaf) => Value::Matrix(leaves[*leaf]),
+            Structure::Leaf(leaf) => leaves[*leaf].clone(),
             Structure::Tuple(inner) => Value::Tuple(parts(inner)),
             Structure::Array(inner) => Value::Array(parts(inner)),
         }
@@ -45,6 +52,7 @@ impl<'g> Value<'g> {
             Value::Matrix(expr) if expr.shape().is_scalar() => "a scalar".into(),
             Value::Matrix(expr) => expr.shape().to_string(),
             Value::Identity(_) => "a multiple of `I`, of unknown size".into(),
+            Value::Quaternion(_) => "a quaternion".into(),
             Value::Tuple(parts) => format!("a tuple of {}", parts.len()),
             Value::Array(parts) => format!("an array of {}", parts.len()),
         }

@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::keys::{Dials, Keys};
-use super::{Closure, Field};
+use super::{Closure, DeclaredGroup, Field, Opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -18,14 +18,45 @@ pub struct Declaration {
     pub generics: Generics,
     /// Its fields.
     pub fields: Vec<Field>,
+    /// The groups of the user's own, in the order in which they were declared.
+    pub groups: Vec<DeclaredGroup>,
     /// The action of the group on the configurations.
     pub action: Closure,
     /// Where the kinetic energy comes from.
     pub kinetic: Kinetic,
     /// The potential energy; a free body has none.
-    pub potential: Option<Closure>,
+    pub potential: Option<Potential>,
+    /// The symmetries that the user offers.
+    pub symmetries: Vec<Closure>,
     /// Everything else.
     pub dials: Dials,
+}
+
+/// The key `potential`.
+#[derive(Clone, Debug)]
+pub enum Potential {
+    /// A formula.
+    Closure(Closure),
+    /// Two methods of the struct.
+    Opaque(Opaque),
+}
+
+impl Potential {
+    /// The formula, if there is one.
+    pub fn closure(&self) -> Option<&Closure> {
+        match self {
+            Potential::Closure(closure) => Some(closure),
+            Potential::Opaque(_) => None,
+        }
+    }
+
+    /// The methods, if it is made of two.
+    pub fn opaque(&self) -> Option<&Opaque> {
+        match self {
+            Potential::Closure(_) => None,
+            Potential::Opaque(opaque) => Some(opaque),
+        }
+    }
 }
 
 /// The key that gives the kinetic energy.
@@ -35,6 +66,14 @@ pub enum Kinetic {
     Cost(Closure),
     /// `lagrangian = …`, to be discretised.
     Lagrangian(Closure),
+}
+
+impl Declaration {
+    /// All closures over the arguments of the action, the action first.
+    pub fn closures(&self) -> impl Iterator<Item = &Closure> {
+        let potential = self.potential.as_ref().and_then(Potential::closure);
+        [Some(&self.action), Some(self.kinetic.closure()), potential].into_iter().flatten().chain(&self.symmetries)
+    }
 }
 
 impl Kinetic {
@@ -49,7 +88,7 @@ impl Kinetic {
 /// Puts the declaration together, or says what is missing or too much.
 pub(super) fn assemble(
     input: &DeriveInput,
-    keys: Keys,
+    mut keys: Keys,
     fields: Vec<Field>,
     mut diagnostics: Diagnostics,
 ) -> Result<Declaration, Diagnostics> {
@@ -61,7 +100,7 @@ pub(super) fn assemble(
     } else if !nothing_readable && !given("cost") && !given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
-    let kinetic = match (keys.cost, keys.lagrangian) {
+    let kinetic = match (keys.cost.take(), keys.lagrangian.take()) {
         (Some(_), Some(lagrangian)) => {
             diagnostics.push(two_kinetic(&lagrangian.key));
             None
@@ -75,16 +114,18 @@ pub(super) fn assemble(
                 .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
         );
     }
-    let (action, potential, dials) = (keys.action, keys.potential, keys.dials);
+    let Keys { action, potential, symmetries, groups, dials, .. } = keys;
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
             ident: input.ident.clone(),
             vis: input.vis.clone(),
             generics: input.generics.clone(),
             fields,
+            groups,
             action,
             kinetic,
             potential,
+            symmetries,
             dials,
         }),
         _ => Err(diagnostics),

@@ -14,10 +14,33 @@ pub enum Promise {
 /// How the velocity of a step is made from its group element.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Discretization {
-    /// ξ = 2(F − I)(F + I)⁻¹/h.
+    /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the algebra where it leaves it.
     Cayley,
+    /// ξ = log(F)/h.
+    Exponential,
+    /// ξ = P(F − I)/h with the orthogonal projection P to the algebra.
+    Projection,
     /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
     MoserVeselov,
+}
+
+/// The coordinates in which the group element of a step is looked for, where the user chooses them.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum ChartChoice {
+    /// F = (I − Z)⁻¹(I + Z).
+    Cayley,
+    /// F = exp ξ.
+    Exponential,
+}
+
+/// What becomes of motions of the group that move no configuration.
+#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+pub enum Isotropy {
+    /// They are no motions: a momentum has to annihilate them.
+    #[default]
+    Fixed,
+    /// They are motions too: any momentum is one.
+    Free,
 }
 
 /// Where the potential is placed in a step.

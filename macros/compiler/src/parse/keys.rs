@@ -2,8 +2,8 @@
 
 use proc_macro2::{Ident, Span};
 
-use super::Closure;
-use super::dials::{Discretization, Emit, Order};
+use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order};
+use super::{Closure, DeclaredGroup, Potential};
 
 /// A value and where it was written.
 #[derive(Clone, Debug)]
@@ -19,8 +19,14 @@ pub struct Located<T> {
 pub(super) enum Kind {
     /// A closure, and how it usually begins.
     Closure(&'static str),
+    /// A closure, or two methods of the struct.
+    Potential,
+    /// A closure, or a list of them.
+    Symmetry,
     Order,
     Discretization,
+    Chart,
+    Isotropy,
     Emit,
     Scalar,
     Crate,
@@ -33,16 +39,16 @@ pub(super) const KEYS: [(&str, Kind); 22] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
-    ("potential", Kind::Closure("|q| …")),
+    ("potential", Kind::Potential),
+    ("symmetry", Kind::Symmetry),
+    ("isotropy", Kind::Isotropy),
     ("order", Kind::Order),
     ("discretization", Kind::Discretization),
+    ("chart", Kind::Chart),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
     ("crate", Kind::Crate),
-    ("isotropy", Kind::Later),
-    ("chart", Kind::Later),
     ("tolerance", Kind::Later),
-    ("symmetry", Kind::Later),
     ("force", Kind::Later),
     ("force_on", Kind::Later),
     ("constraint", Kind::Later),
@@ -57,10 +63,18 @@ pub(super) const KEYS: [(&str, Kind); 22] = [
 /// The dials that a name sets: the word, and its value or `None` if it comes later.
 pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 4] = [
     ("cayley", Some(Discretization::Cayley)),
+    ("exponential", Some(Discretization::Exponential)),
+    ("projection", Some(Discretization::Projection)),
     ("moser_veselov", Some(Discretization::MoserVeselov)),
-    ("exponential", None),
-    ("projection", None),
 ];
+
+/// Charts by name.
+pub(super) const CHARTS: [(&str, Option<ChartChoice>); 2] =
+    [("cayley", Some(ChartChoice::Cayley)), ("exponential", Some(ChartChoice::Exponential))];
+
+/// What becomes of motions that move nothing, by name.
+pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
+    [("fixed", Some(Isotropy::Fixed)), ("free", Some(Isotropy::Free))];
 
 /// What may be emitted beside the integrator.
 pub(super) const EMITTED: [(&str, Option<Emit>); 2] =
@@ -77,6 +91,10 @@ pub struct Dials {
     pub order: Option<Located<Order>>,
     /// `discretization = cayley`.
     pub discretization: Option<Located<Discretization>>,
+    /// `chart = exponential`.
+    pub chart: Option<Located<ChartChoice>>,
+    /// `isotropy = fixed`.
+    pub isotropy: Option<Located<Isotropy>>,
     /// `emit = [generated]`.
     pub emit: Emit,
     /// `scalar = f32`, for systems without fields.
@@ -91,7 +109,9 @@ pub(super) struct Keys {
     pub action: Option<Closure>,
     pub cost: Option<Closure>,
     pub lagrangian: Option<Closure>,
-    pub potential: Option<Closure>,
+    pub potential: Option<Potential>,
+    pub symmetries: Vec<Closure>,
+    pub groups: Vec<DeclaredGroup>,
     pub dials: Dials,
     given: Vec<String>,
 }
@@ -113,16 +133,5 @@ impl Keys {
     /// Whether no key was given.
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
-    }
-
-    /// Puts a closure in its place.
-    pub fn put(&mut self, closure: Closure) {
-        let place = match closure.key.to_string().as_str() {
-            "action" => &mut self.action,
-            "cost" => &mut self.cost,
-            "lagrangian" => &mut self.lagrangian,
-            _ => &mut self.potential,
-        };
-        *place = Some(closure);
     }
 }

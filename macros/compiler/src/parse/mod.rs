@@ -6,15 +6,20 @@ mod closure;
 mod declaration;
 mod dials;
 mod field;
+mod groups;
 mod keys;
+mod opaque;
 mod print;
 mod spelling;
+mod values;
 
 pub use closure::{Argument, Closure, Pattern};
-pub use declaration::{Declaration, Kinetic};
-pub use dials::{Discretization, Emit, Order, Promise};
+pub use declaration::{Declaration, Kinetic, Potential};
+pub use dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Promise};
 pub use field::Field;
+pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Dials, Located};
+pub use opaque::Opaque;
 pub(crate) use spelling::tokens as spell_tokens;
 pub use spelling::{spell, spell_type};
 

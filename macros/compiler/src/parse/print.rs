@@ -2,18 +2,32 @@
 
 use std::fmt;
 
-use super::{Declaration, Kinetic, spell_type};
+use super::{Declaration, Definition, Kinetic, Potential, spell, spell_type};
 
 impl fmt::Display for Declaration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "declaration {}{}", self.ident, super::spelling::tokens(&self.generics))?;
+        for group in &self.groups {
+            match &group.definition {
+                Definition::Equation(closure) => writeln!(f, "  group {} = {}", group.name, closure.spell())?,
+                Definition::Basis(elements, _) => {
+                    let elements: Vec<String> = elements.iter().map(spell).collect();
+                    writeln!(f, "  group {} = basis([{}])", group.name, elements.join(", "))?;
+                }
+            }
+        }
         writeln!(f, "  action     = {}", self.action.spell())?;
         match &self.kinetic {
             Kinetic::Cost(closure) => writeln!(f, "  cost       = {}", closure.spell())?,
             Kinetic::Lagrangian(closure) => writeln!(f, "  lagrangian = {}", closure.spell())?,
         }
-        if let Some(potential) = &self.potential {
-            writeln!(f, "  potential  = {}", potential.spell())?;
+        match &self.potential {
+            Some(Potential::Closure(closure)) => writeln!(f, "  potential  = {}", closure.spell())?,
+            Some(Potential::Opaque(opaque)) => writeln!(f, "  potential  = {}", opaque.spell())?,
+            None => {}
+        }
+        for symmetry in &self.symmetries {
+            writeln!(f, "  symmetry   = {}", symmetry.spell())?;
         }
         let dials = &self.dials;
         if let Some(order) = &dials.order {
@@ -21,6 +35,12 @@ impl fmt::Display for Declaration {
         }
         if let Some(discretization) = &dials.discretization {
             writeln!(f, "  discretization = {}", discretization.value)?;
+        }
+        if let Some(chart) = &dials.chart {
+            writeln!(f, "  chart      = {}", chart.value)?;
+        }
+        if let Some(isotropy) = &dials.isotropy {
+            writeln!(f, "  isotropy   = {}", isotropy.value)?;
         }
         if dials.emit.generated {
             writeln!(f, "  emit       = [generated]")?;

@@ -1,8 +1,8 @@
 //! Points of the path, and Newton's method with one unknown held fixed.
 
 use super::{LINEARIZATIONS, unsolvable};
-use crate::implicit::{Equation, is_much_smaller, rows, size};
-use crate::linear::{Orientation, eliminate};
+use crate::implicit::{Equation, is_much_smaller, size};
+use crate::linear::{Orientation, eliminate, rows};
 use crate::space::larger;
 use crate::{Error, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
@@ -83,6 +83,14 @@ impl<'a, T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'a, T, E, M> {
         Error::NotConverged { residual: (size(&residual) / self.weight).to_f64(), iterations: self.count }
     }
 
+    /// Whether a residual is no more than the rounding of terms of the size `terms`.
+    ///
+    /// Compared with s μ too: where the Jacobian grows without bound within the last place of ξ, any residual looks like rounding.
+    pub fn is_round_off(&self, residual: &SVector<T, M>, terms: T, s: T) -> bool {
+        let residual = size(residual);
+        residual <= T::from_f64(8.0) * T::EPSILON * terms && residual <= self.weight * s.abs() * T::from_ratio(1, 16)
+    }
+
     /// Distance of a point from the identity, in units of the scale and of s.
     pub fn distance(&self, xi: &SVector<T, M>, s: T) -> T {
         size(xi) / self.scale + s.abs()
@@ -107,22 +115,26 @@ impl<'a, T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'a, T, E, M> {
         let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
         let half = T::from_ratio(1, 2);
         let (mut before, mut residual_before) = (length * half, SVector::from_element(T::zero()));
+        let mut is_first = true;
         while self.is_affordable() {
             let at = self.linearize(&xi, s);
             let (correction, change) = at.correct(parameter)?;
             let terms = larger(self.weight * s.abs(), at.jacobian.max_abs() * size(&xi));
             xi -= correction;
             s -= change;
-            let (now, seen) = (self.distance(&correction, change), T::EPSILON * self.distance(&xi, s));
+            // Only the unknowns that move count: a path that saturates has ξ far below its scale.
+            let moving = if parameter.0 < M { s } else { T::zero() };
+            let (now, seen) = (self.distance(&correction, change), T::EPSILON * self.distance(&xi, moving));
             let ratio = now / before;
-            if now <= seen || ratio <= half && now * ratio * ratio <= seen {
+            // The first is compared with the length of the step, from which the next correction cannot be told.
+            if now <= seen || !is_first && ratio <= half && now * ratio * ratio <= seen {
                 return self.arrive(xi, s, parameter, from);
             }
-            if ratio > half && size(&at.residual) <= T::from_f64(8.0) * T::EPSILON * terms {
+            if ratio > half && self.is_round_off(&at.residual, terms, s) {
                 return self.arrive(xi, s, parameter, from);
             }
             if ratio <= half || is_much_smaller(&at.residual, &residual_before) {
-                (before, residual_before) = (now, at.residual);
+                (before, residual_before, is_first) = (now, at.residual, false);
             } else {
                 return None;
             }

@@ -37,6 +37,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                     .then(|| format!("write `{}[{}]`", parenthesized(&field.base), index.index));
                 self.error(error.maybe_help(help))
             }
+            (Member::Named(name), Value::Quaternion(q)) => self.coordinate(field, q, name),
             (Member::Named(name), base) => {
                 let vector = self.as_matrix(&field.base, base)?;
                 self.component(field, vector, name)

@@ -47,7 +47,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
-    fn statement(&mut self, statement: &Stmt) {
+    pub(super) fn statement(&mut self, statement: &Stmt) {
         match statement {
             Stmt::Local(local) => self.local(local),
             other => {

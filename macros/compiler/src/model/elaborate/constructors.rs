@@ -50,6 +50,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let error = Diagnostic::new(Place::of(&call.func), format!("`{}` is no function", spell(&call.func)));
             return self.error(error.help("write `*` to multiply"));
         };
+        if let [.., owner, method] = path.path.segments.iter().collect::<Vec<_>>().as_slice()
+            && (owner.ident == "Quaternion" || owner.ident == "UnitQuaternion")
+        {
+            return self.quaternion_constructor(call, &method.ident);
+        }
         match self.constructed_shape(path) {
             Some(shape) => self.construct(call, path, shape?),
             None => self.unknown_function(call, path),
@@ -201,9 +206,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn unknown_function(&mut self, call: &ExprCall, path: &ExprPath) -> Option<Value<'g>> {
         let name = path.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-        if path.path.segments.iter().any(|segment| segment.ident == "Quaternion") {
-            return self.error(Diagnostic::later(Place::of(&call.func), "a quaternion"));
-        }
         let error = Diagnostic::new(
             Place::of(&call.func),
             format!("the function `{}` is not known in the {}", spell(&call.func), self.key),

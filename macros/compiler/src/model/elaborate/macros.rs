@@ -1,8 +1,7 @@
 //! `vector![a, b, c]` and `matrix![a, b; c, d]`.
 
 use clebsch_symbolic::{Expr, Shape};
-use proc_macro2::TokenStream;
-use syn::parse::{ParseStream, Parser};
+use syn::parse::ParseStream;
 use syn::{Expr as Syntax, ExprMacro, Macro, Token};
 
 use super::super::sizes::LARGEST;
@@ -30,7 +29,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn rows(&mut self, written: &Macro, vector: bool) -> Option<Value<'g>> {
-        let rows = match read_rows(written.tokens.clone(), vector) {
+        let rows = match read_rows(written, vector) {
             Ok(rows) => rows,
             Err(error) => return self.error(error.into()),
         };
@@ -47,7 +46,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 }
 
 /// Rows separated by semicolons, entries by commas.
-fn read_rows(tokens: TokenStream, single: bool) -> syn::Result<Vec<Vec<Syntax>>> {
+fn read_rows(written: &Macro, single: bool) -> syn::Result<Vec<Vec<Syntax>>> {
     let parser = |stream: ParseStream| {
         let mut rows = vec![Vec::new()];
         while !stream.is_empty() {
@@ -65,5 +64,5 @@ fn read_rows(tokens: TokenStream, single: bool) -> syn::Result<Vec<Vec<Syntax>>>
         rows.retain(|row| !row.is_empty());
         Ok(rows)
     };
-    parser.parse2(tokens)
+    written.parse_body_with(parser)
 }

@@ -6,7 +6,8 @@ use syn::{Expr as Syntax, ExprMethodCall};
 use super::super::value::Value;
 use super::access::is_self;
 use super::operators::parenthesized;
-use super::tables::{Binary, LATER, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Special, Unary};
+use super::quaternions::is_of_quaternions;
+use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Special, Unary};
 use super::{Elaborator, Growth, open_identity};
 use crate::diagnostic::{Diagnostic, Place, nearest};
 use crate::parse::spell;
@@ -22,10 +23,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.error(error.help("write its formula here"));
         }
         let name = call.method.to_string();
-        let Some(&(_, arity, rule)) = METHODS.iter().find(|(method, ..)| *method == name) else {
-            return self.unknown_method(call, &name);
-        };
         let receiver = self.elaborate(&call.receiver);
+        if let Some(Value::Quaternion(q)) = receiver {
+            return self.quaternion_method(call, q);
+        }
+        let Some(&(_, arity, rule)) = METHODS.iter().find(|(method, ..)| *method == name) else {
+            return self.unknown_method(call, &name, receiver);
+        };
         if call.args.len() != arity {
             let plural = if arity == 1 { "" } else { "s" };
             let message = format!("`{name}` has {arity} argument{plural}, not {}", call.args.len());
@@ -39,17 +43,20 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
-    fn unknown_method(&mut self, call: &ExprMethodCall, name: &str) -> Option<Value<'g>> {
-        // its own errors first
-        let _ = self.elaborate(&call.receiver);
+    fn unknown_method(&mut self, call: &ExprMethodCall, name: &str, receiver: Option<Value<'g>>) -> Option<Value<'g>> {
+        if is_of_quaternions(name) {
+            // a receiver with an error of its own may have been a quaternion
+            let found = receiver?.describe();
+            let message = format!("`{}` is {found}, but `{name}` is of a quaternion", spell(&call.receiver));
+            let error = Diagnostic::new(call.method.span(), message);
+            return self
+                .error(error.note("quaternions are the values of `SU<2>`, of `Quaternion`, and what is made of them"));
+        }
         let span = call.method.span();
         let receiver = parenthesized(&call.receiver);
         if let Some((_, reason, help)) = REFUSED.iter().find(|(method, ..)| *method == name) {
             let error = Diagnostic::new(span, format!("`{name}` {reason}, so no {} can use it", self.key));
             return self.error(error.help(help.replace('…', &receiver)));
-        }
-        if LATER.contains(&name) {
-            return self.error(Diagnostic::later(span, format!("the method `{name}`, of groups that come later,")));
         }
         let error = Diagnostic::new(span, format!("unknown method `{name}` in the {}", self.key));
         if NEEDLESS.contains(&name) {
@@ -93,6 +100,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if inverts && a.is_zero() {
             let message = format!("`{}` is zero and has no `{}`", spell(&call.receiver), call.method);
             return self.error(Diagnostic::new(Place::of(&call.receiver), message).note("it would be divided by 0"));
+        }
+        if let Some(group) = self.group_of(a).filter(|_| call.method == "inverse") {
+            let inverse = self.build(call, &[a, a], Growth::Product, || group.inverse(a))?;
+            self.note_inverse(a, inverse);
+            return Some(Value::Matrix(inverse));
         }
         self.build(call, &[a, a], Growth::Product, || make(a)).map(Value::Matrix)
     }

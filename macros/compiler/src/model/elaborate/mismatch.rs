@@ -44,6 +44,15 @@ fn applied(matrix: &Syntax, vector: &str) -> String {
     }
 }
 
+/// An element of SE(n), Aff(n) or Sim(n), a matrix with a row and a column more, times a point.
+pub(super) fn point_moved(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
+    let (f, x) = (parenthesized(&link.left), parenthesized(&link.right));
+    let message = format!("`{f}` is {} and `{x}` is {}: they cannot be multiplied", left.shape(), right.shape());
+    Diagnostic::new(Place::of(link), message)
+        .help(format!("write `{f}.rotation() * {x} + {f}.translation()` to move the point"))
+        .note("the matrix has a last row and column more than the point, (A b; 0 1)")
+}
+
 /// A product whose inner dimensions differ.
 pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
     let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));

@@ -3,6 +3,7 @@
 mod access;
 mod block;
 mod constructors;
+mod equations;
 mod literals;
 mod macros;
 mod methods;
@@ -11,6 +12,7 @@ mod names;
 mod operators;
 mod parts;
 mod powers;
+mod quaternions;
 mod refused;
 mod sequences;
 mod tables;
@@ -19,7 +21,7 @@ mod tests;
 
 use std::collections::HashMap;
 
-use clebsch_symbolic::{Expr, Graph, Shape};
+use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -53,6 +55,8 @@ pub(super) struct Elaborator<'e, 'c, 'g> {
     /// What the closure gives, `potential`.
     pub key: &'e str,
     scope: Scope<'g>,
+    /// Expressions whose values lie on a group.
+    members: HashMap<Expr<'g>, Group>,
     sizes: HashMap<Expr<'g>, Size>,
     depth: usize,
     work: usize,
@@ -81,7 +85,27 @@ enum Growth {
 impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     /// An elaborator for the closure of a key, with the names that its arguments introduce.
     pub fn new(context: &'e mut Context<'c, 'g>, key: &'e str, scope: Scope<'g>) -> Elaborator<'e, 'c, 'g> {
-        Elaborator { context, key, scope, sizes: HashMap::new(), depth: 0, work: 0 }
+        let members = scope.elements().collect();
+        Elaborator { context, key, scope, members, sizes: HashMap::new(), depth: 0, work: 0 }
+    }
+
+    /// The group on which an expression is known to lie.
+    fn group_of(&self, expr: Expr<'g>) -> Option<Group> {
+        self.members.get(&expr).copied()
+    }
+
+    /// The product of two elements of a group is one.
+    fn note_product(&mut self, left: Expr<'g>, right: Expr<'g>, product: Expr<'g>) {
+        if let Some(group) = self.group_of(left).filter(|group| self.group_of(right) == Some(*group)) {
+            self.members.insert(product, group);
+        }
+    }
+
+    /// The inverse of an element of a group is one.
+    fn note_inverse(&mut self, element: Expr<'g>, inverse: Expr<'g>) {
+        if let Some(group) = self.group_of(element) {
+            self.members.insert(inverse, group);
+        }
     }
 
     fn graph(&self) -> &'g Graph {
@@ -236,6 +260,7 @@ fn open_identity(syntax: &Syntax) -> Diagnostic {
 /// How a part of a tuple or an array is reached.
 fn first_part(value: &Value) -> &'static str {
     match value {
+        Value::Quaternion(_) => ".imag()",
         Value::Tuple(_) => ".0",
         _ => "[0]",
     }

@@ -39,7 +39,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let error = Diagnostic::new(ident.span(), "`self` alone is no quantity");
                 self.error(error.help("read a field, as in `self.mass`"))
             }
-            "t" => self.error(Diagnostic::later(ident.span(), "the time `t`")),
             _ if is_constant_name(&name) => self.constant(&ident.clone().into()),
             _ => self.unknown_name(ident, &name),
         }

@@ -1,17 +1,17 @@
 //! The operators `+ - * / %`, unary minus, and the shapes that they need.
 
-use clebsch_symbolic::{Expr, Rational, integer};
+use clebsch_symbolic::{Expr, Group, Rational, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
 use super::super::value::Value;
-use super::mismatch::{no_product, unequal_shapes};
+use super::mismatch::{no_product, point_moved, unequal_shapes};
 use super::{Elaborator, Growth};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::spell;
 
 /// The operators of closures.
 #[derive(Copy, Clone, PartialEq, Eq)]
-enum Operator {
+pub(super) enum Operator {
     Add,
     Subtract,
     Multiply,
@@ -32,7 +32,7 @@ impl Operator {
     }
 
     /// What it does, for messages.
-    fn verb(self) -> &'static str {
+    pub(super) fn verb(self) -> &'static str {
         match self {
             Operator::Add => "added",
             Operator::Subtract => "subtracted",
@@ -81,6 +81,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match (operator, left, right) {
             (_, left @ (Value::Tuple(_) | Value::Array(_)), _) => self.no_matrix(operator, &link.left, &left),
             (_, _, right @ (Value::Tuple(_) | Value::Array(_))) => self.no_matrix(operator, &link.right, &right),
+            (_, left @ Value::Quaternion(_), right) | (_, left, right @ Value::Quaternion(_)) => {
+                self.quaternions(operator, link, left, right)
+            }
             (Operator::Add, left, right) => self.sum(link, left, right, false),
             (Operator::Subtract, left, right) => self.sum(link, left, right, true),
             (Operator::Multiply, left, right) => self.product(link, left, right),
@@ -106,7 +109,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (Value::Identity(scale), Value::Matrix(matrix)) => (self.fitted(&link.right, scale, matrix)?, matrix),
             (Value::Matrix(matrix), Value::Identity(scale)) => (matrix, self.fitted(&link.left, scale, matrix)?),
             (Value::Matrix(left), Value::Matrix(right)) => (left, right),
-            // by construction: tuples and arrays were refused before
+            // by construction: quaternions, tuples and arrays have been dealt with
             _ => return None,
         };
         if left.shape() != right.shape() {
@@ -120,6 +123,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let shape = matrix.shape();
         if shape.is_square() && !shape.is_scalar() {
             return Some(scale * self.graph().identity(shape.rows));
+        }
+        // an element of GL(1) is 1×1, and so is its identity
+        if self.group_of(matrix).is_some() && shape.is_scalar() {
+            return Some(scale);
         }
         let text = spell(other);
         let error = match shape.is_scalar() {
@@ -146,14 +153,20 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 return Some(if other.shape().is_scalar() { Value::Identity(product) } else { Value::Matrix(product) });
             }
             (Value::Matrix(left), Value::Matrix(right)) => (left, right),
-            // by construction: tuples and arrays were refused before
+            // by construction: quaternions, tuples and arrays have been dealt with
             _ => return None,
         };
         let scales = left.shape().is_scalar() || right.shape().is_scalar();
         if !scales && left.shape().columns != right.shape().rows {
-            return self.error(no_product(link, left, right));
+            let affine = self.group_of(left).and_then(Group::linear_part);
+            return self.error(match affine == Some(right.shape().rows) && right.shape().is_column() {
+                true => point_moved(link, left, right),
+                false => no_product(link, left, right),
+            });
         }
-        self.build(at, &[left, right], Growth::Product, || left * right).map(Value::Matrix)
+        let product = self.build(at, &[left, right], Growth::Product, || left * right)?;
+        self.note_product(left, right, product);
+        Some(Value::Matrix(product))
     }
 
     fn quotient(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
@@ -181,7 +194,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Value::Matrix(left) => {
                 self.build(at, &[left, divisor], Growth::Product, || left / divisor).map(Value::Matrix)
             }
-            // by construction: tuples and arrays were refused before
+            // by construction: quaternions, tuples and arrays have been dealt with
             _ => None,
         }
     }
@@ -209,6 +222,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match unary.op {
             UnOp::Neg(_) => match self.elaborate(&unary.expr)? {
                 Value::Identity(scale) => Some(Value::Identity(-scale)),
+                Value::Quaternion(q) => self.build(unary, &[q], Growth::Sum, || -q).map(Value::Quaternion),
                 value => {
                     let matrix = self.as_matrix(&unary.expr, value)?;
                     self.build(unary, &[matrix], Growth::Sum, || -matrix).map(Value::Matrix)

@@ -1,6 +1,6 @@
 //! Powers, roots and norms, and the other methods that are no plain maps of matrices.
 
-use clebsch_symbolic::{Expr, Function, Rational, integer, rational};
+use clebsch_symbolic::{Expr, Function, Group, Rational, Shape, integer, rational};
 use syn::ExprMethodCall;
 
 use super::super::value::Value;
@@ -41,6 +41,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             Special::Norm => self.build(call, &[a, a], Growth::Power(2), || a.norm()).map(Value::Matrix),
             Special::Matrix => self.velocity_matrix(call, a),
+            Special::Rotation | Special::Translation => self.of_affine(special, call, a),
             _ => self.part(special, call, a),
         }
     }
@@ -101,15 +102,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
-    /// `xi.matrix()`, for a velocity of SO(3).
+    /// `xi.matrix()`, for the velocity of one factor.
     fn velocity_matrix(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
-        if self.scope.is_velocity(a) {
-            return self.build(call, &[a], Growth::Sum, || a.hat()).map(Value::Matrix);
+        if let Some(group) = self.scope.group_of_velocity(a) {
+            let matrix = self.build(call, &[a], Growth::Sum, || group.wedge(a))?;
+            return Some(Value::leaf(matrix, group == Group::UnitQuaternions));
         }
         let error = Diagnostic::new(call.method.span(), "`matrix` is of a velocity, the argument of a `lagrangian`");
-        self.error(error.help(format!(
-            "write `{}.cross_matrix()` for the matrix of a cross product",
-            parenthesized(&call.receiver)
-        )))
+        let receiver = parenthesized(&call.receiver);
+        self.error(match a.shape() == Shape::vector(3) {
+            true => error.help(format!("write `{receiver}.cross_matrix()` for the matrix of a cross product")),
+            false => error.note("only the velocity of a single factor has a matrix, an element of its Lie algebra"),
+        })
     }
 }

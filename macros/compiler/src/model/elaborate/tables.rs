@@ -43,6 +43,8 @@ pub(super) enum Special {
     FixedView,
     FirstTwo,
     FirstThree,
+    Rotation,
+    Translation,
     Matrix,
     Map,
     Sum,
@@ -50,7 +52,7 @@ pub(super) enum Special {
 
 /// All methods with their number of arguments.
 #[rustfmt::skip]
-pub(super) const METHODS: [(&str, usize, Rule); 37] = [
+pub(super) const METHODS: [(&str, usize, Rule); 39] = [
     ("transpose",      0, Rule::Any(|a| a.transpose())),
     ("norm_squared",   0, Rule::Any(|a| a.norm_squared())),
     ("norm",           0, Rule::Special(Special::Norm)),
@@ -70,6 +72,8 @@ pub(super) const METHODS: [(&str, usize, Rule); 37] = [
     ("fixed_view",     2, Rule::Special(Special::FixedView)),
     ("xy",             0, Rule::Special(Special::FirstTwo)),
     ("xyz",            0, Rule::Special(Special::FirstThree)),
+    ("rotation",       0, Rule::Special(Special::Rotation)),
+    ("translation",    0, Rule::Special(Special::Translation)),
     ("matrix",         0, Rule::Special(Special::Matrix)),
     ("map",            1, Rule::Special(Special::Map)),
     ("sum",            0, Rule::Special(Special::Sum)),
@@ -113,9 +117,6 @@ pub(super) const REFUSED: [(&str, &str, &str); 19] = [
     ("hypot",      "has no derivative at 0",               "write `(a * a + b * b).sqrt()`"),
     ("cbrt",       "has no derivative at 0",               "write `….powf(1 / 3)` where it is positive"),
 ];
-
-/// Methods of a later version.
-pub(super) const LATER: [&str; 5] = ["rotation", "translation", "scalar", "imag", "conjugate"];
 
 /// Methods by other names.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 //! Tables: an expression and what it means, an expression and what is wrong with it.
 
-use clebsch_symbolic::{Graph, Property, Role, Shape};
+use clebsch_symbolic::{Graph, Property, Role, Shape, identity};
 
 use super::super::arguments::{Arguments, TypedArguments};
 use super::super::value::Value;
@@ -9,12 +9,16 @@ use super::{Context, Elaborator};
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;
 
-/// Elaborates an expression as the body of a cost `|h, (R, q, x), (F, a)|` over a struct with fields of every kind.
+/// Elaborates an expression as the body of a cost `|h, (R, q, x, Q), (F, a)|` over a struct with fields of every kind.
 fn elaborate(expression: &str) -> Result<String, Diagnostics> {
+    with_value(expression, print)
+}
+
+fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, Diagnostics> {
     let source = format!(
         "#[clebsch(
-            action = |(F, a): (SO<3>, Translation<2>), (R, q, x): (SO<3>, Unit<Vector3>, [Vector2; 2])| R,
-            cost   = |h, (R, q, x), (F, a)| {expression},
+            action = |(F, a): (SO<3>, Translation<2>), (R, q, x, Q): (SO<3>, Unit<Vector3>, [Vector2; 2], Quaternion)| R,
+            cost   = |h, (R, q, x, Q), (F, a)| {expression},
         )]
         struct Everything<const K: usize> {{
             mass: f64,
@@ -48,15 +52,38 @@ fn elaborate(expression: &str) -> Result<String, Diagnostics> {
             symbol("R", Shape::square(3), Role::Configuration(0), Property::Orthogonal),
             symbol("q", Shape::vector(3), Role::Configuration(1), Property::Unit),
             Value::Array(vec![point(2, "x[0]"), point(3, "x[1]")]),
+            Value::Quaternion(graph.symbol("Q", Shape::vector(4), Role::Configuration(4), Property::General)),
         ])),
+        members: Vec::new(),
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
+        time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
     };
     let closure = declaration.kinetic.closure();
     let scope = arguments.cost_scope(closure, &mut diagnostics);
     let mut context = Context { graph: &graph, fields: &fields, constants: Vec::new(), diagnostics };
     let value = Elaborator::new(&mut context, "cost", scope).elaborate(&closure.body);
     context.diagnostics.propagate(())?;
-    Ok(print(&value.expect("a value, since there are no errors")))
+    Ok(look(&value.expect("a value, since there are no errors")))
+}
+
+/// The expressions of each line have equal values.
+#[track_caller]
+fn equals(table: &[(&str, &str)]) {
+    let wrong: Vec<&str> =
+        table.iter().filter(|(left, right)| !are_equal(left, right)).map(|(left, _)| *left).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+fn are_equal(left_text: &str, right_text: &str) -> bool {
+    let verdict = with_value(&format!("({left_text}, {right_text})"), |value| {
+        let Value::Tuple(pair) = value else { panic!("a pair is {}", value.describe()) };
+        match (&pair[0], &pair[1]) {
+            (Value::Matrix(left), Value::Matrix(right)) => identity::equal(&[*left], &[*right]),
+            (Value::Quaternion(left), Value::Quaternion(right)) => identity::equal(&[*left], &[*right]),
+            (left, right) => panic!("`{left_text}` is {} and `{right_text}` is {}", left.describe(), right.describe()),
+        }
+    });
+    verdict.unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn print(value: &Value) -> String {
@@ -64,6 +91,7 @@ fn print(value: &Value) -> String {
     match value {
         Value::Matrix(expr) => expr.to_string(),
         Value::Identity(scale) => format!("{scale} of I"),
+        Value::Quaternion(expr) => format!("quaternion {expr}"),
         Value::Tuple(parts) => format!("({})", all(parts)),
         Value::Array(parts) => format!("[{}]", all(parts)),
     }
@@ -225,6 +253,48 @@ fn sequences_and_blocks() {
 
 #[test]
 #[rustfmt::skip]
+fn quaternions() {
+    means(&[
+        ("Q.scalar()",                                   "Q[3]"),
+        ("Q.imag()",                                     "Q[0..3]"),
+        ("Q.w + Q.i + Q.j - Q.k",                        "Q[3] + Q[0] + Q[1] − Q[2]"),
+        ("Quaternion::new(1, 2, 3, 4)",                  "quaternion [2; 3; 4; 1]"),
+        ("Q.norm_squared()",                             "Qᵀ·Q"),
+        ("Q.dot(&I)",                                    "Q[3]"),
+    ]);
+    equals(&[
+        ("Quaternion::new(1, 2, 3, 4) * Quaternion::new(5, 6, 7, 8)",           "Quaternion::new(-60, 12, 30, 24)"),
+        ("Quaternion::new(0, 1, 0, 0) * Quaternion::new(0, 0, 1, 0)",           "Quaternion::new(0, 0, 0, 1)"),
+        ("Quaternion::new(0, 0, 0, 1) * Vector3::new(1, 2, 3)",                 "Vector3::new(-1, -2, 3)"),
+        ("Quaternion::new(3, 0, 0, 3) * Vector3::new(1, 2, 3)",                 "Vector3::new(-2, 1, 3)"),
+        ("Quaternion::new(1, 2, 3, 4).inverse() * Quaternion::new(1, 2, 3, 4)", "Quaternion::identity()"),
+        ("Q * (Q * self.center)",                                               "(Q * Q) * self.center"),
+        ("Q.conjugate() * (Q * self.center)",                                   "self.center"),
+        ("(Q * Q.conjugate()).scalar()",                                        "Q.norm_squared()"),
+        ("Quaternion::new(1, 2, 3, 4).conjugate() - I",                         "Quaternion::new(0, -2, -3, -4)"),
+        ("2 * Quaternion::new(1, 2, 3, 4) / 4 * I",                             "Quaternion::new(1 / 2, 1, 3 / 2, 2)"),
+        ("-Quaternion::identity()",                                             "Quaternion::new(-1, 0, 0, 0)"),
+    ]);
+    refuses(&[
+        ("Q * F",                       "`Q` is a quaternion and `F` is 3x3: they cannot be multiplied"),
+        ("q * Q",                       "`q` is 3x1 and `Q` is a quaternion: they cannot be multiplied"),
+        ("Q + h",                       "`Q` is a quaternion and `h` is a scalar: they cannot be added"),
+        ("h / Q",                       "`h` is a scalar and `Q` is a quaternion: they cannot be divided"),
+        ("Q / 0",                       "`0` is zero: nothing can be divided by it"),
+        ("Q.x",                         "the quaternion `Q` has no coordinate `x`"),
+        ("Q.transpose()",               "`Q` is a quaternion and has no `transpose`"),
+        ("Q.imag(2)",                   "`imag` has 0 arguments, not 1"),
+        ("q.imag()",                    "`q` is 3x1, but `imag` is of a quaternion"),
+        ("Q.dot(&q)",                   "`Q` is a quaternion and `q` is 3x1: `dot` needs two of a kind"),
+        ("Quaternion::new(1, 2, 3)",    "`Quaternion::new` has 4 coordinates, not 3"),
+        ("Quaternion::from_imag(q)",    "unknown constructor `from_imag` of a quaternion"),
+        ("F + Q",                       "`F` is 3x3 and `Q` is a quaternion: they cannot be added"),
+        ("[Q, Q].sum()",                "`[Q, Q].sum()` is a quaternion, not a matrix or a scalar"),
+    ]);
+}
+
+#[test]
+#[rustfmt::skip]
 fn shapes_that_do_not_fit() {
     refuses(&[
         ("F + q",                       "`F` is 3x3 and `q` is 3x1: they cannot be added"),
@@ -260,7 +330,7 @@ fn names_that_are_not_known() {
         ("self.mas",                    "cannot find `mas` in the cost"),
         ("mass * h",                    "cannot find `mass` in the cost"),
         ("W * q",                       "cannot find `W` in the cost"),
-        ("t",                           "the time `t` is not supported yet"),
+        ("t",                           "cannot find `t` in the cost"),
         ("self",                        "`self` alone is no quantity"),
         ("self.energy(q)",              "the method `energy` of the struct in a formula is not supported yet"),
         ("energy(q)",                   "the function `energy` is not known in the cost"),
@@ -268,8 +338,6 @@ fn names_that_are_not_known() {
         ("h.atan2(h)",                  "`atan2` has a jump, so no cost can use it"),
         ("h.sine()",                    "unknown method `sine` in the cost"),
         ("q.clone()",                   "unknown method `clone` in the cost"),
-        ("F.rotation()",                "the method `rotation`, of groups that come later, is not supported yet"),
-        ("Quaternion::new(1, 0, 0, 0)", "a quaternion is not supported yet"),
         ("println!(\"\")",              "unknown macro `println!` in the cost"),
         ("{ let h = 1; h }",            "`h` is reserved and cannot be the name of a `let`"),
         ("{ let F = 1; F }",            "`F` is an argument and cannot be redefined"),

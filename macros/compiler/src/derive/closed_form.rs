@@ -1,0 +1,92 @@
+//! Solutions of the momentum equation without iteration: one square root for bi-invariant energies, or the predictor itself.
+
+use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
+
+use super::Symbols;
+use super::equation::{Sources, is_moving, offset, own_part, slope_of_chart, without_part};
+use super::trivialisation::Covector;
+use crate::model::Model;
+
+/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
+/// in one plane has sin θ = |a| and tan(θ/2) = |x|.
+#[derive(Copy, Clone)]
+pub struct ClosedForm<'g> {
+    /// x(μ).
+    pub coordinates: Expr<'g>,
+    /// |a|², which has to be below one.
+    pub sine_squared: Expr<'g>,
+}
+
+/// Whether x = s·h·Σ⁻¹μ solves the equation: on a sphere with the exponential, for one.
+pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[usize], residual: Expr<'g>) -> bool {
+    let (model, symbols) = (sources.model, sources.symbols);
+    if is_moving(model, sources.inertia) {
+        return false;
+    }
+    let total = sources.inertia.shape().rows;
+    let momentum = symbols.momenta.iter().zip(0..).fold(model.graph.zero(Shape::vector(total)), |sum, (mu, k)| {
+        sum + mu.embed(Shape::vector(total), offset(model, k), 0)
+    });
+    let velocity = sources.inertia.inverse() * momentum;
+    let solution = |&i: &usize| {
+        let block = symbols.blocks[i];
+        let (numerator, denominator) = slope_of_chart(sources, i);
+        let step = numerator * model.step_size / (denominator * sources.parts);
+        (block.coordinates, step * velocity.block(block.offset, 0, Shape::vector(block.dimension())))
+    };
+    let solutions: Vec<_> = blocks.iter().map(solution).collect();
+    identity::vanishes(residual.substitute(&solutions))
+}
+
+/// The closed form for a block of rotations with kinetic energy ½κ|ξ|² whose momenta turn one plane: SO(n) or the rotations of
+/// SE(n) for n ≤ 3, spheres for every n, and unit quaternions.
+pub(super) fn closed_form<'g>(
+    sources: &Sources<'_, 'g>,
+    before: &[Covector<'g>],
+    residual: Expr<'g>,
+    i: usize,
+) -> Option<ClosedForm<'g>> {
+    let (model, symbols) = (sources.model, sources.symbols);
+    let block = symbols.blocks[i];
+    let factor = &model.factors[block.factor];
+    let start = block.offset - offset(model, block.factor);
+    let kappa = sources.inertia.entry(block.offset, block.offset);
+    let step = model.step_size / sources.parts;
+    let mu = own_part(model, symbols, i)?;
+    let f = factor.symbol;
+    let sine = match (factor.group, symbols.charts[block.factor]) {
+        (Group::SpecialOrthogonal(_), Chart::Cayley) => factor.group.components(f) / 2,
+        (Group::SpecialEuclidean(n), Chart::Product) if start == 0 => {
+            Group::SpecialOrthogonal(n).components(f.block(0, 0, Shape::square(n))) / 2
+        }
+        // sin θ = 2 sin(θ/2) cos(θ/2)
+        (Group::UnitQuaternions, Chart::Cayley) => 2 * (f.entry(3, 0) * f.block(0, 0, Shape::vector(3))),
+        _ => return None,
+    };
+    let components = before[block.factor].components(factor.group).block(start, 0, mu.shape());
+    let alone = without_others(model, symbols, residual, i);
+    if !identity::equal(&[components, residual], &[kappa * sine / step, alone]) {
+        return None;
+    }
+    let plane = match factor.group {
+        Group::SpecialOrthogonal(n) | Group::SpecialEuclidean(n) if n > 3 => {
+            let momentum = sources.momentum_map[block.factor].block(start, 0, mu.shape());
+            let matrix = Group::SpecialOrthogonal(n).wedge(momentum);
+            identity::vanishes(matrix * matrix * matrix + momentum.dot(momentum) * matrix)
+        }
+        _ => true,
+    };
+    if !plane {
+        return None;
+    }
+    let sine = step * mu / kappa;
+    let sine_squared = sine.dot(sine);
+    let one = model.graph.integer(1);
+    Some(ClosedForm { coordinates: sine / (one + (one - sine_squared).sqrt()), sine_squared })
+}
+
+/// An expression with all momenta but that of a block set to zero.
+fn without_others<'g>(model: &Model<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
+    let others = (0..symbols.blocks.len()).filter(|&j| j != i);
+    others.fold(expression, |expression, j| without_part(model, symbols, expression, j))
+}

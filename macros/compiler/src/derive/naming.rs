@@ -1,0 +1,112 @@
+//! Directions of Lie algebras in words.
+
+use clebsch_symbolic::{Group, Rational, Zero, integer};
+
+use crate::model::Model;
+
+/// The j-th basis element of all factors together, in words.
+pub(super) fn basis_direction(model: &Model<'_>, mut j: usize) -> String {
+    for factor in &model.factors {
+        let dimension = factor.group.dimension();
+        if j < dimension {
+            let of = if model.factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
+            return format!("the {}{of}", direction_in_words(model, factor.group, j));
+        }
+        j -= dimension;
+    }
+    "a direction of the group".to_string()
+}
+
+fn direction_in_words(model: &Model<'_>, group: Group, j: usize) -> String {
+    let turn = |n: usize, j: usize| match n {
+        3 => format!("rotation about `e{}`", j + 1),
+        _ => {
+            let pairs: Vec<_> = (1..=n).flat_map(|a| (a + 1..=n).map(move |b| (a, b))).collect();
+            format!("rotation in the plane of `e{}` and `e{}`", pairs[j].0, pairs[j].1)
+        }
+    };
+    let shift = |j: usize| format!("translation along `e{}`", j + 1);
+    match group {
+        Group::SpecialOrthogonal(n) => turn(n, j),
+        Group::UnitQuaternions => turn(3, j),
+        Group::Translation(_) => shift(j),
+        Group::SpecialEuclidean(n) => {
+            let turns = n * (n - 1) / 2;
+            if j < turns { turn(n, j) } else { shift(j - turns) }
+        }
+        _ => format!("direction `E{}` of `{}`", j + 1, group.name(model.graph)),
+    }
+}
+
+/// A combination of basis elements, `about e3`, `in the plane of e1 and e2`, `along E12 + E21`.
+pub(super) fn combination(model: &Model<'_>, group: Group, weights: &[Rational]) -> String {
+    let single = |index: &usize| weights.iter().enumerate().all(|(i, weight)| weight.is_zero() != (i == *index));
+    let in_words = |index: usize| {
+        let words = direction_in_words(model, group, index).replace('`', "");
+        words.trim_start_matches("rotation ").trim_start_matches("translation ").to_string()
+    };
+    let named = matches!(
+        group,
+        Group::SpecialOrthogonal(_) | Group::UnitQuaternions | Group::Translation(_) | Group::SpecialEuclidean(_)
+    );
+    if named {
+        if let Some(index) = (0..weights.len()).find(single) {
+            return in_words(index);
+        }
+        let parts = weights.iter().enumerate().filter(|(_, weight)| !weight.is_zero());
+        return signed(parts.map(|(index, weight)| (weight.clone(), in_words(index))));
+    }
+    let entries = entries(model, group, weights);
+    match entries.as_slice() {
+        [(i, j, one), (k, l, other)] if (i, j) == (l, k) && *one == -other.clone() => {
+            match group.element_shape().rows {
+                3 => {
+                    // e1^ and e3^ have −1 above the diagonal, e2^ has +1
+                    let positive = (*one < integer(0)) == (j - i == 1);
+                    format!("about {}e{}", if positive { "" } else { "−" }, 3 - i - j + 1)
+                }
+                _ => format!("in the plane of e{} and e{}", i.min(j) + 1, i.max(j) + 1),
+            }
+        }
+        _ => format!(
+            "along {}",
+            signed(entries.iter().map(|(i, j, value)| (value.clone(), format!("E{}{}", i + 1, j + 1))))
+        ),
+    }
+}
+
+/// The entries that are not zero of Σ w_i E_i.
+fn entries(model: &Model<'_>, group: Group, weights: &[Rational]) -> Vec<(usize, usize, Rational)> {
+    let mut entries: Vec<(usize, usize, Rational)> = Vec::new();
+    for block in model.graph.blocks(group).iter() {
+        for (index, element) in model.graph.basis(block.algebra).elements.iter().enumerate() {
+            let weight = &weights[block.offset + index];
+            for (i, j, value) in element.iter().filter(|_| !weight.is_zero()) {
+                let (row, column) = (i + block.row, j + block.column);
+                match entries.iter_mut().find(|(k, l, _)| (*k, *l) == (row, column)) {
+                    Some((_, _, sum)) => *sum += weight * value,
+                    None => entries.push((row, column, weight * value)),
+                }
+            }
+        }
+    }
+    entries.retain(|(_, _, value)| !value.is_zero());
+    entries.sort_by_key(|(i, j, _)| (*i, *j));
+    entries
+}
+
+fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {
+    let mut text = String::new();
+    for (weight, name) in parts {
+        let negative = weight < integer(0);
+        let magnitude = if negative { -weight } else { weight };
+        text += match (text.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "−",
+            (false, false) => " + ",
+            (false, true) => " − ",
+        };
+        text += &if magnitude == integer(1) { name } else { format!("{magnitude} {name}") };
+    }
+    text
+}

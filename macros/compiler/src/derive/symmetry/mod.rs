@@ -1,0 +1,219 @@
+//! Conserved momenta: the directions along which cost and potential are invariant for every value of the parameters.
+//!
+//! A direction moves the configuration by δq and the group element by δF so that q⁺ moves with them: q ↦ Φ_g q with F ↦ gFg⁻¹ for the
+//! group itself, q ↦ gq or qg with F as it is where that commutes with the action, and what the user offers. Invariance is linear in
+//! the direction, so all invariant directions together, diagonals of equal factors among them, are one null space. The momentum of a
+//! direction w is ⟨p, δq⟩ = ⟨N, ξ⟩ with ξ_Q(q) = δq.
+
+mod directions;
+mod special;
+
+use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
+
+use super::{DiscreteLagrangian, Symbols, naming};
+use crate::model::{Isotropy, Model};
+use directions::directions;
+
+/// A conserved momentum.
+#[derive(Clone)]
+pub struct ConservedMomentum<'g> {
+    /// What it is, `about e3, spatial`.
+    pub name: String,
+    /// Its value, a function of q and μ.
+    pub value: Expr<'g>,
+}
+
+/// What is known of the symmetries of a system.
+#[derive(Default)]
+pub struct Symmetries<'g> {
+    /// The momenta that are conserved for every value of the parameters.
+    pub conserved: Vec<ConservedMomentum<'g>>,
+    /// What is conserved too for special parameters, as sentences.
+    pub special: Vec<String>,
+    /// Offered symmetries that are none, by the index of the offer.
+    pub refused: Vec<usize>,
+    /// Whether functions that are no rational ones hide what may be conserved too.
+    pub undecided: bool,
+}
+
+/// A direction in which a system may be moved.
+struct Direction<'g> {
+    /// Where it comes from, for its name.
+    family: usize,
+    /// The index among the directions of its family.
+    index: usize,
+    /// The motion of each leaf of the configuration.
+    leaves: Vec<Expr<'g>>,
+    /// The motion of each factor's element.
+    factors: Vec<Expr<'g>>,
+    /// The motion of the coordinates of each log F; `None` where it is not known.
+    logarithms: Option<Vec<Expr<'g>>>,
+    /// ⟨N, ξ⟩, the momentum of the direction.
+    momentum: Expr<'g>,
+}
+
+/// Directions of one kind: those of a factor, of a commuting side of a leaf, or of an offered group.
+struct Family {
+    group: Group,
+    /// `of F`, where there are several.
+    of: String,
+    frame: &'static str,
+    /// The offered symmetry that it comes from.
+    offered: Option<usize>,
+}
+
+/// Finds the symmetries of a discrete Lagrangian.
+pub(super) fn find<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    generator: &[Expr<'g>],
+    lagrangian: &DiscreteLagrangian<'g>,
+    inertia: Expr<'g>,
+) -> Symmetries<'g> {
+    let (families, directions) = directions(model, symbols, generator);
+    if directions.is_empty() {
+        return Symmetries::default();
+    }
+    let matrix = variations(model, symbols, lagrangian, &directions);
+    let found = identity::null_space(matrix, &|_| {});
+    let finder = Finder { model, symbols, families, directions, matrix, inertia };
+    let mut symmetries = Symmetries {
+        conserved: finder.momenta(&found),
+        special: finder.special(&found),
+        refused: finder.refused(&found),
+        undecided: found.len() < finder.directions.len() && matrix.has_functions(),
+    };
+    symmetries.conserved.extend(finder.along_parameters(&found));
+    if model.isotropy == Isotropy::Free {
+        symmetries.conserved.extend(finder.isotropy(generator));
+    }
+    symmetries
+}
+
+/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry.
+fn variations<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+    directions: &[Direction<'g>],
+) -> Expr<'g> {
+    let graph = model.graph;
+    let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
+    let logarithms: Vec<Expr<'g>> = symbols.logarithms.iter().map(|y| lagrangian.kinetic.gradient(*y)).collect();
+    let gradients: Vec<(Vec<Expr<'g>>, Vec<Expr<'g>>)> = parts
+        .iter()
+        .map(|part| {
+            let leaves = model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect();
+            let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol)).collect();
+            (leaves, factors)
+        })
+        .collect();
+    let pairing = |gradients: &[Expr<'g>], motions: &[Expr<'g>]| {
+        let terms = gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion));
+        terms.fold(graph.integer(0), |sum, term| sum + term)
+    };
+    let shape = Shape::new(parts.len(), directions.len());
+    let entry = |(part, column): (usize, usize)| {
+        let ((leaves, factors), direction) = (&gradients[part], &directions[column]);
+        let moved = pairing(leaves, &direction.leaves) + pairing(factors, &direction.factors);
+        match &direction.logarithms {
+            _ if part > 0 || logarithms.iter().all(|gradient| gradient.is_zero()) => moved,
+            Some(motions) => moved + pairing(&logarithms, motions),
+            // a motion of log F that is not known is taken for a change
+            None => graph.integer(1),
+        }
+    };
+    graph.stack(shape, shape.positions().map(entry).collect())
+}
+
+/// Everything that names and checks directions.
+struct Finder<'a, 'g> {
+    model: &'a Model<'g>,
+    symbols: &'a Symbols<'g>,
+    families: Vec<Family>,
+    directions: Vec<Direction<'g>>,
+    matrix: Expr<'g>,
+    inertia: Expr<'g>,
+}
+
+impl<'g> Finder<'_, 'g> {
+    /// The momenta of combinations of directions.
+    fn momenta(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
+        let mut momenta: Vec<ConservedMomentum<'g>> = Vec::new();
+        for combination in found {
+            let value = self.value(combination);
+            // a motion that fixes every q has no momentum, and two ways to move q alike have the same
+            let known = |value: Expr<'g>| momenta.iter().any(|other| identity::equal(&[other.value], &[value]));
+            if !identity::vanishes(value) && !known(value) && !self.is_isotropy(combination) {
+                momenta.push(ConservedMomentum { name: self.name(combination), value });
+            }
+        }
+        momenta
+    }
+
+    /// Σ w_i ⟨N, ξ_i⟩.
+    fn value(&self, combination: &[Rational]) -> Expr<'g> {
+        let zero = self.model.graph.integer(0);
+        let terms = self.directions.iter().zip(combination).filter(|(_, weight)| !weight.is_zero());
+        terms.fold(zero, |sum, (direction, weight)| sum + direction.momentum * self.model.graph.number(weight.clone()))
+    }
+
+    /// Whether the combination moves no configuration, so that its momentum is zero for every state that is one of q.
+    fn is_isotropy(&self, combination: &[Rational]) -> bool {
+        let leaf = |j: usize| {
+            let zero = self.model.graph.zero(self.model.configurations[j].shape);
+            let terms = self.directions.iter().zip(combination).filter(|(_, weight)| !weight.is_zero());
+            terms.fold(zero, |sum, (direction, weight)| {
+                sum + self.model.graph.number(weight.clone()) * direction.leaves[j]
+            })
+        };
+        self.model.isotropy == Isotropy::Fixed
+            && self.model.factors.iter().all(|factor| factor.moves)
+            && (0..self.model.configurations.len()).all(|j| identity::vanishes(leaf(j)))
+    }
+
+    /// `about e3, spatial`.
+    fn name(&self, combination: &[Rational]) -> String {
+        let mut parts: Vec<(String, String)> = Vec::new();
+        let mut frames: Vec<&str> = Vec::new();
+        for (index, family) in self.families.iter().enumerate() {
+            let members = self.directions.iter().zip(combination);
+            let mut weights = vec![Rational::zero(); family.group.dimension()];
+            members
+                .filter(|(direction, _)| direction.family == index)
+                .for_each(|(direction, weight)| weights[direction.index] = weight.clone());
+            if weights.iter().all(Rational::is_zero) {
+                continue;
+            }
+            parts.push((naming::combination(self.model, family.group, &weights), family.of.replace('`', "")));
+            frames.push(family.frame);
+        }
+        frames.dedup();
+        let frames = frames.join(" and ");
+        // a diagonal of all factors has one name
+        if parts.len() > 1
+            && parts.len() == self.model.factors.len()
+            && parts.iter().all(|(words, _)| *words == parts[0].0)
+        {
+            return format!("{} of all factors, {frames}", parts[0].0);
+        }
+        let parts: Vec<String> = parts.into_iter().map(|(words, of)| words + &of).collect();
+        format!("{}, {frames}", parts.join(" + "))
+    }
+
+    /// The offered symmetries of which some direction is no symmetry.
+    fn refused(&self, found: &[Vec<Rational>]) -> Vec<usize> {
+        let complete = |offer: &usize| {
+            let of_offer = |i: &usize| self.families[self.directions[*i].family].offered == Some(*offer);
+            let positions: Vec<usize> = (0..self.directions.len()).filter(of_offer).collect();
+            let dimension = self.model.symmetries[*offer].group.dimension();
+            positions.len() == dimension && positions.iter().all(|&position| holds(found, position))
+        };
+        (0..self.model.symmetries.len()).filter(|offer| !complete(offer)).collect()
+    }
+}
+
+/// Whether the direction of a position is among the symmetries by itself.
+fn holds(found: &[Vec<Rational>], position: usize) -> bool {
+    found.iter().any(|w| w.iter().enumerate().all(|(i, weight)| weight.is_zero() != (i == position)))
+}

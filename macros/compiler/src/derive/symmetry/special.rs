@@ -1,0 +1,172 @@
+//! Symmetries beyond constant directions: along vector parameters, along the configuration, and for special parameters.
+
+use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, Zero, identity, integer};
+
+use super::directions::{generated, in_factor};
+use super::{ConservedMomentum, Direction, Family, Finder, holds};
+use crate::derive::naming;
+use crate::model::Side;
+
+impl<'g> Finder<'_, 'g> {
+    /// Directions along vector parameters: in one family of rotations, or in all of them at once.
+    pub(super) fn along_parameters(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
+        let is_turn = |family: &Family| matches!(family.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
+        let turns: Vec<usize> = (0..self.families.len()).filter(|&family| is_turn(&self.families[family])).collect();
+        let mut choices: Vec<Vec<usize>> = turns.iter().map(|&family| vec![family]).collect();
+        if turns.len() > 1 {
+            choices.push(turns.clone());
+        }
+        let mut momenta = Vec::new();
+        let leaves = self
+            .model
+            .parameters
+            .iter()
+            .flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
+        for (parameter, leaf) in leaves.filter(|(_, leaf)| leaf.shape == Shape::vector(3)) {
+            for choice in &choices {
+                let weight = |direction: &Direction<'g>| match choice.contains(&direction.family) {
+                    true => leaf.symbol.entry(direction.index, 0),
+                    false => self.model.graph.integer(0),
+                };
+                let weights: Vec<_> = self.directions.iter().map(weight).collect();
+                let general = self.matrix * self.model.graph.stack(Shape::vector(weights.len()), weights.clone());
+                let whole = choice.iter().all(|family| self.is_whole(found, *family));
+                if whole || !identity::vanishes(general) {
+                    continue;
+                }
+                let terms =
+                    self.directions.iter().zip(&weights).map(|(direction, weight)| *weight * direction.momentum);
+                let value = terms.reduce(|sum, term| sum + term).unwrap_or(leaf.symbol.entry(0, 0));
+                let family = &self.families[choice[0]];
+                let of = if choice.len() == 1 { family.of.replace('`', "") } else { " of all factors".to_string() };
+                momenta
+                    .push(ConservedMomentum { name: format!("about {}{of}, {}", parameter.name, family.frame), value });
+            }
+        }
+        momenta
+    }
+
+    /// Whether all directions of a family are conserved.
+    fn is_whole(&self, found: &[Vec<Rational>], family: usize) -> bool {
+        (0..self.directions.len()).filter(|&i| self.directions[i].family == family).all(|i| holds(found, i))
+    }
+
+    /// Where motions that fix q are motions too: the momentum along a vector leaf q of a group of rotations that turn about it.
+    pub(super) fn isotropy(&self, generator: &[Expr<'g>]) -> Vec<ConservedMomentum<'g>> {
+        let mut momenta = Vec::new();
+        for (k, factor) in self.model.factors.iter().enumerate() {
+            if !matches!(factor.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions) {
+                continue;
+            }
+            for leaf in self.model.configurations.iter().filter(|leaf| leaf.shape == Shape::vector(3)) {
+                let velocity = in_factor(self.symbols, k, leaf.symbol);
+                let fixes = generated(self.symbols, generator, &velocity).into_iter().all(identity::vanishes);
+                if fixes {
+                    let frame = if factor.side == Side::Left { "spatial" } else { "body" };
+                    let value = self.symbols.momenta[k].dot(leaf.symbol);
+                    momenta.push(ConservedMomentum { name: format!("about {}, {frame}", leaf.name), value });
+                }
+            }
+        }
+        momenta
+    }
+
+    /// Axes about which a system with special parameters is symmetric too: matrices axisymmetric and vectors along the axis.
+    pub(super) fn special(&self, found: &[Vec<Rational>]) -> Vec<String> {
+        let mut sentences = Vec::new();
+        for (position, direction) in self.directions.iter().enumerate() {
+            let family = &self.families[direction.family];
+            let turns = matches!(family.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
+            if !turns || holds(found, position) {
+                continue;
+            }
+            if let Some(conditions) = self.conditions(position, direction.index) {
+                let mut weights = vec![Rational::zero(); family.group.dimension()];
+                weights[direction.index] = integer(1);
+                let words = naming::combination(self.model, family.group, &weights);
+                sentences.push(format!("{words}{}, {}, where {conditions}", family.of.replace('`', ""), family.frame));
+            }
+        }
+        sentences
+    }
+
+    /// What has to be special for a direction to be a symmetry; `None` where nothing of this kind makes it one.
+    fn conditions(&self, position: usize, axis: usize) -> Option<String> {
+        let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
+        let leaves: Vec<Expr<'g>> = self
+            .model
+            .parameters
+            .iter()
+            .flat_map(|parameter| parameter.leaves.iter().map(|leaf| leaf.symbol))
+            .filter(|symbol| [Shape::vector(3), Shape::square(3)].contains(&symbol.shape()))
+            .collect();
+        if leaves.is_empty() || leaves.len() > 4 {
+            return None;
+        }
+        // each choice: for every vector whether it lies along the axis or is alike in all directions across it
+        (0..1_usize << leaves.len()).find_map(|choice| {
+            let special: Vec<Special<'g>> = leaves
+                .iter()
+                .enumerate()
+                .map(|(index, symbol)| Special::new(*symbol, axis, index, choice >> index & 1 == 0))
+                .collect();
+            self.least(column, special)
+        })
+    }
+
+    /// The conditions without those that are not needed; `None` where all of them do not suffice, or leave no regular inertia.
+    fn least(&self, column: Expr<'g>, mut special: Vec<Special<'g>>) -> Option<String> {
+        let replaced = |chosen: &[Special<'g>]| chosen.iter().map(|s| (s.symbol, s.value)).collect::<Vec<_>>();
+        let holds = |chosen: &[Special<'g>]| {
+            identity::vanishes_where(column, &|point| {
+                for special in chosen {
+                    let value = point.evaluate(special.value);
+                    point.set(special.symbol, value);
+                }
+            })
+        };
+        if !holds(&special) {
+            return None;
+        }
+        let mut position = 0;
+        while position < special.len() {
+            let mut without = special.clone();
+            without.remove(position);
+            if holds(&without) { special = without } else { position += 1 }
+        }
+        let regular = identity::rank(self.inertia.substitute(&replaced(&special))) == self.inertia.shape().rows;
+        let texts: Vec<String> = special.into_iter().map(|special| special.text).collect();
+        (regular && !texts.is_empty()).then(|| texts.join(" and "))
+    }
+}
+
+/// A special value of a parameter.
+#[derive(Clone)]
+struct Special<'g> {
+    symbol: Expr<'g>,
+    value: Expr<'g>,
+    text: String,
+}
+
+impl<'g> Special<'g> {
+    /// A matrix or a vector that is alike in all directions across an axis, or a vector along it.
+    fn new(symbol: Expr<'g>, axis: usize, index: usize, along: bool) -> Special<'g> {
+        let graph = symbol.graph();
+        let free = |number: usize| {
+            let name = format!("special{index}_{number}");
+            graph.symbol(&name, Shape::scalar(), Role::Auxiliary(1 << 20), Property::General)
+        };
+        let unit = graph.unit(Shape::vector(3), axis, 0);
+        let (axial, name) = (format!("e{}", axis + 1), symbol.to_string());
+        if symbol.shape() == Shape::square(3) {
+            let value = free(0) * graph.identity(3) + free(1) * (unit * unit.transpose());
+            return Special { symbol, value, text: format!("{name} is axisymmetric about {axial}") };
+        }
+        if along {
+            return Special { symbol, value: free(0) * unit, text: format!("{name} is along {axial}") };
+        }
+        let ones = graph.literal(Shape::vector(3), vec![integer(1); 3]);
+        let value = free(0) * ones + free(1) * unit;
+        Special { symbol, value, text: format!("the components of {name} across {axial} are equal") }
+    }
+}

@@ -1,0 +1,54 @@
+//! The trivialised derivatives T*_id L_F ∂_F K and T*_id R_F ∂_F K.
+
+use clebsch_symbolic::{Expr, Group, identity};
+
+use super::symbols::logarithm;
+use crate::model::{Model, Side};
+
+/// A trivialised derivative T* ∂_F K of a factor.
+#[derive(Copy, Clone)]
+pub(super) struct Covector<'g> {
+    /// An array whose components are those of ∂_F K.
+    pub array: Expr<'g>,
+    /// dexp_y^T of the components that come from log F, and dexp_y itself: `None` where K does not depend on log F.
+    pub logarithmic: Option<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'g> Covector<'g> {
+    /// The components.
+    pub fn components(&self, group: Group) -> Expr<'g> {
+        let plain = group.components(self.array);
+        match self.logarithmic {
+            Some((gradient, slope)) => plain + slope.transpose().inverse() * gradient,
+            None => plain,
+        }
+    }
+}
+
+/// T* ∂_F K before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
+pub(super) fn trivialisations<'g>(model: &Model<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
+    let factor = &model.factors[k];
+    let gradient = kinetic.gradient(factor.symbol);
+    let y = logarithm(model, k);
+    // δF = ηF moves log F by dexp_y⁻¹ η, and δF = Fη by dexp_{−y}⁻¹ η
+    let along = |y: Expr<'g>, sign: i64| {
+        kinetic.depends_on(y).then(|| (kinetic.gradient(y), factor.group.exponential_slope(sign * y)))
+    };
+    let left = factor.group.cotangent_left(factor.symbol, gradient).expand();
+    let right = factor.group.cotangent_right(factor.symbol, gradient).expand();
+    let left = Covector { array: left, logarithmic: along(y, -1) };
+    let right = Covector { array: right, logarithmic: along(y, 1) };
+    match factor.side {
+        Side::Left => (left, right),
+        Side::Right => (right, left),
+    }
+}
+
+/// For each factor, whether both trivialisations have the same components.
+pub(super) fn agreement<'g>(model: &Model<'g>, before: &[Covector<'g>], after: &[Covector<'g>]) -> Vec<bool> {
+    let same = |k: usize| {
+        let group = model.factors[k].group;
+        identity::equal(&[before[k].components(group)], &[after[k].components(group)])
+    };
+    (0..model.factors.len()).map(same).collect()
+}

@@ -1,0 +1,137 @@
+//! A cost from a Lagrangian: h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)), with the velocity ξ made from F and h.
+
+use clebsch_symbolic::{Expr, Group, Shape, identity};
+
+use super::symbols::logarithm;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Discretization, Factor, Kinetic, Model};
+
+/// The cost K(t, h, q, F), as declared or made from the Lagrangian.
+pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
+    let (energy, velocities, discretization) = match &model.kinetic {
+        Kinetic::Cost(cost) => return Ok(*cost),
+        Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
+    };
+    if discretization == Discretization::MoserVeselov {
+        return moser_veselov(model, energy, velocities);
+    }
+    let h = model.step_size;
+    let velocity = |k: usize| match discretization {
+        Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
+        _ => discrete_velocity(&model.factors[k], h, discretization),
+    };
+    let discrete: Vec<(Expr<'g>, Expr<'g>)> =
+        velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
+    let at = |energy: Expr<'g>| h * energy.substitute(&discrete);
+    let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
+    Ok(match moves || energy.depends_on(model.time) {
+        false => at(energy),
+        true => {
+            let images = model.configurations.iter().zip(&model.action);
+            let mut end: Vec<_> = images.map(|(leaf, image)| (leaf.symbol, *image)).collect();
+            end.push((model.time, model.time + h));
+            (at(energy) + at(energy.substitute(&end))) / 2
+        }
+    })
+}
+
+/// The coordinates of ξ: of 2(F − I)(F + I)⁻¹/h, projected where that leaves the algebra, or of P(F − I)/h.
+fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
+    let (group, f) = (factor.group, factor.symbol);
+    let identity = group.identity(f.graph());
+    if group.is_translation() {
+        return f / h;
+    }
+    match discretization {
+        // tan(θ/2) is the vector part over the scalar part
+        Discretization::Cayley if group == Group::UnitQuaternions => {
+            2 * (f.block(0, 0, Shape::vector(3)) / (f.entry(3, 0) * h))
+        }
+        Discretization::Cayley => 2 * group.projected_coordinates((f - identity) * (f + identity).inverse()) / h,
+        _ => group.projected_coordinates(f - identity) / h,
+    }
+}
+
+/// ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h)·h with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ).
+fn moser_veselov<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<Expr<'g>, Diagnostics> {
+    let (h, graph) = (model.step_size, model.graph);
+    let mut cost = graph.integer(0);
+    for (factor, velocity) in model.factors.iter().zip(velocities) {
+        let gradient = energy.gradient(*velocity);
+        let at_rest = gradient.substitute(&velocities.iter().map(|v| (*v, graph.zero(v.shape()))).collect::<Vec<_>>());
+        let inertia = gradient.matrix_of_linear(*velocity);
+        if velocities.iter().any(|v| inertia.depends_on(*v)) || !identity::vanishes(at_rest) {
+            return Err(not_quadratic(model, *velocity));
+        }
+        let Some(mass) = mass_matrix(factor.group, inertia) else { return Err(no_mass_matrix(model, factor)) };
+        let identity = factor.group.identity(graph);
+        let f = factor.symbol;
+        cost = cost
+            + match factor.group {
+                Group::SpecialOrthogonal(_) => (mass * (f - identity) * (f - identity).transpose()).trace() / (2 * h),
+                Group::Translation(_) => f.dot(mass * f) / (2 * h),
+                _ => ((f - identity) * mass * (f - identity).transpose()).trace() / (2 * h),
+            };
+    }
+    Ok(cost)
+}
+
+/// The symmetric 𝕄 with ½ tr(ξ 𝕄 ξᵀ) = ½ ξ·Σξ for all ξ, if there is one: ½tr(J)I − J on SO(3).
+fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
+    let graph = inertia.graph();
+    match group {
+        Group::SpecialOrthogonal(3) => {
+            return Some((inertia.trace() / 2 * graph.identity(3) - inertia).expand());
+        }
+        Group::Translation(_) => return Some(inertia),
+        Group::UnitQuaternions => return None,
+        _ => {}
+    }
+    let n = group.element_shape().rows;
+    let basis = graph.matrices(group);
+    // Σ_ij = tr(E_i 𝕄 E_jᵀ): linear in the entries of 𝕄, solved by least squares over the rationals
+    let units: Vec<Expr<'g>> = (0..n)
+        .flat_map(|i| (i..n).map(move |j| (i, j)))
+        .map(|(i, j)| {
+            let square = Shape::square(n);
+            if i == j { graph.unit(square, i, i) } else { graph.unit(square, i, j) + graph.unit(square, j, i) }
+        })
+        .collect();
+    let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
+        basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b))).collect()
+    };
+    let images: Vec<Vec<Expr<'g>>> = units.iter().map(image).collect();
+    let shape = Shape::new(images[0].len(), units.len());
+    let map = graph.stack(shape, shape.positions().map(|(row, column)| images[column][row]).collect());
+    let normal = map.transpose() * map;
+    let entries = inertia.shape().positions().map(|(i, j)| inertia.entry(i, j)).collect();
+    let given = graph.stack(Shape::vector(shape.rows), entries);
+    let solution = normal.inverse() * (map.transpose() * given);
+    let fits = !normal.has_inverse() && !solution.has_inverse();
+    if !fits || !identity::equal(&[map * solution], &[given]) {
+        return None;
+    }
+    let matrix = units.iter().enumerate().map(|(k, unit)| solution.entry(k, 0).expand() * *unit);
+    matrix.reduce(|sum, term| sum + term)
+}
+
+fn not_quadratic<'g>(model: &Model<'g>, velocity: Expr<'g>) -> Diagnostics {
+    Diagnostic::new(model.spans.kinetic.place, "the Lagrangian is not a quadratic form of the velocity")
+        .help(format!(
+            "leave out `discretization = moser_veselov`, or write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`"
+        ))
+        .note("the Moser–Veselov discretisation puts (F - I)/h into ½ tr(ξ 𝕄 ξᵀ), which is quadratic")
+        .into()
+}
+
+fn no_mass_matrix<'g>(model: &Model<'g>, factor: &Factor<'g>) -> Diagnostics {
+    let name = factor.group.name(model.graph);
+    Diagnostic::new(
+        model.spans.kinetic.place,
+        format!("this Lagrangian has no Moser–Veselov form on `{name}`"),
+    )
+    .help("write `discretization = cayley`, the default, which exists for every Lagrangian")
+    .note("that form is ½ tr(ξ 𝕄 ξᵀ) with a symmetric matrix 𝕄; the inertia of this Lagrangian is of that form for no 𝕄 that holds for all values of its parameters")
+    .into()
+}

@@ -1,0 +1,71 @@
+//! The operations of kernels.
+
+use clebsch_symbolic::integer;
+
+use super::{Code, Kernel};
+
+/// The operations of a kernel.
+#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+pub struct Cost {
+    /// Additions and subtractions.
+    pub additions: usize,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Divisions and reciprocals.
+    pub divisions: usize,
+    /// Square and other roots.
+    pub roots: usize,
+    /// Calls of elementary functions.
+    pub calls: usize,
+}
+
+impl Kernel {
+    /// The operations of this kernel.
+    pub fn cost(&self) -> Cost {
+        let mut cost = Cost::default();
+        self.locals.iter().for_each(|code| cost.count(code));
+        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|code| cost.count(code));
+        cost
+    }
+}
+
+impl Cost {
+    /// All operations.
+    pub fn total(self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.roots + self.calls
+    }
+
+    fn count(&mut self, code: &Code) {
+        match code {
+            Code::Sum(constant, terms) => {
+                self.additions += terms.len() - 1 + (*constant != integer(0)) as usize;
+                for (coefficient, term) in terms {
+                    self.multiplications += !(*coefficient == integer(1) || *coefficient == integer(-1)) as usize;
+                    self.count(term);
+                }
+            }
+            Code::Product(factors) => {
+                self.multiplications += factors.len() - 1;
+                factors.iter().for_each(|factor| self.count(factor));
+            }
+            Code::Reciprocal(x) => {
+                self.divisions += 1;
+                self.count(x);
+            }
+            Code::Root(x, _) => {
+                self.roots += 1;
+                self.count(x);
+            }
+            Code::Function(_, x) => {
+                self.calls += 1;
+                self.count(x);
+            }
+            Code::Call(_, arguments) => {
+                self.calls += 1;
+                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| self.count(entry));
+            }
+            Code::Read(_) | Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) => {}
+            Code::Local(_) | Code::Output(..) => {}
+        }
+    }
+}

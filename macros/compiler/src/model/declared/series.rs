@@ -1,0 +1,70 @@
+//! Truncated power series in one variable s: how a formula changes along a curve.
+
+use clebsch_symbolic::{Analytic, Function, Matrix, Number, Rational, Shape, integer};
+
+/// c_0 + c_1 s + … + c_{N−1} s^{N−1}.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Series<K, const N: usize>(pub [K; N]);
+
+/// The search for pivots compares with zero; a pivot is a series that can be inverted, whose value at s = 0 is not zero.
+impl<K: Number, const N: usize> PartialEq for Series<K, N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.0[0] == other.0[0]
+    }
+}
+
+impl<K: Number, const N: usize> Series<K, N> {
+    fn constant(value: K) -> Self {
+        let zero = K::from_rational(&integer(0));
+        Series(std::array::from_fn(|k| if k == 0 { value } else { zero }))
+    }
+}
+
+impl<K: Number, const N: usize> Number for Series<K, N> {
+    fn from_rational(value: &Rational) -> Self {
+        Series::constant(K::from_rational(value))
+    }
+
+    fn add(self, other: Self) -> Self {
+        Series(std::array::from_fn(|k| self.0[k].add(other.0[k])))
+    }
+
+    fn multiply(self, other: Self) -> Self {
+        let zero = K::from_rational(&integer(0));
+        Series(std::array::from_fn(|k| (0..=k).fold(zero, |sum, i| sum.add(self.0[i].multiply(other.0[k - i])))))
+    }
+
+    /// b_0 = 1/a_0, b_k = −(a_1 b_{k−1} + … + a_k b_0)/a_0.
+    fn reciprocal(self) -> Self {
+        let zero = K::from_rational(&integer(0));
+        let (first, minus) = (self.0[0].reciprocal(), K::from_rational(&integer(-1)));
+        let mut inverse = [zero; N];
+        inverse[0] = first;
+        for k in 1..N {
+            let sum = (1..=k).fold(zero, |sum, i| sum.add(self.0[i].multiply(inverse[k - i])));
+            inverse[k] = minus.multiply(first).multiply(sum);
+        }
+        Series(inverse)
+    }
+
+    // by construction: the formulas that are followed along a curve are rational
+    fn fractional_power(self, exponent: (i64, i64)) -> Self {
+        Series::constant(self.0[0].fractional_power(exponent))
+    }
+
+    fn function(self, function: Function) -> Self {
+        Series::constant(self.0[0].function(function))
+    }
+
+    fn analytic(_: Analytic, argument: &Matrix<Self>) -> Matrix<Self> {
+        argument.clone()
+    }
+
+    fn opaque(_: u32, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
+        Matrix::from_fn(shape, |_| Series::constant(K::from_rational(&integer(0))))
+    }
+
+    fn pi() -> Self {
+        Series::constant(K::pi())
+    }
+}

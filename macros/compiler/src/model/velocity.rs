@@ -1,0 +1,71 @@
+//! The velocity of a Lagrangian: one symbol for each factor, under the names that the user gives.
+
+use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+
+use super::leaves::leaf_names;
+use super::value::Value;
+use super::{Factor, Structure};
+use crate::diagnostic::Diagnostics;
+use crate::parse::Pattern;
+
+/// What velocities are made for.
+pub(super) struct Velocity<'a, 'g> {
+    pub graph: &'g Graph,
+    pub factors: &'a [Factor<'g>],
+}
+
+impl<'g> Velocity<'_, 'g> {
+    /// The value of a pattern, and the symbols of the factors. One name stands for all that is in its place, a tuple for the parts of a
+    /// product or for the blocks of one factor: `(omega, v)` for SE(3).
+    pub fn of(
+        &self,
+        pattern: &Pattern,
+        structure: &Structure,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
+        match (pattern, structure) {
+            (Pattern::Tuple(patterns, _), Structure::Tuple(parts)) if patterns.len() == parts.len() => {
+                let found: Option<Vec<_>> =
+                    patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part, diagnostics)).collect();
+                let (values, symbols): (Vec<_>, Vec<_>) = found?.into_iter().unzip();
+                Some((Value::Tuple(values), symbols.into_iter().flatten().collect()))
+            }
+            (Pattern::Tuple(patterns, _), Structure::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
+                let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
+                let symbol = self.symbol(*k, &names.join("_"));
+                let blocks = self.graph.blocks(self.factors[*k].group);
+                let part = |block: &clebsch_symbolic::Block| {
+                    Value::Matrix(symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
+                };
+                Some((Value::Tuple(blocks.iter().map(part).collect()), vec![symbol]))
+            }
+            _ => {
+                let names = leaf_names(pattern, structure, diagnostics)?;
+                let leaves = leaves(structure);
+                let symbols: Vec<Expr<'g>> = leaves.iter().zip(&names).map(|(k, name)| self.symbol(*k, name)).collect();
+                // the leaves of a part of a product are numbered as in the whole
+                let mut values = vec![Value::Tuple(Vec::new()); self.factors.len()];
+                leaves.iter().zip(&symbols).for_each(|(k, symbol)| values[*k] = Value::Matrix(*symbol));
+                Some((Value::nested(structure, &values), symbols))
+            }
+        }
+    }
+
+    /// Whether the algebra of a factor has several blocks, and as many as there are names.
+    fn has_blocks(&self, factor: usize, names: usize) -> bool {
+        names > 1 && self.graph.blocks(self.factors[factor].group).len() == names
+    }
+
+    fn symbol(&self, factor: usize, name: &str) -> Expr<'g> {
+        let shape = Shape::vector(self.factors[factor].group.dimension());
+        self.graph.symbol(name, shape, Role::Algebra(factor), Property::General)
+    }
+}
+
+/// The numbers of the leaves of a structure, in order.
+fn leaves(structure: &Structure) -> Vec<usize> {
+    match structure {
+        Structure::Leaf(leaf) => vec![*leaf],
+        Structure::Tuple(parts) | Structure::Array(parts) => parts.iter().flat_map(leaves).collect(),
+    }
+}

@@ -1,0 +1,97 @@
+//! Blocks of matrices, and matrices made of blocks.
+
+use crate::node::{Id, Node};
+use crate::{Expr, Rational, Shape, integer};
+use num_traits::One;
+
+impl<'g> Expr<'g> {
+    /// The entry in row i and column j, counted from zero.
+    pub fn entry(self, i: usize, j: usize) -> Expr<'g> {
+        self.block(i, j, Shape::scalar())
+    }
+
+    /// The block of the given shape whose first entry is (row, column).
+    pub fn block(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
+        assert!(
+            row + shape.rows <= self.shape().rows && column + shape.columns <= self.shape().columns,
+            "a block of `{self}`"
+        );
+        if shape == self.shape() {
+            return self;
+        }
+        self.linear(shape, |plain| plain.block_of_plain(row, column, shape))
+    }
+
+    fn block_of_plain(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
+        let graph = self.graph;
+        let columns = self.shape().columns;
+        let positions = || shape.positions().map(move |(i, j)| (row + i) * columns + column + j);
+        match &*self.node() {
+            Node::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
+            Node::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
+            Node::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
+            Node::Embed(inner, r, c) => {
+                let given = graph.shape(*inner);
+                let (last_row, last_column) = (row + shape.rows, column + shape.columns);
+                let inside =
+                    row >= *r && column >= *c && last_row <= r + given.rows && last_column <= c + given.columns;
+                let outside =
+                    last_row <= *r || last_column <= *c || row >= r + given.rows || column >= c + given.columns;
+                match (inside, outside) {
+                    (true, _) => graph.expr(*inner).block(row - r, column - c, shape),
+                    (_, true) => graph.zero(shape),
+                    _ => self.atom_of(Node::Block(self.id, row, column), shape),
+                }
+            }
+            Node::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {
+                self.block_of_word(&terms[0].word, row, column, shape)
+            }
+            Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
+                let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
+                graph.literal(shape, shape.positions().map(one_at).collect())
+            }
+            _ => self.atom_of(Node::Block(self.id, row, column), shape),
+        }
+    }
+
+    /// The block of a product: rows of its first letter, columns of its last, where these are known to be mostly zero.
+    fn block_of_word(self, word: &[Id], row: usize, column: usize, shape: Shape) -> Expr<'g> {
+        let graph = self.graph;
+        let (first, last) = (graph.expr(word[0]), graph.expr(word[word.len() - 1]));
+        let sparse = |letter: Expr<'g>| matches!(&*letter.node(), Node::Embed(..));
+        if !sparse(first) && !sparse(last) {
+            return self.atom_of(Node::Block(self.id, row, column), shape);
+        }
+        let rows = first.block(row, 0, Shape::new(shape.rows, first.shape().columns));
+        let columns = last.block(0, column, Shape::new(last.shape().rows, shape.columns));
+        let middle = word[1..word.len() - 1].iter().map(|&letter| graph.expr(letter));
+        middle.fold(rows, Expr::product) * columns
+    }
+
+    /// The matrix of the given shape that is zero but for this block at (row, column).
+    pub fn embed(self, shape: Shape, row: usize, column: usize) -> Expr<'g> {
+        assert!(
+            row + self.shape().rows <= shape.rows && column + self.shape().columns <= shape.columns,
+            "`{self}` in a {shape}"
+        );
+        if shape == self.shape() {
+            return self;
+        }
+        if self.shape().is_scalar() {
+            return self * self.graph.unit(shape, row, column);
+        }
+        self.linear(shape, |plain| match &*plain.node() {
+            Node::Embed(inner, r, c) => plain.graph.expr(*inner).embed(shape, row + r, column + c),
+            Node::Literal(entries) => {
+                let positions = plain.shape().positions().zip(entries);
+                let moved = positions.map(|((i, j), value)| (i + row, j + column, value.clone()));
+                plain.graph.sparse_literal(shape, &moved.collect())
+            }
+            Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
+                let moved = (0..plain.shape().rows).map(|i| (i + row, i + column, Rational::one()));
+                plain.graph.sparse_literal(shape, &moved.collect())
+            }
+            _ => plain.atom_of(Node::Embed(plain.id, row, column), shape),
+        })
+    }
+}

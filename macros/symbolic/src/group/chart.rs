@@ -1,0 +1,308 @@
+//! Charts: coordinates of a group near the identity, one vector for each block of its Lie algebra.
+
+use super::motion::{left_matrix, motion};
+use super::{Block, Group};
+use crate::node::{Analytic, Node};
+use crate::{Expr, Function, Graph, Shape, identity, rational};
+
+/// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Chart {
+    /// F = (I − Z)⁻¹(I + Z), Z = Σ x_i E_i, so that Z ≈ ½ log F. For SO(3) and SU(2), x = tan(θ/2)·axis.
+    Cayley,
+    /// F = I + Z, for algebras that are closed under matrix products. Coordinates of the second kind of the Heisenberg group.
+    Affine,
+    /// (W b; 0 1) with W = (I − Z)⁻¹(I + Z), times exp λ for similarities, and b as it is.
+    Product,
+    /// F = (I + Z) det(I + Z)^(−1/n).
+    Root,
+    /// F = exp Z.
+    Exponential,
+    /// F = x.
+    Identity,
+}
+
+impl Group {
+    /// The chart in which the implicit equation is solved, unless a declaration chooses another.
+    pub fn chart(self, graph: &Graph) -> Chart {
+        match self {
+            Group::SpecialOrthogonal(_)
+            | Group::PseudoOrthogonal(..)
+            | Group::Symplectic(_)
+            | Group::Unitary(_)
+            | Group::UnitQuaternions
+            | Group::SpecialLinear(2) => Chart::Cayley,
+            Group::SpecialEuclidean(_) | Group::Similarity(_) => Chart::Product,
+            Group::GeneralLinear(_) | Group::Heisenberg(_) | Group::Affine(_) => Chart::Affine,
+            Group::SpecialLinear(_) => Chart::Root,
+            Group::SpecialUnitary(_) => Chart::Exponential,
+            Group::Translation(_) => Chart::Identity,
+            Group::Declared(declared) => graph.definition_at(declared.index).chart,
+        }
+    }
+
+    /// Whether the Cayley map stays in the group.
+    pub fn has_cayley_chart(self, graph: &Graph) -> bool {
+        match self {
+            Group::Translation(_) => false,
+            Group::UnitQuaternions => true,
+            _ => super::sample::is_cayley_tangent(graph, self),
+        }
+    }
+}
+
+impl Chart {
+    /// The element with coordinates x, one vector for each block.
+    pub fn element<'g>(self, group: Group, x: &[Expr<'g>]) -> Expr<'g> {
+        let graph = x[0].graph();
+        match self {
+            Chart::Identity => x[0],
+            Chart::Cayley if group == Group::UnitQuaternions => half_turn(x[0]),
+            // (I − Z)⁻¹(I + Z) = 2(I − Z)⁻¹ − I
+            Chart::Cayley => 2 * resolvent(combination(group, x)) - group.identity(graph),
+            Chart::Affine => group.identity(graph) + combination(group, x),
+            Chart::Root => {
+                let n = group.element_shape().rows;
+                let z = combination(group, x);
+                let scale = (graph.identity(n) + z).determinant().power(rational(-1, n as i64));
+                scale * graph.identity(n) + z.times_each(scale)
+            }
+            Chart::Product => {
+                let turn = 2 * resolvent(x[0].wedge(graph.algebra_of(group)));
+                let turn = turn - graph.identity(turn.shape().rows);
+                match x {
+                    [_, dilation, shift] => motion(dilation.function(Function::Exp) * turn, *shift),
+                    _ => motion(turn, x[x.len() - 1]),
+                }
+            }
+            Chart::Exponential if group == Group::UnitQuaternions => {
+                let quarter = x[0].norm_squared() / 4;
+                let shape = Shape::vector(4);
+                let [cosine, sine] = [0, 1].map(|k| quarter.function(Function::Stumpff(k)));
+                (sine / 2 * x[0]).embed(shape, 0, 0) + cosine * graph.unit(shape, 3, 0)
+            }
+            Chart::Exponential => exponential(combination(group, x)),
+        }
+    }
+
+    /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
+    /// 2(Z + Z²)/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
+    /// n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
+    pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
+        let graph = x[0].graph();
+        let one = graph.integer(1);
+        match (self, group) {
+            (Chart::Cayley, Group::SpecialOrthogonal(n)) => turn_increment(n, x[0], combination(group, x)),
+            (Chart::Cayley, Group::UnitQuaternions) => {
+                // w − 1 = −s/(r(1 + r)) with r = √(1 + s)
+                let square = x[0].norm_squared();
+                let root = (one + square).sqrt();
+                let shape = Shape::vector(4);
+                let last = square / (one + root) * graph.unit(shape, 3, 0);
+                (x[0].embed(shape, 0, 0) - last, root)
+            }
+            (Chart::Cayley, Group::SpecialEuclidean(n)) if n > 1 => {
+                let turn = x[0].wedge(graph.algebra_of(group));
+                let (increment, denominator) = turn_increment(n, x[0], turn);
+                let (shape, shift) = (group.element_shape(), 2 * (resolvent(turn) * x[1]));
+                ((increment / denominator).embed(shape, 0, 0) + shift.embed(shape, 0, n), one)
+            }
+            (Chart::Cayley, _) => even_increment(combination(group, x)),
+            (Chart::Affine, _) => (combination(group, x), one),
+            (Chart::Root, _) => {
+                // r − 1 = (rⁿ − 1)/(1 + r + … + rⁿ⁻¹) with rⁿ = det(I + Z)
+                let z = combination(group, x);
+                let n = z.shape().rows;
+                let excess = determinant_excess(z);
+                let root = (one + excess).power(rational(1, n as i64));
+                let sum = (1..n).fold(one, |sum, power| sum + root.powi(power as i32));
+                (z - (excess / sum) * group.identity(graph), root)
+            }
+            (Chart::Product, Group::SpecialEuclidean(n)) if n > 1 => {
+                let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
+                let shape = group.element_shape();
+                ((turn / denominator).embed(shape, 0, 0) + x[1].embed(shape, 0, n), one)
+            }
+            (Chart::Identity, _) => (x[0], one),
+            (Chart::Exponential, _) if group != Group::UnitQuaternions => {
+                let element = self.element(group, x);
+                match &*element.node() {
+                    Node::Analytic(Analytic::Exponential, inner) => {
+                        let z = graph.expr(*inner);
+                        (z * z.analytic(Analytic::Phi), one)
+                    }
+                    _ => (element - group.identity(graph), one),
+                }
+            }
+            _ => (self.element(group, x) - group.identity(graph), one),
+        }
+    }
+
+    /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators: components of the
+    /// product vanish where those of ρ do. (I − Z) ρ (I − Z)ᵀ for rotations acting from the right, whose residual has F on the left or
+    /// Fᵀ on the right; with the signs changed for left actions; and likewise for other groups, Zᵀ standing for −Z.
+    pub fn clearing<'g>(self, group: Group, x: &[Expr<'g>], left_action: bool) -> Option<(Expr<'g>, Expr<'g>)> {
+        if self != Chart::Cayley || group == Group::UnitQuaternions {
+            return None;
+        }
+        let z = combination(group, x);
+        let identity = group.identity(z.graph());
+        let (plus, minus) = (identity + z.transpose(), identity - z.transpose());
+        Some(if left_action { (minus, plus) } else { (plus, minus) })
+    }
+
+    /// dx/dξ at the identity, for F = exp ξ, in a block.
+    pub fn slope_at_identity(self, group: Group, block: &Block) -> (i64, i64) {
+        let turns = block.offset == 0 && !matches!(group, Group::SpecialEuclidean(1) | Group::Similarity(1));
+        match self {
+            Chart::Cayley => (1, 2),
+            Chart::Product if turns => (1, 2),
+            _ => (1, 1),
+        }
+    }
+}
+
+/// Z = Σ x_i E_i over all blocks.
+fn combination<'g>(group: Group, x: &[Expr<'g>]) -> Expr<'g> {
+    let graph = x[0].graph();
+    let blocks = graph.blocks(group);
+    let index = |block: &Block| blocks.iter().position(|other| other == block).unwrap_or(0);
+    group.placed(graph, |block| x[index(block)])
+}
+
+/// exp Z, by Stumpff functions of s where Zᵏ⁺² = −s Zᵏ for a k up to two, s = −½ tr Z²: rotations, motions of space and of the plane,
+/// SL(2), SO(1, 2).
+fn exponential(z: Expr<'_>) -> Expr<'_> {
+    let graph = z.graph();
+    let s = -(z * z).trace() / 2;
+    let stumpff = |k: u8| s.function(Function::Stumpff(k));
+    let identity = graph.identity(z.shape().rows);
+    let square = z * z;
+    if identity::vanishes(square + s * identity) {
+        return stumpff(0) * identity + stumpff(1) * z;
+    }
+    if identity::vanishes(square * z + s * z) {
+        return identity + stumpff(1) * z + stumpff(2) * square;
+    }
+    if identity::vanishes(square * square + s * square) {
+        return identity + z + stumpff(2) * square + stumpff(3) * (square * z);
+    }
+    z.exponential()
+}
+
+/// (I − Z)⁻¹, whose powers and transposes carry all of the Cayley chart.
+fn resolvent(z: Expr<'_>) -> Expr<'_> {
+    (z.graph().identity(z.shape().rows) - z).inverse()
+}
+
+/// The quaternion (x, 1)/√(1 + |x|²).
+fn half_turn(x: Expr<'_>) -> Expr<'_> {
+    let graph = x.graph();
+    let shape = Shape::vector(4);
+    let scale = (graph.integer(1) + x.norm_squared()).power(rational(-1, 2));
+    scale * x.embed(shape, 0, 0) + scale * graph.unit(shape, 3, 0)
+}
+
+/// 2(I − Z)⁻¹Z. For 4×4 matrices with tr Z = tr Z³ = 0, those of the algebras that keep a form, Z⁴ + sZ² + d = 0 with
+/// s = −½ tr Z² and d = ⅛(tr Z²)² − ¼ tr Z⁴, so that it is 2(Z + Z²)((1 + s)I + Z²)/(1 + s + d).
+fn even_increment(z: Expr<'_>) -> (Expr<'_>, Expr<'_>) {
+    let graph = z.graph();
+    let one = graph.integer(1);
+    let square = z * z;
+    let odd = [z.trace(), (square * z).trace()];
+    if z.shape().rows != 4 || !odd.into_iter().all(identity::vanishes) {
+        return (2 * (resolvent(z) * z), one);
+    }
+    let (second, fourth) = (square.trace(), (square * square).trace());
+    let (s, d) = (-second / 2, second * second / 8 - fourth / 4);
+    (2 * ((z + square) * ((one + s) * graph.identity(4) + square)), one + s + d)
+}
+
+/// det(I + Z) − 1 = Σ e_k, the elementary symmetric functions of the eigenvalues by Newton's identities.
+fn determinant_excess(z: Expr<'_>) -> Expr<'_> {
+    let graph = z.graph();
+    let n = z.shape().rows;
+    let mut powers: Vec<Expr<'_>> = vec![z];
+    (2..=n).for_each(|_| powers.push(powers[powers.len() - 1] * z));
+    let traces: Vec<Expr<'_>> = powers
+        .into_iter()
+        .map(|power| if power == z && identity::vanishes(z.trace()) { graph.integer(0) } else { power.trace() })
+        .collect();
+    let mut elementary = vec![graph.integer(1)];
+    for k in 1..=n {
+        let term = |i: usize| {
+            let sign = if i % 2 == 1 { 1 } else { -1 };
+            sign * (elementary[k - i] * traces[i - 1])
+        };
+        let sum = (1..=k).map(term).fold(graph.integer(0), |sum, term| sum + term);
+        elementary.push(sum / k as i64);
+    }
+    elementary.into_iter().skip(1).fold(graph.integer(0), |sum, e| sum + e)
+}
+
+/// The increment of a rotation in its Cayley chart.
+fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+    let graph = x.graph();
+    let one = graph.integer(1);
+    let square = x.norm_squared();
+    match n {
+        2 | 3 => (2 * (z + z * z), one + square),
+        4 => {
+            let pfaffian = [(0, 5, 1), (1, 4, -1), (2, 3, 1)]
+                .iter()
+                .fold(graph.integer(0), |sum, &(i, j, sign)| sum + sign * (x.entry(i, 0) * x.entry(j, 0)));
+            let shifted = (one + square) * graph.identity(4) + z * z;
+            (2 * ((z + z * z) * shifted), one + square + pfaffian * pfaffian)
+        }
+        _ => (2 * (resolvent(z) * z), one),
+    }
+}
+
+impl Group {
+    /// The coordinates of log F, the principal logarithm.
+    pub fn logarithm(self, f: Expr<'_>) -> Expr<'_> {
+        match self {
+            Group::Translation(_) => f,
+            // the matrix of q ↦ log(f) q has log(f) = ξ/2 in its last column
+            Group::UnitQuaternions => 2 * left_matrix(f).analytic(Analytic::Logarithm).block(0, 3, Shape::vector(3)),
+            _ => self.projected_coordinates(f.analytic(Analytic::Logarithm)),
+        }
+    }
+
+    /// The matrix of ad_ξ in the basis of the algebra.
+    pub fn ad<'g>(self, xi: Expr<'g>) -> Expr<'g> {
+        let (graph, m) = (xi.graph(), self.dimension());
+        let basis = graph.matrices(self);
+        let bracket = |a: Expr<'g>, b: Expr<'g>| match self {
+            Group::Translation(_) => graph.zero(self.element_shape()),
+            _ => self.compose(a, b) - self.compose(b, a),
+        };
+        let structure = |i: usize| {
+            let columns = (0..m).map(|j| self.projected_coordinates(bracket(basis[i], basis[j])));
+            let columns: Vec<Expr<'g>> = columns.collect();
+            Shape::square(m)
+                .positions()
+                .filter_map(|(row, column)| {
+                    let value = columns[column].entry(row, 0).expand().as_number()?;
+                    (!num_traits::Zero::is_zero(&value)).then_some((row, column, value))
+                })
+                .collect::<crate::Sparse>()
+        };
+        xi.wedge(graph.algebra(Shape::square(m), (0..m).map(structure).collect()))
+    }
+
+    /// dexp_ξ = φ(ad_ξ), the right trivialisation of the derivative of exp: (d exp ξ) exp(−ξ) = dexp_ξ dξ.
+    pub fn exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
+        let (graph, ad) = (xi.graph(), self.ad(xi));
+        let square = ad * ad;
+        let s = -square.trace() / 2;
+        let stumpff = |k: u8| s.function(Function::Stumpff(k));
+        let one = graph.identity(self.dimension());
+        match () {
+            () if identity::vanishes(ad) => one,
+            () if identity::vanishes(square) => one + ad / 2,
+            () if identity::vanishes(square * ad + s * ad) => one + stumpff(2) * ad + stumpff(3) * square,
+            () => ad.analytic(Analytic::Phi),
+        }
+    }
+}

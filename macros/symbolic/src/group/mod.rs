@@ -1,0 +1,233 @@
+//! Matrix Lie groups as data: what the derivation needs to know of a group, and nothing else.
+//!
+//! The Lie algebra of a group is a sum of *blocks*, each a basis of matrices with a place in the matrices of the group: se(3) is so(3)
+//! in the upper left and R³ in the last column. Blocks are the units in which charts are made and equations uncouple.
+
+mod bases;
+mod chart;
+mod declared;
+mod motion;
+pub(crate) mod sample;
+
+use std::rc::Rc;
+
+use crate::{Algebra, Expr, Graph, Property, Shape, integer};
+
+pub use chart::Chart;
+pub(crate) use declared::Definition;
+pub use declared::{Span, reduce};
+pub use motion::{conjugate, quaternion_product};
+
+/// A Lie group, its elements matrices, vectors or unit quaternions.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Group {
+    /// SO(n): RᵀR = I, det R = 1.
+    SpecialOrthogonal(usize),
+    /// SO(p, q): FᵀηF = η with η = diag(1 …, −1 …), the component of the identity.
+    PseudoOrthogonal(usize, usize),
+    /// SE(n): rotations and translations, (W b; 0 1).
+    SpecialEuclidean(usize),
+    /// Rⁿ with addition; elements are vectors.
+    Translation(usize),
+    /// GL(n): invertible matrices.
+    GeneralLinear(usize),
+    /// SL(n): det F = 1.
+    SpecialLinear(usize),
+    /// Sp(2n), by its matrix size 2n: FᵀΩF = Ω, Ω = (0 I; −I 0).
+    Symplectic(usize),
+    /// U(n) as real 2n×2n matrices (A −B; B A).
+    Unitary(usize),
+    /// SU(n), n > 2, as real 2n×2n matrices.
+    SpecialUnitary(usize),
+    /// SU(2): quaternions of length one, as the vector (i, j, k, w).
+    UnitQuaternions,
+    /// The Heisenberg group of dimension 2n + 1, upper unitriangular of size n + 2.
+    Heisenberg(usize),
+    /// Aff(n): (A b; 0 1) with A invertible.
+    Affine(usize),
+    /// Sim(n): (sR b; 0 1) with a positive s.
+    Similarity(usize),
+    /// A group that a user has declared.
+    Declared(Declared),
+}
+
+/// A declared group: its place in the graph and its sizes.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Declared {
+    index: u32,
+    size: usize,
+    dimension: usize,
+}
+
+/// A part of a Lie algebra: a basis and where its matrices stand in those of the group.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Block {
+    /// The basis.
+    pub algebra: Algebra,
+    /// The first row of its matrices.
+    pub row: usize,
+    /// Their first column.
+    pub column: usize,
+    /// The index of its first component among those of the group.
+    pub offset: usize,
+}
+
+impl Group {
+    /// The name that a declaration uses, `SO<3>`.
+    pub fn name(self, graph: &Graph) -> String {
+        match self {
+            Group::Declared(declared) => graph.definition_at(declared.index).name.clone(),
+            _ => {
+                let (name, sizes) = self.symbol();
+                let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+                format!("{name}<{}>", sizes.join(", "))
+            }
+        }
+    }
+
+    /// The letters and the sizes of a built-in group.
+    pub fn symbol(self) -> (&'static str, Vec<usize>) {
+        match self {
+            Group::SpecialOrthogonal(n) => ("SO", vec![n]),
+            Group::PseudoOrthogonal(p, q) => ("SO", vec![p, q]),
+            Group::SpecialEuclidean(n) => ("SE", vec![n]),
+            Group::Translation(n) => ("Translation", vec![n]),
+            Group::GeneralLinear(n) => ("GL", vec![n]),
+            Group::SpecialLinear(n) => ("SL", vec![n]),
+            Group::Symplectic(n) => ("Sp", vec![n]),
+            Group::Unitary(n) => ("U", vec![n]),
+            Group::SpecialUnitary(n) => ("SU", vec![n]),
+            Group::UnitQuaternions => ("SU", vec![2]),
+            Group::Heisenberg(n) => ("Heisenberg", vec![n]),
+            Group::Affine(n) => ("Aff", vec![n]),
+            Group::Similarity(n) => ("Sim", vec![n]),
+            Group::Declared(_) => ("", Vec::new()),
+        }
+    }
+
+    /// Whether a user has declared it.
+    pub fn is_declared(self) -> bool {
+        matches!(self, Group::Declared(_))
+    }
+
+    /// The shape of the arrays that represent elements.
+    pub fn element_shape(self) -> Shape {
+        match self {
+            Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) | Group::SpecialLinear(n) | Group::Symplectic(n) => {
+                Shape::square(n)
+            }
+            Group::PseudoOrthogonal(p, q) => Shape::square(p + q),
+            Group::SpecialEuclidean(n) | Group::Affine(n) | Group::Similarity(n) => Shape::square(n + 1),
+            Group::Translation(n) => Shape::vector(n),
+            Group::Unitary(n) | Group::SpecialUnitary(n) => Shape::square(2 * n),
+            Group::UnitQuaternions => Shape::vector(4),
+            Group::Heisenberg(n) => Shape::square(n + 2),
+            Group::Declared(declared) => Shape::square(declared.size),
+        }
+    }
+
+    /// The dimension m.
+    pub fn dimension(self) -> usize {
+        let rotations = |n: usize| n * (n - 1) / 2;
+        match self {
+            Group::SpecialOrthogonal(n) => rotations(n),
+            Group::PseudoOrthogonal(p, q) => rotations(p + q),
+            Group::SpecialEuclidean(n) => rotations(n) + n,
+            Group::Similarity(n) => rotations(n) + 1 + n,
+            Group::Translation(n) => n,
+            Group::GeneralLinear(n) | Group::Unitary(n) => n * n,
+            Group::SpecialLinear(n) | Group::SpecialUnitary(n) => n * n - 1,
+            Group::Symplectic(n) => n * (n + 1) / 2,
+            Group::UnitQuaternions => 3,
+            Group::Heisenberg(n) => 2 * n + 1,
+            Group::Affine(n) => n * n + n,
+            Group::Declared(declared) => declared.dimension,
+        }
+    }
+
+    /// What holds for every element.
+    pub fn element_property(self) -> Property {
+        match self {
+            Group::SpecialOrthogonal(_) => Property::Orthogonal,
+            Group::Translation(_) => Property::General,
+            Group::UnitQuaternions => Property::Unit,
+            _ => Property::Element(self),
+        }
+    }
+
+    /// Whether elements are vectors under addition.
+    pub fn is_translation(self) -> bool {
+        matches!(self, Group::Translation(_))
+    }
+
+    /// Whether elements are orthogonal matrices.
+    pub fn is_orthogonal(self) -> bool {
+        matches!(self, Group::SpecialOrthogonal(_) | Group::Unitary(_) | Group::SpecialUnitary(_))
+    }
+
+    /// Whether the group is abelian, so that both trivialisations agree.
+    pub fn is_abelian(self, graph: &Graph) -> bool {
+        match self {
+            Group::Translation(_) | Group::SpecialOrthogonal(2) => true,
+            Group::UnitQuaternions => false,
+            _ => {
+                let basis = graph.matrices(self);
+                basis.iter().all(|a| basis.iter().all(|b| *a * *b == *b * *a))
+            }
+        }
+    }
+
+    /// The size of the linear part of a group of matrices (A b; 0 1).
+    pub fn linear_part(self) -> Option<usize> {
+        match self {
+            Group::SpecialEuclidean(n) | Group::Affine(n) | Group::Similarity(n) => Some(n),
+            _ => None,
+        }
+    }
+}
+
+impl Graph {
+    /// The blocks of a group's Lie algebra, in the order of its components.
+    pub fn blocks(&self, group: Group) -> Rc<[Block]> {
+        if let Group::Declared(declared) = group {
+            let algebra = self.definition_at(declared.index).algebra;
+            return Rc::new([Block { algebra, row: 0, column: 0, offset: 0 }]);
+        }
+        self.blocks_of(group, || bases::blocks(self, group))
+    }
+
+    /// The only basis of a group whose algebra is one block; by its first block otherwise.
+    pub fn algebra_of(&self, group: Group) -> Algebra {
+        self.blocks(group)[0].algebra
+    }
+
+    /// The basis of a group's Lie algebra as literal matrices.
+    pub fn matrices(&self, group: Group) -> Vec<Expr<'_>> {
+        let shape = group.element_shape();
+        let placed = |block: &Block| {
+            let (row, column) = (block.row, block.column);
+            self.basis(block.algebra)
+                .elements
+                .iter()
+                .map(|element| {
+                    let moved = element.iter().map(|(i, j, value)| (i + row, j + column, value.clone())).collect();
+                    self.sparse_literal(shape, &moved)
+                })
+                .collect::<Vec<_>>()
+        };
+        self.blocks(group).iter().flat_map(placed).collect()
+    }
+
+    /// (0 I; −I 0) of size 2n.
+    pub(crate) fn symplectic_form(&self, size: usize) -> Expr<'_> {
+        let n = size / 2;
+        let entries = (0..n).flat_map(|i| [(i, n + i, integer(1)), (n + i, i, integer(-1))]).collect();
+        self.sparse_literal(Shape::square(size), &entries)
+    }
+
+    /// diag(1 …, −1 …) with p ones.
+    pub(crate) fn metric(&self, p: usize, q: usize) -> Expr<'_> {
+        let entries = (0..p + q).map(|i| (i, i, integer(if i < p { 1 } else { -1 }))).collect();
+        self.sparse_literal(Shape::square(p + q), &entries)
+    }
+}

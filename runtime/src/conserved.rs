@@ -1,0 +1,108 @@
+//! Momenta that no step changes, with their names.
+
+use crate::Clebsch;
+use core::fmt::{self, Debug, Display, Formatter};
+use core::iter::Zip;
+use core::ops::Index;
+
+/// A system with conserved momenta.
+///
+/// Implemented by `#[derive(Clebsch)]` where it has found some, and nowhere else: a system without any has no method
+/// [`Stepper::conserved`](crate::Stepper::conserved). Found are the directions of the symmetries along which cost and potential
+/// are invariant for every value of the parameters (Noether's theorem for discrete Lagrangians); a step keeps their momenta
+/// exactly, a computed one to round-off.
+///
+/// Source: Marsden and West, *Discrete mechanics and variational integrators*, 2001, theorem 1.3.3.
+pub trait Conserves: Clebsch {
+    /// The momenta: a [`Conserved`].
+    type Conserved: Copy + Debug + Display + PartialEq;
+
+    /// The conserved momenta at (q, μ).
+    fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved;
+}
+
+/// The values of K conserved momenta, each with its name.
+///
+/// ```
+/// use clebsch::Conserved;
+///
+/// let momenta = Conserved::new(["about e3, spatial", "about the axis, body"], [0.25, -1.5]);
+/// assert_eq!(momenta[1], -1.5);
+/// assert_eq!(momenta.get("about e3, spatial"), Some(0.25));
+/// assert_eq!(momenta.to_string(), "about e3, spatial = 0.25\nabout the axis, body = -1.5");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved<T, const K: usize> {
+    names: [&'static str; K],
+    values: [T; K],
+}
+
+impl<T: Copy, const K: usize> Conserved<T, K> {
+    /// Number i of `values` is called by number i of `names`.
+    #[inline]
+    pub const fn new(names: [&'static str; K], values: [T; K]) -> Self {
+        Self { names, values }
+    }
+
+    /// The names.
+    #[inline]
+    pub fn names(&self) -> &[&'static str; K] {
+        &self.names
+    }
+
+    /// The values, in the units of the momentum.
+    #[inline]
+    pub fn values(&self) -> &[T; K] {
+        &self.values
+    }
+
+    /// The value with this name.
+    pub fn get(&self, name: &str) -> Option<T> {
+        self.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    /// All pairs of a name and its value.
+    #[inline]
+    pub fn iter(&self) -> Zip<core::array::IntoIter<&'static str, K>, core::array::IntoIter<T, K>> {
+        self.names.into_iter().zip(self.values)
+    }
+}
+
+/// # Panics
+/// As an array does, for an index that is not below K.
+impl<T, const K: usize> Index<usize> for Conserved<T, K> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, index: usize) -> &T {
+        &self.values[index]
+    }
+}
+
+/// One line `name = value` for each.
+impl<T: Copy + Display, const K: usize> Display for Conserved<T, K> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for (index, (name, value)) in self.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "\n" };
+            write!(f, "{separator}{name} = ")?;
+            value.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Conserved;
+    use std::format;
+    use std::string::ToString;
+
+    #[test]
+    fn values_are_found_by_name_and_printed_as_asked() {
+        let momenta = Conserved::new(["a", "b"], [1.0 / 3.0, 2.0]);
+        assert_eq!((momenta.get("b"), momenta.get("c")), (Some(2.0), None));
+        assert_eq!(format!("{momenta:.2}"), "a = 0.33\nb = 2.00");
+        assert!(momenta.iter().eq([("a", 1.0 / 3.0), ("b", 2.0)]));
+        assert_eq!(Conserved::<f64, 0>::new([], []).to_string(), "");
+    }
+}

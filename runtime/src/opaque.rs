@@ -1,0 +1,45 @@
+//! Opaque potentials: whether a gradient method belongs to a value method.
+
+use crate::{Error, Scalar};
+
+/// Checks one entry of a gradient against differences of the value along it.
+///
+/// The difference is Richardson's, (8(f₊ − f₋) − (f₊₊ − f₋₋))/12δ with δ = ε^{1/5} max(1, |x|), whose error is of the order ε^{4/5} for a
+/// smooth function; ε^{2/5} of the terms, 5e-7 for `f64`, is accepted.
+///
+/// # Errors
+/// [`Error::WrongGradient`]; [`Error::NotFinite`] where the value or the gradient is not.
+pub fn check_slope<T: Scalar>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
+    let one = T::one();
+    let size = if x.abs() > one { x.abs() } else { one };
+    let delta = T::EPSILON.powf(T::from_ratio(1, 5)) * size;
+    let near = value(x + delta) - value(x - delta);
+    let far = value(x + delta + delta) - value(x - delta - delta);
+    let difference = (T::from_f64(8.0) * near - far) / (T::from_f64(12.0) * delta);
+    if !(difference.is_finite() && slope.is_finite()) {
+        return Err(Error::NotFinite { name: "the potential or its gradient" });
+    }
+    let scale = slope.abs() + difference.abs() + value(x).abs() / size;
+    if (slope - difference).abs() <= T::EPSILON.powf(T::from_ratio(2, 5)) * scale {
+        return Ok(());
+    }
+    Err(Error::WrongGradient { entry, gradient: slope.to_f64(), difference: difference.to_f64() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check_slope;
+    use crate::Error;
+
+    #[test]
+    fn a_gradient_has_to_be_that_of_the_value() {
+        let value = |x: f64| (3.0 * x).sin() / x;
+        let slope = |x: f64| 3.0 * (3.0 * x).cos() / x - (3.0 * x).sin() / (x * x);
+        for x in [-2.0, 0.3, 1.7] {
+            assert_eq!(check_slope(value, x, slope(x), 0), Ok(()));
+            assert!(matches!(check_slope(value, x, -slope(x), 5), Err(Error::WrongGradient { entry: 5, .. })));
+            assert!(matches!(check_slope(value, x, slope(x) * 1.001, 0), Err(Error::WrongGradient { .. })));
+        }
+        assert!(matches!(check_slope(|_| f64::NAN, 1.0, 0.0, 0), Err(Error::NotFinite { .. })));
+    }
+}

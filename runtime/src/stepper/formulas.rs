@@ -1,0 +1,102 @@
+//! The derived formulas as methods of a stepper, which knows the step size.
+
+use super::Stepper;
+use crate::{Clebsch, Error, Scalar};
+use num_traits::Zero;
+
+impl<S: Clebsch> Stepper<S> {
+    /// The potential V(t, q).
+    #[inline]
+    pub fn potential_at(&self, t: S::Scalar, q: &S::Configuration) -> S::Scalar {
+        self.system.potential(t, q)
+    }
+
+    /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that starts at the time t and moves q by F.
+    #[inline]
+    pub fn legendre_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
+        self.system.legendre(self.h, t, q, f)
+    }
+
+    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that starts at the time t and moves q by F.
+    #[inline]
+    pub fn legendre_next_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
+        self.system.legendre_next(self.h, t, q, f)
+    }
+
+    /// The group element F of the step that starts at (q, N) and the time t: the implicit solve.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    #[inline]
+    pub fn inverse_legendre_at(
+        &self,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Element, Error> {
+        match self.system.inverse_legendre(&self.constants, t, q, mu) {
+            Ok(element) => Ok(element),
+            Err(error) => Err(error.with_step_size(self.h.to_f64())),
+        }
+    }
+
+    /// The action Φ_F(q).
+    #[inline]
+    pub fn act(&self, f: &S::Element, q: &S::Configuration) -> S::Configuration {
+        self.system.act(f, q)
+    }
+
+    /// The momentum map J(q, p).
+    #[inline]
+    pub fn momentum_map(&self, q: &S::Configuration, p: &S::Configuration) -> S::Momentum {
+        self.system.momentum_map(q, p)
+    }
+
+    /// The coadjoint action Ad*_F μ.
+    #[inline]
+    pub fn coadjoint(&self, f: &S::Element, mu: &S::Momentum) -> S::Momentum {
+        self.system.coadjoint(f, mu)
+    }
+
+    /// The representing matrices of a momentum.
+    #[inline]
+    pub fn momentum_matrix(&self, mu: &S::Momentum) -> S::MomentumMatrix {
+        S::momentum_matrix(mu)
+    }
+
+    /// The components of a momentum given by its representing matrices.
+    #[inline]
+    pub fn momentum_components(&self, m: &S::MomentumMatrix) -> S::Momentum {
+        S::momentum_components(m)
+    }
+}
+
+/// For autonomous systems; the others have the same methods with `_at` in their names and the time as the first argument.
+impl<S: Clebsch<Time = ()>> Stepper<S> {
+    /// The potential V(q).
+    #[inline]
+    pub fn potential(&self, q: &S::Configuration) -> S::Scalar {
+        self.potential_at(S::Scalar::zero(), q)
+    }
+
+    /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
+    #[inline]
+    pub fn legendre(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
+        self.legendre_at(S::Scalar::zero(), q, f)
+    }
+
+    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
+    #[inline]
+    pub fn legendre_next(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
+        self.legendre_next_at(S::Scalar::zero(), q, f)
+    }
+
+    /// The group element F of the step that starts at (q, N): the implicit solve.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    #[inline]
+    pub fn inverse_legendre(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Element, Error> {
+        self.inverse_legendre_at(S::Scalar::zero(), q, mu)
+    }
+}

@@ -1,0 +1,227 @@
+//! A pendulum on a driven pivot as its derive macro is meant to expand it: time, a closed form, and points of a sphere.
+
+/// A spherical pendulum whose pivot shakes up and down.
+#[derive(Clone, Debug)]
+pub struct DrivenPendulum {
+    /// Mass of the bob, kg.
+    pub mass: f64,
+    /// Length, m.
+    pub length: f64,
+    /// g, m/s².
+    pub gravity: f64,
+    /// Largest acceleration of the pivot, m/s².
+    pub shake: f64,
+    /// Its angular frequency, rad/s.
+    pub rate: f64,
+}
+
+const _: () = {
+    use ::clebsch::__private::{SMatrix, SVector, matrix, vector};
+
+    /// Computed once per stepper.
+    #[derive(Clone, Debug)]
+    pub struct Constants {
+        /// Step size h.
+        h: f64,
+        /// h/2
+        half_h: f64,
+        /// h / (mass·length²)
+        h_by_inertia: f64,
+    }
+
+    #[automatically_derived]
+    impl ::clebsch::Clebsch for DrivenPendulum {
+        type Scalar = f64;
+        type Configuration = SVector<f64, 3>;
+        type Element = SMatrix<f64, 3, 3>;
+        type Momentum = SVector<f64, 3>;
+        type MomentumMatrix = SMatrix<f64, 3, 3>;
+        type Impulse = SVector<f64, 3>;
+        type Constants = Constants;
+        type Time = ::clebsch::Clock<f64>;
+        const NAME: &'static str = "DrivenPendulum";
+        const ORDER: u32 = 2;
+        const DERIVATION: &'static str = "a hand expansion";
+
+        fn constants(&self, h: f64) -> ::core::result::Result<Constants, ::clebsch::Error> {
+            ::clebsch::__private::check_finite("mass", &self.mass)?;
+            ::clebsch::__private::check_finite("length", &self.length)?;
+            ::clebsch::__private::check_finite("gravity", &self.gravity)?;
+            ::clebsch::__private::check_finite("shake", &self.shake)?;
+            ::clebsch::__private::check_finite("rate", &self.rate)?;
+            ::clebsch::__private::invert(&matrix([[inertia(self)]]))?;
+            Ok(Constants { h, half_h: h / 2.0, h_by_inertia: h / inertia(self) })
+        }
+
+        /// Φ_F(q) = F q
+        #[inline]
+        fn act(&self, f: &SMatrix<f64, 3, 3>, q: &SVector<f64, 3>) -> SVector<f64, 3> {
+            f * q
+        }
+
+        /// J(q, p) = q × p
+        #[inline]
+        fn momentum_map(&self, q: &SVector<f64, 3>, p: &SVector<f64, 3>) -> SVector<f64, 3> {
+            q.cross(p)
+        }
+
+        /// Ad*_F μ = Fᵀμ
+        #[inline]
+        fn coadjoint(&self, f: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> SVector<f64, 3> {
+            f.tr_mul(mu)
+        }
+
+        /// T*L_F ∂_F ℓd − J(q, ∂_q ℓd): N^ = mass·length² (F − Fᵀ)/(2h) + (h/2)(q × ∇V(t, q))^
+        fn legendre(&self, h: f64, t: f64, q: &SVector<f64, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            components(f) * (inertia(self) / (2.0 * h)) + moment(self, t, q) * (h / 2.0)
+        }
+
+        /// T*R_F ∂_F ℓd: N⁺^ = mass·length² (F − Fᵀ)/(2h) − (h/2)(q⁺ × ∇V(t + h, q⁺))^
+        fn legendre_next(&self, h: f64, t: f64, q: &SVector<f64, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            components(f) * (inertia(self) / (2.0 * h)) - moment(self, t + h, &(f * q)) * (h / 2.0)
+        }
+
+        /// F with π^ = mass·length² (F − Fᵀ)/(2h), π = N − (h/2) J(q, ∇V)
+        #[inline]
+        fn inverse_legendre(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+            mu: &SVector<f64, 3>,
+        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
+            let d = increment(constants, &(mu + self.impulse(constants, t, q)))?;
+            Ok(::clebsch::__private::from_increment(&d))
+        }
+
+        /// −(h/2) J(q, ∇V(t, q))
+        #[inline]
+        fn impulse(&self, constants: &Constants, t: f64, q: &SVector<f64, 3>) -> SVector<f64, 3> {
+            moment(self, t, q) * -constants.half_h
+        }
+
+        /// π = N − (h/2) J(q, ∇V), q⁺ = F q, N⁺ = π − (h/2) J(q⁺, ∇V⁺)
+        #[inline]
+        fn step(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+            mu: &SVector<f64, 3>,
+            impulse: &SVector<f64, 3>,
+        ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
+            let kicked = mu + impulse;
+            let next = q + increment(constants, &kicked)? * q;
+            let impulse_next = self.impulse(constants, t + constants.h, &next);
+            Ok((next, kicked + impulse_next, impulse_next))
+        }
+
+        /// p̃ = p − (h/2) ∇V, q⁺ = F q, p⁺ = F p̃ − (h/2) ∇V⁺
+        #[inline]
+        fn step_symmetric(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+            p: &SVector<f64, 3>,
+        ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
+            let kicked = p - gradient(self, t) * constants.half_h;
+            let d = increment(constants, &self.momentum_map(q, &kicked))?;
+            Ok((q + d * q, kicked + d * kicked - gradient(self, t + constants.h) * constants.half_h))
+        }
+
+        /// V(t, q) = mass·length·(gravity + shake cos(rate t)) q₃
+        #[inline]
+        fn potential(&self, t: f64, q: &SVector<f64, 3>) -> f64 {
+            gradient(self, t).dot(q)
+        }
+
+        /// |N|² / (2 mass·length²)
+        #[inline]
+        fn kinetic_energy(&self, _: &Constants, _t: f64, _q: &SVector<f64, 3>, mu: &SVector<f64, 3>) -> f64 {
+            mu.norm_squared() / (2.0 * inertia(self))
+        }
+
+        /// M = ½ N^
+        #[inline]
+        fn momentum_matrix(mu: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            (mu * 0.5).cross_matrix()
+        }
+
+        /// N_i = ⟨M, E_i⟩
+        #[inline]
+        fn momentum_components(m: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            components(m)
+        }
+
+        /// ||q|² − 1|
+        fn orbit_defect(&self, q: &SVector<f64, 3>) -> f64 {
+            ::clebsch::__private::length_defect(q)
+        }
+
+        /// The component of N along q.
+        fn isotropy_defect(&self, q: &SVector<f64, 3>, mu: &SVector<f64, 3>) -> f64 {
+            ::clebsch::__private::annihilator_defect(&momenta(q), mu)
+        }
+
+        /// N without its component along q.
+        fn project_momentum(&self, q: &SVector<f64, 3>, mu: &SVector<f64, 3>) -> SVector<f64, 3> {
+            ::clebsch::__private::annihilator_projection(&momenta(q), mu)
+        }
+    }
+
+    #[automatically_derived]
+    impl ::clebsch::Conserves for DrivenPendulum {
+        type Conserved = ::clebsch::Conserved<f64, 1>;
+
+        /// N₃
+        #[inline]
+        fn conserved(&self, _q: &SVector<f64, 3>, mu: &SVector<f64, 3>) -> ::clebsch::Conserved<f64, 1> {
+            ::clebsch::Conserved::new(["about e3"], [mu.z])
+        }
+    }
+
+    /// mass·length²
+    #[inline]
+    fn inertia(pendulum: &DrivenPendulum) -> f64 {
+        pendulum.mass * pendulum.length * pendulum.length
+    }
+
+    /// ∇V(t)
+    #[inline]
+    fn gradient(pendulum: &DrivenPendulum, t: f64) -> SVector<f64, 3> {
+        let acceleration = pendulum.gravity + pendulum.shake * ::clebsch::Scalar::cos(pendulum.rate * t);
+        vector([0.0, 0.0, pendulum.mass * pendulum.length * acceleration])
+    }
+
+    /// J(q, ∇V(t))
+    #[inline]
+    fn moment(pendulum: &DrivenPendulum, t: f64, q: &SVector<f64, 3>) -> SVector<f64, 3> {
+        q.cross(&gradient(pendulum, t))
+    }
+
+    /// F − I = A + A²/(1 + √(1 − |a|²)), A = a^, a = h π / (mass·length²)
+    #[inline]
+    fn increment(
+        constants: &Constants,
+        kicked: &SVector<f64, 3>,
+    ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
+        let a = kicked * constants.h_by_inertia;
+        let sine_squared = a.norm_squared();
+        ::clebsch::__private::check_sine_squared(sine_squared)?;
+        let a = a.cross_matrix();
+        Ok(a + a * a / (1.0 + ::clebsch::Scalar::sqrt(1.0 - sine_squared)))
+    }
+
+    /// The momenta J(q, p) of all p: rows J(q, e_i).
+    #[inline]
+    fn momenta(q: &SVector<f64, 3>) -> [[f64; 3]; 3] {
+        [[0.0, q.z, -q.y], [-q.z, 0.0, q.x], [q.y, -q.x, 0.0]]
+    }
+
+    /// ⟨A, E_i⟩, E_i = e_i^
+    #[inline]
+    fn components(a: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+        vector([a[(2, 1)] - a[(1, 2)], a[(0, 2)] - a[(2, 0)], a[(1, 0)] - a[(0, 1)]])
+    }
+};

@@ -1,0 +1,10 @@
+//! The precise oracle against a 60-digit reference computation, and against what any such integrator must do.
+
+mod comparison;
+mod continuum;
+mod excerpts;
+mod groups;
+mod numbers;
+mod reference;
+mod structure;
+mod systems;

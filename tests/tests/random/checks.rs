@@ -1,0 +1,193 @@
+//! What has to hold for every problem that compiles.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use clebsch_compiler::lower::Program;
+use clebsch_compiler::{Graph, compile};
+use clebsch_tests::oracle::precise::double_double::DoubleDouble;
+use clebsch_tests::oracle::precise::energy::energy;
+use clebsch_tests::oracle::precise::equation::Equation;
+use clebsch_tests::oracle::precise::matrix::Matrix;
+use clebsch_tests::oracle::precise::problem::{Adjoint, Problem};
+use clebsch_tests::oracle::precise::real::Real;
+use clebsch_tests::oracle::precise::step::{State, composed_trajectory, step, trajectory};
+use clebsch_tests::oracle::random::Random;
+use proc_macro2::TokenStream;
+
+use crate::problem::{Declared, Kind};
+use crate::stepping::{Seen, Stepper};
+
+/// The step.
+const H: f64 = 0.05;
+/// The number of steps.
+const STEPS: usize = 5;
+
+/// What was found in a problem that passed.
+#[derive(Copy, Clone, Debug, Default)]
+#[allow(dead_code, reason = "some of it is only shown")]
+pub struct Found {
+    pub composed: bool,
+    pub conserved: usize,
+    pub couples: bool,
+    pub implicit: bool,
+    pub deviation: f64,
+    pub energy: f64,
+    pub drift: f64,
+}
+
+/// Compiles the declaration, steps it, and holds it against the oracle.
+///
+/// # Errors
+/// What does not hold, in words.
+pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
+    let text = problem.text();
+    let run = || -> Result<Found, String> {
+        let tokens: TokenStream = text.parse().map_err(|error| format!("no tokens: {error}"))?;
+        let graph = Graph::new();
+        let program = compile(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
+        compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))
+    };
+    let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().cloned();
+        Err(format!("panic: {}", text.or(panic.downcast_ref::<&str>().map(|s| s.to_string())).unwrap_or_default()))
+    });
+    result.map_err(|error| format!("seed {seed}: {error}\n{text}"))
+}
+
+fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> Result<Found, String> {
+    let start = start(problem, random);
+    let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
+    let mut stepper = Stepper::new(program, &fields, H);
+    let h = DoubleDouble::of(H);
+    let composed = program.formulas.parts() == 2;
+    let first = start.lift::<DoubleDouble>();
+    let oracle = match composed {
+        true => composed_trajectory(problem, h, &first, STEPS),
+        false => trajectory(problem, h, &first, STEPS),
+    };
+    let oracle = oracle.map_err(|lost| format!("the oracle has no step: {lost:?}"))?;
+    let mut found = Found {
+        composed,
+        conserved: program.formulas.symmetries.conserved.len(),
+        couples: program.formulas.lagrangian.couples,
+        implicit: program.steps.iter().any(|step| step.solves.iter().any(|solve| solve.predict.is_none())),
+        ..Found::default()
+    };
+    let mut state = seen(problem, &start);
+    for (k, exact) in oracle.iter().enumerate().skip(1) {
+        state = stepper.step((k - 1) as f64 * H, &state)?;
+        let distance = distance(problem, exact, &state);
+        if distance.is_nan() || distance > 1e-12 {
+            return Err(format!("step {k} is {distance:.1e} from the oracle"));
+        }
+        found.deviation = found.deviation.max(distance);
+    }
+    moves(&oracle)?;
+    found.drift = drift(problem, &mut stepper, &oracle)?;
+    found.energy = energies(problem, &mut stepper, &start)?;
+    if problem.order == 2 {
+        time_symmetry(problem, &first, composed)?;
+    }
+    Ok(found)
+}
+
+/// A configuration and a momentum that its motions can have.
+fn start(problem: &Declared, random: &mut Random) -> State<f64> {
+    let q: Vec<Matrix<f64>> = problem.leaves.iter().map(|leaf| leaf.start.clone()).collect();
+    let factors = problem.factors();
+    let equation = Equation { problem, factors: &factors, t: 0.0, h: H, q: &q };
+    let covector = |leaf: &Matrix<f64>| Matrix::from_fn(leaf.shape().0, leaf.shape().1, |_, _| random.number());
+    let p: Vec<Matrix<f64>> = q.iter().map(covector).collect();
+    let mut n = equation.momentum_map(&p);
+    if problem.dials.contains(&"isotropy = free") {
+        n.iter_mut().for_each(|n| *n = random.number());
+    }
+    // momenta of size ½: the step turns by angles of a few hundredths
+    let size = n.iter().fold(0.25, |max, n| f64::max(max, n.abs()));
+    n.iter_mut().for_each(|n| *n *= 0.5 / size);
+    State { q, n }
+}
+
+/// What the program sees of a matrix of the oracle.
+fn shown<R: Copy>(kind: Kind, matrix: &Matrix<R>) -> Vec<R> {
+    match kind {
+        Kind::Quaternion => matrix.block(0..4, 3..4).entries().to_vec(),
+        _ => matrix.entries().to_vec(),
+    }
+}
+
+fn seen(problem: &Declared, state: &State<f64>) -> Seen {
+    let q = problem.leaves.iter().zip(&state.q).map(|(leaf, q)| shown(leaf.kind, q)).collect();
+    Seen { q, mu: state.n.clone() }
+}
+
+fn rounded(state: &State<DoubleDouble>) -> State<f64> {
+    State { q: state.q.iter().map(|q| q.map(Real::to_f64)).collect(), n: state.n.iter().map(|n| n.to_f64()).collect() }
+}
+
+/// The largest difference, relative to the largest number of the state where that is above one.
+fn distance(problem: &Declared, exact: &State<DoubleDouble>, state: &Seen) -> f64 {
+    let exact = seen(problem, &rounded(exact));
+    let (a, b) = ([exact.q.concat(), exact.mu].concat(), [state.q.concat(), state.mu.clone()].concat());
+    if a.len() != b.len() {
+        return f64::INFINITY;
+    }
+    let size = a.iter().fold(1.0, |max, x| f64::max(max, x.abs()));
+    a.iter().zip(b).fold(0.0, |max: f64, (a, b)| if (a - b).is_nan() { f64::NAN } else { max.max((a - b).abs()) })
+        / size
+}
+
+fn moves(oracle: &[State<DoubleDouble>]) -> Result<(), String> {
+    let (first, last) = (rounded(&oracle[0]), rounded(&oracle[oracle.len() - 1]));
+    let moved = first.q.iter().zip(&last.q).any(|(a, b)| (a - b).size() > 1e-6);
+    if moved { Ok(()) } else { Err("nothing moves".into()) }
+}
+
+/// The largest change of a momentum that the program calls conserved, along the oracle's trajectory.
+fn drift(problem: &Declared, stepper: &mut Stepper<'_, '_>, oracle: &[State<DoubleDouble>]) -> Result<f64, String> {
+    let at =
+        |stepper: &mut Stepper<'_, '_>, k: usize| stepper.conserved(k as f64 * H, &seen(problem, &rounded(&oracle[k])));
+    let expected = at(stepper, 0);
+    let size = expected.iter().fold(1.0, |max, x| f64::max(max, x.abs()));
+    let mut largest = 0.0;
+    for k in 1..oracle.len() {
+        let now = at(stepper, k);
+        let change = now.iter().zip(&expected).fold(0.0, |max, (a, b)| f64::max(max, (a - b).abs())) / size;
+        if change > 1e-13 {
+            return Err(format!("conserved momenta change by {change:.1e}: {expected:?} to {now:?} in step {k}"));
+        }
+        largest = f64::max(largest, change);
+    }
+    Ok(largest)
+}
+
+/// The derived energy against ⟨N, ξ⟩ − ℓ of the oracle's continuous Lagrangian.
+fn energies(problem: &Declared, stepper: &mut Stepper<'_, '_>, start: &State<f64>) -> Result<f64, String> {
+    let Some(derived) = stepper.energy(0.0, &seen(problem, start)) else { return Err("no velocity is found".into()) };
+    let Some(exact) = energy(problem, 0.0, &start.q, &start.n) else {
+        return Err("the oracle finds no velocity".into());
+    };
+    let difference = (derived - exact).abs() / exact.abs().max(1.0);
+    match difference < 1e-8 {
+        true => Ok(difference),
+        false => Err(format!("the energy is {derived}, that of the oracle {exact}")),
+    }
+}
+
+/// A step is composed exactly where the adjoint is another one.
+fn time_symmetry(problem: &Declared, start: &State<DoubleDouble>, composed: bool) -> Result<(), String> {
+    let h = DoubleDouble::of(H);
+    let lost = |lost| format!("the adjoint has no step: {lost:?}");
+    let forward = step(problem, h, DoubleDouble::zero(), start).map_err(lost)?;
+    let adjoint = step(&Adjoint(problem), h, DoubleDouble::zero(), start).map_err(lost)?;
+    let numbers = |state: &State<DoubleDouble>| {
+        let q: Vec<DoubleDouble> = state.q.iter().flat_map(Matrix::entries).copied().collect();
+        [q, state.n.clone()].concat()
+    };
+    let gap = numbers(&forward).iter().zip(numbers(&adjoint)).fold(0.0, |max, (&a, b)| f64::max(max, (a - b).size()));
+    match (composed, gap > 1e-24) {
+        (false, true) => Err(format!("called time-symmetric, but the adjoint is {gap:.1e} away")),
+        (true, false) => Err(format!("composed, though the adjoint is {gap:.1e} away")),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,104 @@
+//! Symbols with numbers in them: formulas are evaluated and kernels are run.
+
+use std::collections::HashMap;
+
+use clebsch_compiler::lower::{Callee, Code, Kernel, Output};
+use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
+use nalgebra::SMatrix;
+
+/// The numbers of all symbols of a program, by name.
+#[derive(Clone, Default)]
+pub struct Values(pub HashMap<String, Matrix<f64>>);
+
+#[allow(dead_code, reason = "two tests share this file, and each uses a part of it")]
+impl Values {
+    /// Gives a symbol its numbers, or others.
+    pub fn set(&mut self, symbol: Expr<'_>, entries: &[f64]) {
+        let data = symbol.as_symbol().expect("a symbol");
+        self.0.insert(data.name, Matrix::new(data.shape, entries.to_vec()));
+    }
+
+    /// The numbers of a symbol, row by row.
+    pub fn get(&self, symbol: Expr<'_>) -> &[f64] {
+        &self.0[&symbol.as_symbol().expect("a symbol").name].entries
+    }
+
+    /// A formula with these numbers.
+    pub fn evaluate(&self, formula: Expr<'_>) -> Matrix<f64> {
+        formula.evaluate(&mut |symbol| self.0[&symbol.as_symbol().expect("a symbol").name].clone())
+    }
+
+    /// The outputs of a kernel, one list of entries each.
+    pub fn run(&self, kernel: &Kernel, constants: &[f64], terms: &[f64]) -> Vec<Vec<f64>> {
+        let mut run = Run { values: self, constants, terms, locals: Vec::new() };
+        for local in &kernel.locals {
+            let value = run.local(local);
+            run.locals.push(value);
+        }
+        kernel.outputs.iter().map(|(_, entries)| entries.iter().map(|entry| run.code(entry)).collect()).collect()
+    }
+}
+
+struct Run<'a> {
+    values: &'a Values,
+    constants: &'a [f64],
+    terms: &'a [f64],
+    locals: Vec<Matrix<f64>>,
+}
+
+impl Run<'_> {
+    /// A shared term: a number, or what a call returns.
+    fn local(&self, code: &Code) -> Matrix<f64> {
+        let Code::Call(callee, arguments) = code else { return Matrix::new(Shape::scalar(), vec![self.code(code)]) };
+        let argument =
+            |(shape, entries): &(Shape, Vec<Code>)| Matrix::new(*shape, entries.iter().map(|x| self.code(x)).collect());
+        let arguments: Vec<Matrix<f64>> = arguments.iter().map(argument).collect();
+        match callee {
+            Callee::Analytic(Analytic::Logarithm) => logarithm(&arguments[0]),
+            Callee::Analytic(function) => <f64 as Number>::analytic(*function, &arguments[0]),
+            Callee::Inverse => arguments[0].inverse().0,
+            Callee::Value(name) | Callee::Gradient(name) => panic!("no numbers are known of the method `{name}`"),
+        }
+    }
+
+    fn output(&self, local: usize, output: Output) -> f64 {
+        self.locals[local].at(output.row, output.column)
+    }
+
+    fn code(&self, code: &Code) -> f64 {
+        let rational = |value: &Rational| <f64 as Number>::from_rational(value);
+        match code {
+            Code::Read(input) => self.values.0[&input.name].at(input.row, input.column),
+            Code::Pi => std::f64::consts::PI,
+            Code::Number(value) => rational(value),
+            Code::Constant(index) => self.constants[*index],
+            Code::Term(index) => self.terms[*index],
+            Code::Local(index) => self.locals[*index].entries[0],
+            Code::Sum(constant, terms) => {
+                terms.iter().fold(rational(constant), |sum, (factor, term)| sum + rational(factor) * self.code(term))
+            }
+            Code::Product(factors) => factors.iter().map(|factor| self.code(factor)).product(),
+            Code::Reciprocal(x) => 1.0 / self.code(x),
+            Code::Root(x, (numerator, denominator)) => self.code(x).powf(*numerator as f64 / *denominator as f64),
+            Code::Function(function, x) => Number::function(self.code(x), *function),
+            Code::Call(callee, _) => panic!("{callee:?} returns a matrix"),
+            Code::Output(local, _, output) => self.output(*local, *output),
+        }
+    }
+}
+
+/// The function of the runtime, for emitted code has no other.
+fn logarithm(a: &Matrix<f64>) -> Matrix<f64> {
+    macro_rules! of_size {
+        ($($n:literal)*) => {
+            match a.shape.rows {
+                $($n => {
+                    let y = clebsch::__private::logarithm(&SMatrix::<f64, $n, $n>::from_row_slice(&a.entries));
+                    Matrix::from_fn(a.shape, |position| y[position])
+                })*
+                n => panic!("a logarithm of {n}x{n}"),
+            }
+        };
+    }
+    of_size!(1 2 3 4 5 6)
+}

@@ -1,0 +1,145 @@
+//! Random problems: what compiles integrates as the oracle does, and what is refused says why.
+//!
+//! A seed makes a problem as data: groups, sides, spaces, a cost or a Lagrangian, a polynomial potential, dials. From the same
+//! data come the text of a declaration, whose program is stepped by running its kernels in the order of emitted code, and a
+//! problem of the oracle, which solves the unsimplified equations to 30 digits. A problem that fails is shrunk before it is shown.
+//!
+//! Each test takes some hundred seeds. `CLEBSCH_RANDOM=5000 cargo test -p clebsch-tests --test random` takes as many as it says,
+//! `CLEBSCH_RANDOM=1234..1235` these, and `-- --nocapture` shows what was found in each.
+
+mod broken;
+mod checks;
+mod formula;
+mod generator;
+mod groups;
+mod kernels;
+mod problem;
+mod shrinking;
+mod stepping;
+
+use std::ops::Range;
+
+use checks::{Found, check};
+use clebsch_tests::oracle::random::Random;
+use generator::problem;
+
+/// The seeds of a test that takes `count` of them unless it is told otherwise.
+fn seeds(count: u64) -> Range<u64> {
+    let Ok(asked) = std::env::var("CLEBSCH_RANDOM") else { return 0..count };
+    let number = |text: &str| text.parse().unwrap_or_else(|_| panic!("CLEBSCH_RANDOM is a count or a range of seeds"));
+    match asked.split_once("..") {
+        Some((from, to)) => number(from)..number(to),
+        None => 0..number(&asked),
+    }
+}
+
+/// Problems whose formulas take the compiler more than ten seconds in the test profile: left out unless they are asked for.
+const SLOW: [u64; 2] = [26, 46];
+
+/// Fails with all that has failed.
+fn report(failures: &[String]) {
+    assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
+}
+
+/// A failure without numbers: what a smaller problem has to fail with too.
+fn kind(failure: &str) -> String {
+    let line = failure.lines().next().unwrap_or_default();
+    line.chars().filter(|c| c.is_alphabetic()).collect::<String>().chars().skip(4).take(16).collect()
+}
+
+/// The failure of the smallest problem that fails in the same way.
+fn smallest(seed: u64, failure: &str) -> String {
+    let fails = |other: &problem::Declared| check(other, seed).is_err_and(|other| kind(&other) == kind(failure));
+    check(&shrinking::shrunk(&problem(seed), fails), seed).err().unwrap_or_else(|| failure.to_string())
+}
+
+/// Problems that have a motion: none is refused, and all step as the oracle does.
+fn integrates(seeds: impl Iterator<Item = u64>) {
+    let (mut found, mut failures) = (Vec::new(), Vec::new());
+    let asked = std::env::var("CLEBSCH_RANDOM").is_ok();
+    for seed in seeds.filter(|seed| asked || !SLOW.contains(seed)) {
+        match check(&problem(seed), seed) {
+            Ok(one) => {
+                println!("{seed}: {one:?}");
+                found.push(one);
+            }
+            Err(failure) => failures.push(smallest(seed, &failure)),
+        }
+    }
+    let count = |which: &dyn Fn(&Found) -> bool| found.iter().filter(|one| which(one)).count();
+    println!("{} problems", found.len());
+    report(&failures);
+    if found.len() >= 50 {
+        let kinds = [
+            count(&|one| one.composed),
+            count(&|one| !one.composed),
+            count(&|one| one.conserved > 0),
+            count(&|one| one.couples),
+            count(&|one| one.implicit),
+            count(&|one| !one.implicit),
+        ];
+        assert!(kinds.iter().all(|&count| count > 2), "the problems are too much alike: {kinds:?}");
+    }
+}
+
+#[test]
+fn what_compiles_integrates_as_the_oracle_does() {
+    integrates(seeds(100).filter(|seed| seed % 2 == 0));
+}
+
+/// The other half, beside the first.
+#[test]
+fn what_compiles_integrates_as_the_oracle_does_too() {
+    integrates(seeds(100).filter(|seed| seed % 2 == 1));
+}
+
+#[test]
+fn what_is_refused_says_why() {
+    let mut failures = Vec::new();
+    let mut count = 0;
+    for seed in seeds(100) {
+        for mistake in broken::mistakes(&problem(seed)) {
+            count += 1;
+            match broken::verdict(&mistake.text) {
+                Ok(Some(_)) => {}
+                Ok(None) => failures.push(format!("seed {seed}, {}: not refused\n{}", mistake.name, mistake.text)),
+                Err(failure) => failures.push(format!("seed {seed}, {}: {failure}", mistake.name)),
+            }
+        }
+    }
+    println!("{count} mistakes");
+    report(&failures);
+}
+
+/// Any tokens at all: a program, or errors that help.
+#[test]
+fn mutilated_declarations_are_refused_or_compiled() {
+    let mut failures = Vec::new();
+    let mut refused = 0;
+    for seed in seeds(300) {
+        let random = &mut Random::new(seed + 77);
+        let text = broken::mutilated(&problem(seed).text(), random);
+        match broken::verdict(&text) {
+            Ok(errors) => refused += usize::from(errors.is_some()),
+            Err(failure) => failures.push(format!("seed {seed}: {failure}")),
+        }
+    }
+    println!("{refused} refused");
+    report(&failures);
+}
+
+/// What ends too early has its place at the end.
+#[test]
+fn the_end_of_a_declaration_has_a_place() {
+    let declaration = |potential: &str| {
+        let rest = "action = |F: SO<3>, q: Vector3| F * q, cost = |h, F| (F - I).norm_squared() / (4 * h)";
+        format!("#[clebsch({rest}, potential = |q| {potential})]\npub struct P;")
+    };
+    for potential in ["q.", "q.x +", "vector![1, 2 +, 3].dot(&q)", "q.dot(&vector![1, 2, 3 +])", ""] {
+        match broken::verdict(&declaration(potential)) {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("`{potential}` is compiled"),
+            Err(failure) => panic!("{failure}"),
+        }
+    }
+}

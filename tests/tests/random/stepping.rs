@@ -1,0 +1,244 @@
+//! The kernels of a program, called in the order in which emitted code calls them.
+
+use std::cell::RefCell;
+
+use clebsch::__private::{Equation, solve};
+use clebsch_compiler::derive::Solution;
+use clebsch_compiler::lower::{Kernel, Program, Solve, StepKernels};
+use clebsch_symbolic::Matrix;
+use nalgebra::{SMatrix, SVector};
+
+use crate::kernels::Values;
+
+/// A program with the values of its parameters.
+pub struct Stepper<'a, 'g> {
+    program: &'a Program<'g>,
+    values: Values,
+    constants: Vec<f64>,
+}
+
+/// The leaves of a configuration as the program sees them, row by row, and the components of all momenta.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    pub q: Vec<Vec<f64>>,
+    pub mu: Vec<f64>,
+}
+
+impl<'a, 'g> Stepper<'a, 'g> {
+    /// What `stepper(h)` does; parameters in the order of the fields.
+    pub fn new(program: &'a Program<'g>, fields: &[Vec<f64>], h: f64) -> Stepper<'a, 'g> {
+        let model = &program.formulas.model;
+        let mut values = Values::default();
+        values.set(model.step_size, &[h]);
+        for parameter in &model.parameters {
+            let number = parameter.name.trim_start_matches("field_");
+            let index: usize = number.parse().expect("a field of ours");
+            for leaf in &parameter.leaves {
+                values.set(leaf.symbol, &fields[index]);
+            }
+        }
+        if !program.formulas.inertia_moves() {
+            let n = program.formulas.inertia.shape().rows;
+            let entries = values.run(&program.inertia, &[], &[]).remove(0);
+            let inverse = Matrix::new(clebsch_symbolic::Shape::square(n), entries).inverse().0;
+            values.0.insert("inertia_inverse".into(), inverse);
+        }
+        let constants = values.run(&program.constants, &[], &[]).concat();
+        Stepper { program, values, constants }
+    }
+
+    fn place(&mut self, t: f64, state: &Seen) {
+        let formulas = &self.program.formulas;
+        self.values.set(formulas.model.time, &[t]);
+        for (leaf, entries) in formulas.model.configurations.iter().zip(&state.q) {
+            self.values.set(leaf.symbol, entries);
+        }
+        self.impel(&state.mu);
+    }
+
+    fn impel(&mut self, mu: &[f64]) {
+        let mut from = 0;
+        for symbol in &self.program.formulas.symbols.momenta {
+            let to = from + symbol.shape().rows;
+            self.values.set(*symbol, &mu[from..to]);
+            from = to;
+        }
+    }
+
+    fn run(&self, kernel: &Kernel) -> Vec<Vec<f64>> {
+        self.values.run(kernel, &self.constants, &[])
+    }
+
+    /// One step from time t, or why there is none.
+    pub fn step(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
+        let mut state = state.clone();
+        let program = self.program;
+        for step in program.steps.iter().take(program.formulas.parts()) {
+            state = self.substep(t, &state, step)?;
+        }
+        Ok(state)
+    }
+
+    fn substep(&mut self, t: f64, state: &Seen, step: &StepKernels) -> Result<Seen, String> {
+        let mut state = state.clone();
+        self.place(t, &state);
+        self.kick(step.start.as_ref(), &mut state.mu);
+        for solve in &step.solves {
+            self.solve(solve, &state.mu)?;
+        }
+        let increments = self.run(&step.increment);
+        for (symbol, increment) in self.program.formulas.symbols.increments.iter().zip(&increments) {
+            self.values.set(*symbol, increment);
+        }
+        let updated = step.update.as_ref().map(|update| self.run(update).remove(0));
+        state = Seen { q: self.run(&step.advance), mu: updated.unwrap_or(state.mu) };
+        self.place(t, &state);
+        let end = if step.end_is_start { step.start.as_ref() } else { step.end.as_ref() };
+        self.kick(end.filter(|_| step.end.is_some()), &mut state.mu);
+        Ok(state)
+    }
+
+    fn kick(&mut self, kernel: Option<&Kernel>, mu: &mut [f64]) {
+        let Some(kernel) = kernel else { return };
+        let kick = self.run(kernel).remove(0);
+        mu.iter_mut().zip(kick).for_each(|(mu, kick)| *mu += kick);
+        self.impel(mu);
+    }
+
+    /// Sets the chart coordinates of the factors that an equation is for.
+    fn solve(&mut self, solve: &Solve, mu: &[f64]) -> Result<(), String> {
+        if let Some(sine_squared) = &solve.sine_squared {
+            let sine_squared = self.run(sine_squared)[0][0];
+            if sine_squared >= 1.0 {
+                return Err(format!("sin² = {sine_squared}"));
+            }
+        }
+        if solve.solution != Solution::Newton {
+            let x = self.run(solve.predict.as_ref().ok_or("no formula for the solution")?).remove(0);
+            self.turn(solve, &x);
+            return Ok(());
+        }
+        let target: Vec<f64> = solve.components.iter().map(|&component| mu[component]).collect();
+        let equation = Interpreted { stepper: RefCell::new(self), solve, mu };
+        let solution = solved(&equation, &target)?;
+        self.turn(solve, &solution);
+        Ok(())
+    }
+
+    /// The components of an equation are numbered through all blocks, as its coordinates are.
+    fn turn(&mut self, solve: &Solve, x: &[f64]) {
+        for block in &self.program.formulas.symbols.blocks {
+            let first = solve.components.iter().position(|&component| component == block.offset);
+            if let Some(first) = first {
+                self.values.set(block.coordinates, &x[first..first + block.dimension()]);
+            }
+        }
+    }
+
+    /// Kinetic and potential energy as the program has them; `None` where no velocity is found.
+    pub fn energy(&mut self, t: f64, state: &Seen) -> Option<f64> {
+        self.place(t, state);
+        let program = self.program;
+        let potential = self.values.run(&program.potential, &[], &[])[0][0];
+        if let Some(kernel) = &program.velocity {
+            return Some(self.fenchel(kernel, &state.mu)? + potential);
+        }
+        let slope = program.gyroscopic.as_ref().map(|kernel| self.values.run(kernel, &[], &[]).remove(0));
+        let mut mu = state.mu.clone();
+        mu.iter_mut().zip(slope.unwrap_or_default()).for_each(|(mu, slope)| *mu -= slope);
+        let inertia = self.values.run(&program.inertia, &[], &[]).remove(0);
+        let xi = solution(&inertia, &mu);
+        Some(mu.iter().zip(xi).map(|(mu, xi)| mu * xi).sum::<f64>() / 2.0 + potential)
+    }
+
+    /// max_ξ ⟨μ, ξ⟩ − ℓ(ξ) by Newton's method.
+    fn fenchel(&mut self, kernel: &Kernel, mu: &[f64]) -> Option<f64> {
+        let mut xi = vec![0.0; mu.len()];
+        for _ in 0..60 {
+            let mut from = 0;
+            for symbol in &self.program.formulas.symbols.algebra {
+                let to = from + symbol.shape().rows;
+                self.values.set(*symbol, &xi[from..to]);
+                from = to;
+            }
+            let outputs = self.values.run(kernel, &[], &[]);
+            let defect: Vec<f64> = mu.iter().zip(&outputs[1]).map(|(mu, gradient)| mu - gradient).collect();
+            let correction = solution(&outputs[2], &defect);
+            xi.iter_mut().zip(&correction).for_each(|(xi, correction)| *xi += correction);
+            if correction.iter().all(|c| c.abs() < 1e-13) {
+                return Some(mu.iter().zip(&xi).map(|(mu, xi)| mu * xi).sum::<f64>() - outputs[0][0]);
+            }
+        }
+        None
+    }
+
+    /// The momenta that the program calls conserved.
+    pub fn conserved(&mut self, t: f64, state: &Seen) -> Vec<f64> {
+        self.place(t, state);
+        let values = self.program.conserved.as_ref().map(|kernel| self.values.run(kernel, &[], &[]).concat());
+        values.unwrap_or_default()
+    }
+}
+
+/// An equation of a program, for the solver of the runtime.
+struct Interpreted<'a, 'b, 'g> {
+    stepper: RefCell<&'a mut Stepper<'b, 'g>>,
+    solve: &'a Solve,
+    /// All momenta, of which the equation holds some.
+    mu: &'a [f64],
+}
+
+impl Interpreted<'_, '_, '_> {
+    /// Gives the equation's components of the momentum their values.
+    fn aim(&self, target: &[f64]) {
+        let mut mu = self.mu.to_vec();
+        self.solve.components.iter().zip(target).for_each(|(&component, value)| mu[component] = *value);
+        self.stepper.borrow_mut().impel(&mu);
+    }
+}
+
+impl<const M: usize> Equation<f64, M> for Interpreted<'_, '_, '_> {
+    type Terms = Vec<f64>;
+
+    fn prepare(&self, target: &SVector<f64, M>) -> Vec<f64> {
+        self.aim(target.as_slice());
+        let terms = self.stepper.borrow().run(&self.solve.prepare).concat();
+        self.aim(&self.solve.components.iter().map(|&component| self.mu[component]).collect::<Vec<_>>());
+        terms
+    }
+
+    fn predict(&self, target: &SVector<f64, M>) -> SVector<f64, M> {
+        self.aim(target.as_slice());
+        let stepper = self.stepper.borrow();
+        match &self.solve.predict {
+            Some(predict) => SVector::from_column_slice(&stepper.run(predict)[0]),
+            None => SVector::zeros(),
+        }
+    }
+
+    fn linearize(&self, terms: &Vec<f64>, x: &SVector<f64, M>) -> (SVector<f64, M>, SMatrix<f64, M, M>) {
+        let mut stepper = self.stepper.borrow_mut();
+        stepper.turn(self.solve, x.as_slice());
+        let outputs = stepper.values.run(&self.solve.linearize, &stepper.constants, terms);
+        (SVector::from_column_slice(&outputs[0]), SMatrix::from_row_slice(&outputs[1]))
+    }
+}
+
+/// The solution on the branch of the identity, by the solver that emitted code calls.
+fn solved(equation: &Interpreted<'_, '_, '_>, target: &[f64]) -> Result<Vec<f64>, String> {
+    macro_rules! of_dimension {
+        ($($m:literal)*) => {
+            match target.len() {
+                $($m => solve(equation, &SVector::<f64, $m>::from_column_slice(target)).map(|x| x.as_slice().to_vec()),)*
+                other => return Err(format!("an equation for {other} unknowns")),
+            }
+        };
+    }
+    of_dimension!(1 2 3 4 5 6 7 8 9 10).map_err(|error| format!("no step: {error:?}"))
+}
+
+/// A⁻¹ b.
+fn solution(a: &[f64], b: &[f64]) -> Vec<f64> {
+    use clebsch_tests::oracle::precise::matrix::Matrix;
+    Matrix::of(b.len(), b.len(), a).solve(&Matrix::vector(b)).entries().to_vec()
+}
