@@ -3,6 +3,7 @@
 use crate::Flags;
 use crate::invariants::{Invariants, PLANES, halves, skew};
 use clebsch_examples::claims::Claims;
+use clebsch_examples::conserved::Conserved;
 use clebsch_examples::flags::Run;
 use clebsch_examples::table::Table;
 use nalgebra::Matrix4;
@@ -21,29 +22,6 @@ pub struct Sample {
     pub halves: [[f64; 3]; 2],
     /// Changes since the start over their scales: spatial momentum, energy, Manakov's two integrals.
     pub changes: [f64; 4],
-}
-
-/// A number that is conserved.
-#[derive(Clone, Copy, Debug)]
-struct Conserved {
-    name: &'static str,
-    /// By how much a relative error of M, or of F, moves it.
-    scale: f64,
-    start: Option<f64>,
-    defect: f64,
-}
-
-impl Conserved {
-    fn new(name: &'static str, scale: f64) -> Self {
-        Self { name, scale, start: None, defect: 0.0 }
-    }
-
-    /// Takes the next value; returns its change over the scale.
-    fn observe(&mut self, value: f64) -> f64 {
-        let change = value - *self.start.get_or_insert(value);
-        self.defect = self.defect.max(change.abs());
-        if self.scale > 0.0 { change / self.scale } else { 0.0 }
-    }
 }
 
 /// Points of the path, and the largest defects of all states.
@@ -136,7 +114,7 @@ impl Watch {
         claims.round_off(name, self.momentum_defect, steps, 2.0 * self.momentum.norm());
         claims.round_off("the attitude stays a rotation", self.orbit_defect, steps, 1.0);
         for quantity in [self.energy, self.square, self.pfaffian, self.manakov_sum, self.manakov_product, self.trace] {
-            claims.round_off(quantity.name, quantity.defect, steps, quantity.scale);
+            quantity.claim(steps, claims);
         }
     }
 }

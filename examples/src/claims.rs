@@ -38,6 +38,11 @@ impl Claims {
         self.push(name, measured <= bound, format!("{measured:.2e} ≤ {bound:.2e}"), reason);
     }
 
+    /// Claims something that is true or false, found as `reason` says.
+    pub fn holds(&mut self, name: &str, holds: bool, reason: &str) {
+        self.push(name, holds, holds.to_string(), reason);
+    }
+
     /// Claims that a defect of something conserved exactly is no more than rounding in the worst case,
     /// [`round_off::worst_case`].
     pub fn round_off(&mut self, name: &str, measured: f64, steps: u64, scale: f64) {

@@ -75,6 +75,11 @@ impl EnergyBand {
         self.scale = self.scale.max((energy - potential).abs() + potential.abs());
     }
 
+    /// Says that rounding acts on the energy as on a number of this size, where that is more than its own.
+    pub fn rounds_like(&mut self, scale: f64) {
+        self.scale = self.scale.max(scale);
+    }
+
     /// The lowest and the highest energy.
     pub fn range(&self) -> (f64, f64) {
         (self.energy.low, self.energy.high)

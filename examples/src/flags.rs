@@ -125,6 +125,11 @@ pub fn positive_list<const N: usize>(text: &str) -> Result<[f64; N], String> {
     list(text, positive)
 }
 
+/// Any number of finite numbers.
+pub fn finite_numbers(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',').map(finite).collect()
+}
+
 /// Principal moments of inertia of a body that can exist: above zero, none larger than the sum of the other two.
 pub fn moments_of_inertia(text: &str) -> Result<[f64; 3], String> {
     let moments = positive_list::<3>(text)?;

@@ -10,11 +10,14 @@
 //! | [`integrate`] | step after step, with progress and with errors that name the step |
 //! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
 //! | [`claims`] | what a scene asserts: each with its measured number and its bound |
-//! | [`round_off`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
+//! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
 //! | [`elliptic`] | complete elliptic integrals, for closed forms to compare with |
+//! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
 
 pub mod claims;
+pub mod conserved;
+pub mod convergence;
 pub mod csv;
 pub mod elliptic;
 pub mod energy_band;
@@ -22,6 +25,7 @@ pub mod figure;
 pub mod flags;
 pub mod integrate;
 mod progress;
+pub mod reference;
 pub mod round_off;
 pub mod scene;
 pub mod table;

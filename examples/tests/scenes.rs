@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 4] = [
+const SCENES: [(&str, &str); 10] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -14,6 +14,19 @@ const SCENES: [(&str, &str); 4] = [
         "rigid_body_4d",
         "step,time,R11,R12,R13,R14,R21,R22,R23,R24,R31,R32,R33,R34,R41,R42,R43,R44,M12,M13,M14,M23,M24,M34",
     ),
+    ("sphere_geodesics", "step,time,q1,q2,q3,q4,q5,q6,q7,q8,w1,w2,w3,w4,w5,w6,w7,w8"),
+    (
+        "rigid_body_5d",
+        "step,time,R11,R12,R13,R14,R15,R21,R22,R23,R24,R25,R31,R32,R33,R34,R35,R41,R42,R43,R44,R45,R51,R52,R53,R54,R55,\
+         M12,M13,M14,M15,M23,M24,M25,M34,M35,M45",
+    ),
+    ("underwater_vehicle", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,Pi1,Pi2,Pi3,P1,P2,P3"),
+    ("fluid_ellipsoid", "step,time,q11,q12,q13,q21,q22,q23,q31,q32,q33,N1,N2,N3,N4,N5,N6,N7,N8"),
+    (
+        "relativistic_spin",
+        "step,time,q00,q01,q02,q03,q10,q11,q12,q13,q20,q21,q22,q23,q30,q31,q32,q33,E1,E2,E3,B1,B2,B3",
+    ),
+    ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
 
 fn run(scene: &str, arguments: &[&str]) -> Output {
@@ -49,6 +62,36 @@ fn defaults_hold_all_their_claims() {
         assert!(output.status.success(), "{scene}: {report}{}", String::from_utf8_lossy(&output.stderr));
         assert!(report.contains("  holds  ") && !report.contains("  skipped  "), "{scene}: {report}");
         assert!(std::fs::read_to_string(figure).expect("the figure").contains("<polyline"));
+    }
+}
+
+#[test]
+fn other_flags_hold_all_their_claims() {
+    for (scene, arguments) in [
+        ("sphere_geodesics", &["--sphere", "3"][..]),
+        ("sphere_geodesics", &["--sphere", "3", "--velocity", "0,0,0,0", "--steps", "10"]),
+        ("sphere_geodesics", &["--sphere", "3", "--discretization", "exponential", "--steps", "2000"]),
+        (
+            "sphere_geodesics",
+            &["--sphere", "3", "--discretization", "exponential", "--step-size", "5", "--steps", "100"],
+        ),
+        ("rigid_body_5d", &["--j-d", "5,0,0.1,2,3", "--step-size", "0.01"]),
+        ("rigid_body_5d", &["--momentum", "0,0,0,0,0,0,0,0,0,0", "--steps", "10"]),
+        ("relativistic_spin", &["--electric", "10,200,-30", "--momentum", "0.1,0.2,0.3", "--spin", "0,1,2"]),
+        (
+            "relativistic_spin",
+            &["--electric", "1000,0,0", "--magnetic", "0,0,0", "--step-size", "0.1", "--steps", "100"],
+        ),
+        ("relativistic_spin", &["--electric", "299.792458,0,0", "--magnetic", "0,0,1", "--momentum", "0,0,0"]),
+        ("relativistic_spin", &["--anomaly", "-2", "--steps", "1000"]),
+        ("relativistic_spin", &["--step-size", "0.1", "--steps", "1000"]),
+        ("relativistic_spin", &["--electric", "0,0,0", "--magnetic", "0,0,0", "--steps", "10"]),
+    ] {
+        let figure = file(&format!("{scene}-other.svg"));
+        let output = run(scene, &[arguments, &["--figure", text(&figure)]].concat());
+        let report = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{scene} {arguments:?}: {report}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(report.contains("  holds  "), "{scene} {arguments:?}: {report}");
     }
 }
 
@@ -89,6 +132,33 @@ fn mistakes_are_explained() {
         ("heavy_top", &["--center", "x,0,1"], "`x` is not a number"),
         ("rigid_body_4d", &["--j-d", "1,-1,2,3"], "entries 1 and 2 have the sum 0"),
         ("rigid_body_4d", &["--step-size", "100"], "step 1 was not reached"),
+        ("rigid_body_5d", &["--j-d", "3,2,-2,3,4"], "entries 2 and 3 have the sum 0"),
+        ("rigid_body_5d", &["--momentum", "1,2,3"], "10 numbers separated by commas are needed, 3 were given"),
+        ("rigid_body_5d", &["--step-size", "3"], "step 1 was not reached"),
+        ("relativistic_spin", &["--spin", "0,0,0"], "has no direction"),
+        ("relativistic_spin", &["--anomaly", "-1"], "the inertia against rotations would be infinite"),
+        ("relativistic_spin", &["--mass", "0"], "`0` is not above zero"),
+        ("relativistic_spin", &["--step-size", "1"], "step 1 was not reached"),
+        ("relativistic_spin", &["--momentum", "1e200,0,0"], "the configuration is not finite"),
+        ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
+        ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7"),
+        ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
+        ("sphere_geodesics", &["--sphere", "3", "--position", "1,1,0,0"], "normalise"),
+        ("sphere_geodesics", &["--sphere", "3", "--velocity", "1,x,0,0"], "`x` is not a number"),
+        ("sphere_geodesics", &["--discretization", "exponential"], "add --sphere 3"),
+        ("underwater_vehicle", &["--semi-axes", "1,0,2"], "`0` is not above zero"),
+        ("underwater_vehicle", &["--offset", "5"], "its inertia is not positive"),
+        ("underwater_vehicle", &["--spin", "fast"], "`fast` is not a number"),
+        (
+            "fluid_ellipsoid",
+            &["--gradient", "1,0,0,0,1,0,0,0,1"],
+            "the trace is 3, so the flow would change the volume",
+        ),
+        ("fluid_ellipsoid", &["--semi-axes", "1e-300,1,1e300"], "are too far apart"),
+        ("spacecraft", &["--inertia", "1,1,3,0,0,0"], "no body has the principal moments"),
+        ("spacecraft", &["--mass", "1e-9"], "is too large for an orbit"),
+        ("spacecraft", &["--step-size", "1e4"], "is too long for an orbit with a period"),
+        ("spacecraft", &["--eccentricity", "1"], "`1` is not in 0 to 0.9"),
     ] {
         let errors = refusal(scene, arguments);
         assert!(errors.contains(expected), "{scene} {arguments:?}: {errors}");
