@@ -46,7 +46,7 @@ pub fn spheroid(drop: &FluidEllipsoid, spheroid: &Spheroid, run: &Run) -> Result
         let ends = refined(drop, run, steps, |stepper| stepper.state(q, momentum))?;
         let errors = ends.map(|state| (state.configuration() - end).amax() / size);
         let size_of_momentum = momentum.amax().max(f64::MIN_POSITIVE);
-        let rounding = geodesic::rounding(drop.mass, run.step_size / 4.0, &end) / size_of_momentum;
+        let rounding = geodesic::rounding(drop.mass, &end, &velocity) / size_of_momentum;
         let reference = QUADRATURE + rounding * (4.0 * steps as f64).sqrt();
         swirl.convergence = Some(Convergence { errors, reference, steps });
     }

@@ -39,12 +39,9 @@ pub fn momentum(mass: f64, q: &Matrix3<f64>, velocity: &Matrix3<f64>) -> SVector
     SVector::from([p.m11 - p.m22, p.m22 - p.m33, p.m12, p.m13, p.m21, p.m23, p.m31, p.m32])
 }
 
-/// ε m |q|²/h: what rounding does to the momentum in a step.
-///
-/// The Legendre transform of the cost, N = ⟨m (F − I) q qᵀ, E⟩/h, is the difference of two numbers that are larger than N by
-/// about 1/|q̇q⁻¹|h.
-pub fn rounding(mass: f64, h: f64, q: &Matrix3<f64>) -> f64 {
-    f64::EPSILON * mass * q.norm_squared() / h
+/// ε m |q| |q̇|: what rounding does to the momentum in a step.
+pub fn rounding(mass: f64, q: &Matrix3<f64>, velocity: &Matrix3<f64>) -> f64 {
+    f64::EPSILON * mass * q.norm() * velocity.norm()
 }
 
 /// q̇ of a momentum: q̇qᵀ is the momentum plus the multiple of I with which tr(q⁻¹q̇) = 0.

@@ -143,6 +143,6 @@ fn convergence(drop: &FluidEllipsoid, watch: &Watch, flags: &Flags) -> Result<Co
         let momentum = (state.momentum() - end_momentum).amax() / momentum_size;
         momentum.max((state.configuration() - end).amax() / size)
     });
-    let rounding = geodesic::rounding(flags.mass, flags.run.step_size / 4.0, &end) / momentum_size;
+    let rounding = geodesic::rounding(flags.mass, &end, &end_velocity) / momentum_size;
     Ok(Convergence { errors, reference: exact.error / size + rounding * (4.0 * steps as f64).sqrt(), steps })
 }

@@ -92,7 +92,7 @@ impl Watch {
             self.defects[index] = self.defects[index].max(*change);
         }
         let condition = q.norm() * inverse.norm();
-        let rounding = geodesic::rounding(self.mass, self.run.step_size, q) / f64::EPSILON;
+        let rounding = geodesic::rounding(self.mass, q, &velocity) / f64::EPSILON;
         self.scales[0] = self.scales[0].max(momentum.norm() + rounding);
         self.scales[1] = self.scales[1].max((momentum.norm() + rounding) * condition);
         self.band.rounds_like(rounding * (velocity * inverse).norm());
