@@ -1,11 +1,11 @@
 //! Parts of scenes that have tests of their own: cargo runs no tests inside of examples, so they are taken in here.
 
-#[allow(dead_code)]
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/geodesic.rs"]
 mod geodesic;
-#[allow(dead_code)]
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/spheroid.rs"]
 mod spheroid;
-#[allow(dead_code)]
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../underwater_vehicle/vehicle.rs"]
 mod vehicle;
