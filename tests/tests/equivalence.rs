@@ -89,6 +89,61 @@ fn moser_veselov_lagrangian_is_the_cost_of_the_mass_matrix() {
     }
 }
 
+/// A top whose potential stands in its Lagrangian.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |R, omega| omega.dot(&(self.inertia * omega)) / 2 - self.weight * (R * self.center).z,
+    discretization = moser_veselov,
+)]
+pub struct WholeTop {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<f64>,
+    pub weight: f64,
+    pub center: Vector3<f64>,
+}
+
+/// The mean of ℓ at both ends of a step is half a kick at each.
+#[test]
+fn moser_veselov_lagrangian_keeps_its_potential() {
+    let random = &mut Random::new(27);
+    let apart = heavy_top(random);
+    let mass_matrix = apart.mass_matrix;
+    let inertia = Matrix3::identity() * mass_matrix.trace() - mass_matrix;
+    let whole = WholeTop { inertia, weight: apart.weight, center: apart.center };
+    let (apart, whole) = (apart.stepper(H).expect("a top"), whole.stepper(H).expect("a top"));
+    let (r, pi) = (random.attitude(), random.vector::<3>());
+    let starts = (apart.state(r, pi).expect("a state"), whole.state(r, pi).expect("a state"));
+    for (apart, whole) in apart.trajectory(starts.0).zip(whole.trajectory(starts.1)).take(200) {
+        let (apart, whole) = (apart.expect("a step"), whole.expect("a step"));
+        assert_near(apart.configuration(), whole.configuration(), NEAR, "R");
+        assert_near(apart.momentum(), whole.momentum(), NEAR, "π");
+    }
+}
+
+/// A sledge on the plane, for which several mass matrices have one inertia.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SE<2>, q: SE<2>| q * F,
+    lagrangian     = |xi| (self.inertia * xi.x.powi(2) + self.mass * (xi.y.powi(2) + xi.z.powi(2))) / 2,
+    discretization = moser_veselov,
+)]
+pub struct Sledge {
+    pub inertia: f64,
+    pub mass: f64,
+}
+
+/// ½ tr(ξ 𝕄 ξᵀ) is ½ (J ω² + m |v|²), and with F = (θ, a) its cost is (J (1 − cos θ) + ½ m |a|²)/h.
+#[test]
+fn moser_veselov_of_a_sledge() {
+    let sledge = Sledge { inertia: 0.7, mass: 1.9 };
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    let f = Matrix3::new(cosine, -sine, 0.3, sine, cosine, -0.2, 0.0, 0.0, 1.0);
+    // along exp(ηξ) F the angle grows by ηω and a by η (ω k × a + v), and k × a does no work on a
+    let expected = Vector3::new(0.7 * sine, 1.9 * 0.3, 1.9 * -0.2) / H;
+    assert_near(&sledge.legendre(H, 0.0, &Matrix3::identity(), &f), &expected, 1e-12, "N");
+}
+
 /// A rigid body by the velocity 2(F − I)(F + I)⁻¹/h.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::Symbols;
-use super::equation::{Sources, is_moving, offset, own_part, slope_of_chart, without_part};
+use super::equation::{Sources, chart_slope, is_moving, offset, own_part, without_part};
 use super::trivialisation::Covector;
 use crate::model::Model;
 
@@ -30,7 +30,7 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
     let velocity = sources.inertia.inverse() * momentum;
     let solution = |&i: &usize| {
         let block = symbols.blocks[i];
-        let (numerator, denominator) = slope_of_chart(sources, i);
+        let (numerator, denominator) = chart_slope(sources.model, sources.symbols, i);
         let step = numerator * model.step_size / (denominator * sources.parts);
         (block.coordinates, step * velocity.block(block.offset, 0, Shape::vector(block.dimension())))
     };
@@ -52,7 +52,7 @@ pub(super) fn closed_form<'g>(
     let start = block.offset - offset(model, block.factor);
     let kappa = sources.inertia.entry(block.offset, block.offset);
     let step = model.step_size / sources.parts;
-    let mu = own_part(model, symbols, i)?;
+    let mu = own_part(model, symbols, i);
     let f = factor.symbol;
     let sine = match (factor.group, symbols.charts[block.factor]) {
         (Group::SpecialOrthogonal(_), Chart::Cayley) => factor.group.components(f) / 2,

@@ -11,7 +11,7 @@ use crate::model::{Factor, Kinetic, Model};
 pub struct Energy<'g> {
     /// ½ ξ·Σξ.
     pub kinetic: Expr<'g>,
-    /// A·ξ, the part that is linear in the velocity: zero unless the cost couples configuration and group element.
+    /// A·ξ, the part that is linear in the velocity.
     pub gyroscopic: Expr<'g>,
     /// ℓ(t, q, ξ) − ℓ(t, q, 0) where it is not the sum of the two: a Lagrangian that is not quadratic in the velocity.
     pub general: Option<Expr<'g>>,
@@ -252,6 +252,13 @@ pub(super) fn potential<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'
     let scaled = energy.substitute(&[(h, 2 * h)]);
     match energy == scaled || identity::equal(&[energy], &[scaled]) {
         true => Ok(if energy.depends_on(h) { energy.substitute(&[(h, model.graph.integer(1))]) } else { energy }),
+        // a Lagrangian of the time is the mean of its values at t and at t + h
+        false
+            if energy.depends_on(model.time)
+                && let Some(limit) = limit(energy, h) =>
+        {
+            Ok(limit)
+        }
         false => {
             let error = Diagnostic::new(
                 model.spans.kinetic.place,

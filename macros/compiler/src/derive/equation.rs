@@ -102,8 +102,8 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
         if !linear || is_moving(model, slope) || !is_diagonal(inertia) {
             continue;
         }
-        let Some(momentum) = own_part(model, symbols, i) else { continue };
-        let (numerator, denominator) = slope_of_chart(sources, i);
+        let momentum = own_part(model, symbols, i);
+        let (numerator, denominator) = chart_slope(model, symbols, i);
         let step = numerator * model.step_size / (denominator * sources.parts);
         let graph = model.graph;
         let solution: Vec<Expr<'g>> =
@@ -123,10 +123,10 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
 }
 
 /// The part of the momentum symbol that belongs to a block.
-pub(super) fn own_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, i: usize) -> Option<Expr<'g>> {
+pub(super) fn own_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, i: usize) -> Expr<'g> {
     let block = symbols.blocks[i];
     let start = block.offset - offset(model, block.factor);
-    Some(symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension())))
+    symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension()))
 }
 
 /// An expression with the momentum of a block set to zero.
@@ -146,11 +146,8 @@ pub(crate) fn chart_slope(model: &Model<'_>, symbols: &Symbols<'_>, i: usize) ->
     symbols.charts[block.factor].slope_at_identity(group, &model.graph.blocks(group)[block.block])
 }
 
-pub(super) fn slope_of_chart(sources: &Sources<'_, '_>, i: usize) -> (i64, i64) {
-    chart_slope(sources.model, sources.symbols, i)
-}
-
-fn is_diagonal(matrix: Expr<'_>) -> bool {
+/// Whether a matrix is zero off its diagonal for all values of its symbols.
+pub(crate) fn is_diagonal(matrix: Expr<'_>) -> bool {
     matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
 }
 

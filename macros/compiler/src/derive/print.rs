@@ -162,14 +162,34 @@ impl<'g> Formulas<'g> {
         Formula::new("potential energy", format!("V({})", self.q()), &[self.potential_energy])
     }
 
-    /// H(q, μ).
+    /// H(q, μ) = ½ (μ − A)·Σ⁻¹(μ − A) + V(q), or μ·ξ − ℓ(ξ) + V(q) where ℓ is not quadratic.
     pub fn formula_of_hamiltonian(&self) -> Formula {
-        let (graph, shape) = (self.model.graph, self.inertia.shape());
         let mu = self.letter(&self.symbols.momenta);
+        let title = format!("H({}, {mu})", self.q());
+        if let Some(lagrangian) = self.energy.general {
+            let pairs = self.symbols.momenta.iter().zip(&self.symbols.algebra);
+            let pairing = pairs.fold(self.model.graph.integer(0), |sum, (mu, xi)| sum + mu.dot(*xi));
+            let at = format!("{title}, with {mu} = ∂ℓ/∂{}", self.letter(&self.symbols.algebra));
+            return Formula::new("Hamiltonian", at, &[pairing - lagrangian + self.potential_energy]);
+        }
+        let (graph, shape) = (self.model.graph, self.inertia.shape());
         let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Auxiliary(0), Property::General);
         let inertia = graph.symbol("Σ", shape, Role::Auxiliary(1), Property::Symmetric);
+        let momentum = momentum - self.gyroscopic_momentum();
         let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
-        Formula::new("Hamiltonian", format!("H({}, {mu})", self.q()), &[kinetic + self.potential_energy])
+        Formula::new("Hamiltonian", title, &[kinetic + self.potential_energy])
+    }
+
+    /// A, the gradient of A·ξ, in the components of all factors.
+    fn gyroscopic_momentum(&self) -> Expr<'g> {
+        let shape = Shape::vector(self.inertia.shape().rows);
+        let mut row = 0;
+        self.symbols.algebra.iter().fold(self.model.graph.zero(shape), |sum, xi| {
+            let part = self.energy.gyroscopic.gradient(*xi);
+            let placed = part.embed(shape, row, 0);
+            row += part.shape().rows;
+            sum + placed
+        })
     }
 
     /// The conserved momenta by their names.

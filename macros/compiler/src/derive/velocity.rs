@@ -1,9 +1,8 @@
 //! A cost from a Lagrangian: h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)), with the velocity ξ made from F and h.
 
-use clebsch_symbolic::{Expr, Group, Shape, identity};
+use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
 use super::symbols::logarithm;
-
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Discretization, Factor, Kinetic, Model};
 
@@ -13,9 +12,6 @@ pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostic
         Kinetic::Cost(cost) => return Ok(*cost),
         Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
     };
-    if discretization == Discretization::MoserVeselov {
-        return moser_veselov(model, energy, velocities);
-    }
     let h = model.step_size;
     let velocity = |k: usize| match discretization {
         Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
@@ -23,17 +19,20 @@ pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostic
     };
     let discrete: Vec<(Expr<'g>, Expr<'g>)> =
         velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
-    let at = |energy: Expr<'g>| h * energy.substitute(&discrete);
+    let at = |energy: Expr<'g>| match discretization {
+        Discretization::MoserVeselov => moser_veselov(model, energy, velocities),
+        _ => Ok(h * energy.substitute(&discrete)),
+    };
     let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
-    Ok(match moves || energy.depends_on(model.time) {
+    match moves || energy.depends_on(model.time) {
         false => at(energy),
         true => {
             let images = model.configurations.iter().zip(&model.action);
             let mut end: Vec<_> = images.map(|(leaf, image)| (leaf.symbol, *image)).collect();
             end.push((model.time, model.time + h));
-            (at(energy) + at(energy.substitute(&end))) / 2
+            Ok((at(energy)? + at(energy.substitute(&end))?) / 2)
         }
-    })
+    }
 }
 
 /// The coordinates of ξ: of 2(F − I)(F + I)⁻¹/h, projected where that leaves the algebra, or of P(F − I)/h.
@@ -53,15 +52,18 @@ fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discr
     }
 }
 
-/// ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h)·h with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ).
+/// h times ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h), with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ) − ℓ(0), and ℓ(0).
 fn moser_veselov<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<Expr<'g>, Diagnostics> {
     let (h, graph) = (model.step_size, model.graph);
-    let mut cost = graph.integer(0);
+    let rest: Vec<_> = velocities.iter().map(|v| (*v, graph.zero(v.shape()))).collect();
+    let mut cost = h * energy.substitute(&rest);
     for (factor, velocity) in model.factors.iter().zip(velocities) {
         let gradient = energy.gradient(*velocity);
-        let at_rest = gradient.substitute(&velocities.iter().map(|v| (*v, graph.zero(v.shape()))).collect::<Vec<_>>());
         let inertia = gradient.matrix_of_linear(*velocity);
-        if velocities.iter().any(|v| inertia.depends_on(*v)) || !identity::vanishes(at_rest) {
+        // a term that couples the velocities of two factors is no part of either's form
+        let quadratic =
+            !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity]);
+        if !quadratic {
             return Err(not_quadratic(model, *velocity));
         }
         let Some(mass) = mass_matrix(factor.group, inertia) else { return Err(no_mass_matrix(model, factor)) };
@@ -101,7 +103,7 @@ fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
         basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b))).collect()
     };
-    let images: Vec<Vec<Expr<'g>>> = units.iter().map(image).collect();
+    let (units, images) = independent(units.into_iter().map(|unit| (unit, image(&unit))).collect());
     let shape = Shape::new(images[0].len(), units.len());
     let map = graph.stack(shape, shape.positions().map(|(row, column)| images[column][row]).collect());
     let normal = map.transpose() * map;
@@ -116,12 +118,22 @@ fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
     matrix.reduce(|sum, term| sum + term)
 }
 
+/// The matrices whose images are independent: on SE(2) and SO(2) several 𝕄 have the same Σ, and one of them will do.
+fn independent<'g>(units: Vec<(Expr<'g>, Vec<Expr<'g>>)>) -> (Vec<Expr<'g>>, Vec<Vec<Expr<'g>>>) {
+    let value = |entry: &Expr<'g>| entry.as_number().unwrap_or_else(|| integer(0));
+    let length = units.first().map_or(0, |(_, image)| image.len());
+    let mut rows: Vec<Vec<_>> =
+        (0..length).map(|row| units.iter().map(|(_, image)| value(&image[row])).collect()).collect();
+    let pivots = reduce(&mut rows);
+    units.into_iter().enumerate().filter(|(index, _)| pivots.contains(index)).map(|(_, unit)| unit).unzip()
+}
+
 fn not_quadratic<'g>(model: &Model<'g>, velocity: Expr<'g>) -> Diagnostics {
-    Diagnostic::new(model.spans.kinetic.place, "the Lagrangian is not a quadratic form of the velocity")
+    Diagnostic::new(model.spans.kinetic.place, "the Lagrangian is not a quadratic form of the velocity of each factor")
         .help(format!(
             "leave out `discretization = moser_veselov`, or write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`"
         ))
-        .note("the Moser–Veselov discretisation puts (F - I)/h into ½ tr(ξ 𝕄 ξᵀ), which is quadratic")
+        .note("the Moser–Veselov discretisation puts (F - I)/h into ½ tr(ξ 𝕄 ξᵀ), which is quadratic and one for each factor")
         .into()
 }
 
@@ -131,7 +143,7 @@ fn no_mass_matrix<'g>(model: &Model<'g>, factor: &Factor<'g>) -> Diagnostics {
         model.spans.kinetic.place,
         format!("this Lagrangian has no Moser–Veselov form on `{name}`"),
     )
-    .help("write `discretization = cayley`, the default, which exists for every Lagrangian")
+    .help("leave out `discretization`: the default exists for every Lagrangian")
     .note("that form is ½ tr(ξ 𝕄 ξᵀ) with a symmetric matrix 𝕄; the inertia of this Lagrangian is of that form for no 𝕄 that holds for all values of its parameters")
     .into()
 }

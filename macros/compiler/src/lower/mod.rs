@@ -307,11 +307,6 @@ fn uses_inertia_inverse(scalars: &Scalars, scalar: Scalar) -> bool {
     }
 }
 
-/// Whether a matrix is zero off its diagonal for all values of its symbols.
-fn is_diagonal(matrix: Expr<'_>) -> bool {
-    matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
-}
-
 impl Program<'_> {
     /// The operations of all kernels together.
     pub fn cost(&self) -> Cost {

@@ -3,8 +3,8 @@
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
 use super::kernel::kernel;
-use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, is_diagonal, plain};
-use crate::derive::{Equation, Formulas, Solution, Substep, chart_slope};
+use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
+use crate::derive::{Equation, Formulas, Solution, Substep, chart_slope, is_diagonal};
 use crate::model::{Factor, Side};
 
 /// The kernels of one substep.
