@@ -2,41 +2,53 @@
 //!
 //! [`solve`] first tries full Newton steps from the predictor, which ends after one to four linearisations for the step sizes
 //! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work,
-//! until it arrives or is found to turn back: then no solution is connected to the identity.
+//! until it arrives or is found to turn back: then no solution is connected to the identity. [`solve_linear_equation`] does
+//! without iteration where ρ is affine in ξ.
 
+mod linear_equation;
 mod path;
 
+pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
-use crate::linear::{Orientation, eliminate, rows};
+use crate::linear::{Orientation, rows, solve_dense};
 use crate::{Error, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given the target μ.
+/// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
 /// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
 /// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign.
 ///
 /// Where the momentum of the identity is not 0, as for a cost in which a potential depends on q and F together, μ is the
 /// momentum less that of the identity, and so is ρ.
-pub trait Equation<T: Scalar, const M: usize> {
+pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// What does not change during the iteration.
     type Terms;
 
     /// The terms for the target μ.
-    fn prepare(&self, target: &SVector<T, M>) -> Self::Terms;
+    fn prepare(&self, target: &SVector<T, N>) -> Self::Terms;
 
     /// A first approximation of ξ, best Σ⁻¹μ in the units of the chart; it should be 0 for μ = 0.
     ///
     /// The provided method answers 0, which asks [`solve`] for the first Newton correction from ξ = 0: right where Σ is no
     /// constant, such as an inertia that depends on the configuration, for one linearisation more.
     #[inline]
-    fn predict(&self, _target: &SVector<T, M>) -> SVector<T, M> {
+    fn predict(&self, _target: &SVector<T, N>) -> SVector<T, M> {
         SVector::from_element(T::zero())
     }
 
     /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
+
+    /// Δ with Dρ Δ = ρ, and the sign of det Dρ; `None` where it is singular.
+    ///
+    /// The provided method eliminates with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
+    /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`] for each block on its diagonal.
+    #[inline]
+    fn correct(residual: &SVector<T, M>, jacobian: &SMatrix<T, M, M>) -> Option<(SVector<T, M>, Orientation)> {
+        solve_dense(jacobian, residual)
+    }
 
     /// The sign of det Dρ at ξ = 0 and μ = 0, which every solution on the branch has; `None` where it is singular.
     ///
@@ -50,9 +62,11 @@ pub trait Equation<T: Scalar, const M: usize> {
 
 /// The sign of det Dρ at ξ = 0 and μ = 0, from a linearisation.
 #[inline]
-fn at_identity<T: Scalar, const M: usize, E: Equation<T, M> + ?Sized>(equation: &E) -> Option<Orientation> {
-    let zero = SVector::from_element(T::zero());
-    let (_, jacobian) = equation.linearize(&equation.prepare(&zero), &zero);
+fn at_identity<T: Scalar, const M: usize, const N: usize, E: Equation<T, M, N> + ?Sized>(
+    equation: &E,
+) -> Option<Orientation> {
+    let terms = equation.prepare(&SVector::from_element(T::zero()));
+    let (_, jacobian) = equation.linearize(&terms, &SVector::from_element(T::zero()));
     Orientation::of(rows(&jacobian))
 }
 
@@ -60,7 +74,9 @@ fn at_identity<T: Scalar, const M: usize, E: Equation<T, M> + ?Sized>(equation: 
 ///
 /// # Errors
 /// [`Error::SingularKineticEnergy`] where Dρ is singular there.
-pub fn orientation<T: Scalar, const M: usize>(equation: &impl Equation<T, M>) -> Result<Orientation, Error> {
+pub fn orientation<T: Scalar, const M: usize, const N: usize>(
+    equation: &impl Equation<T, M, N>,
+) -> Result<Orientation, Error> {
     at_identity(equation).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
 }
 
@@ -77,9 +93,9 @@ const QUICK: usize = 12;
 /// [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
 /// one; [`Error::NotFinite`] where `target` or the equation is not; [`Error::NotConverged`] where the work was not enough.
 #[inline]
-pub fn solve<T: Scalar, const M: usize>(
-    equation: &impl Equation<T, M>,
-    target: &SVector<T, M>,
+pub fn solve<T: Scalar, const M: usize, const N: usize>(
+    equation: &impl Equation<T, M, N>,
+    target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
     match newton(equation, target) {
         Some(xi) => Ok(xi),
@@ -93,7 +109,10 @@ pub fn solve<T: Scalar, const M: usize>(
 /// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0, and where it is 0 the
 /// first correction is the predictor.
 #[inline]
-fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SVector<T, M>) -> Option<SVector<T, M>> {
+fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    equation: &E,
+    target: &SVector<T, N>,
+) -> Option<SVector<T, M>> {
     let branch = equation.orientation()?;
     let terms = equation.prepare(target);
     let mut start = equation.predict(target);
@@ -104,7 +123,7 @@ fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SV
     let (mut before, mut residual_before) = (predicted, xi);
     for iteration in 0..QUICK {
         let (residual, jacobian) = equation.linearize(&terms, &xi);
-        let (correction, orientation) = correct(&residual, &jacobian)?;
+        let (correction, orientation) = E::correct(&residual, &jacobian)?;
         if orientation != branch {
             return None;
         }
@@ -133,17 +152,6 @@ fn newton<T: Scalar, const M: usize>(equation: &impl Equation<T, M>, target: &SV
         (before, residual_before) = (now, residual);
     }
     None
-}
-
-/// The Newton correction Δ of ρ + Dρ·(−Δ) = 0 and the sign of det Dρ, `None` where it is singular.
-#[inline]
-fn correct<T: Scalar, const M: usize>(
-    residual: &SVector<T, M>,
-    jacobian: &SMatrix<T, M, M>,
-) -> Option<(SVector<T, M>, Orientation)> {
-    let mut columns: [[T; 1]; M] = core::array::from_fn(|i| [residual[i]]);
-    let orientation = eliminate(rows(jacobian), &mut columns)?;
-    Some((SVector::from_fn(|i, _| columns[i][0]), orientation))
 }
 
 /// Whether the residual is no more than the rounding of the terms that it is made of, of size |Dρ||ξ|.

@@ -6,6 +6,7 @@
 use crate::Scalar;
 use crate::space::larger;
 use core::array::from_fn;
+use core::ops::Mul;
 use nalgebra::{SMatrix, SVector};
 
 /// The sign of the determinant of a regular matrix.
@@ -15,6 +16,16 @@ pub enum Orientation {
     Positive,
     /// det < 0
     Negative,
+}
+
+impl Mul for Orientation {
+    type Output = Self;
+
+    /// The sign of the product of two determinants.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        if self == other { Self::Positive } else { Self::Negative }
+    }
 }
 
 impl Orientation {
@@ -75,9 +86,58 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
 /// x of A x = b; `None` where A is singular or not finite.
 #[inline]
 pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
+    solve_dense(a, b).map(|(x, _)| x)
+}
+
+/// x of A x = b and the sign of det A, by elimination with pivoting; `None` where A is singular or not finite.
+#[inline]
+pub fn solve_dense<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
     let mut unknowns: [[T; 1]; M] = from_fn(|i| [b[i]]);
-    eliminate(rows(a), &mut unknowns)?;
-    Some(SVector::from_fn(|i, _| unknowns[i][0]))
+    let orientation = eliminate(rows(a), &mut unknowns)?;
+    Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
+}
+
+/// x of A x = b and the sign of det A for a symmetric matrix.
+///
+/// A = L D Lᵀ without pivoting where A is definite, which is stable (Higham, *Accuracy and Stability of Numerical Algorithms*,
+/// theorem 10.3): M³/6 + 2M² multiplications to leading orders and M divisions, about half the work of [`solve_dense`] for large M, and
+/// no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
+#[inline]
+#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
+pub fn solve_symmetric<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    let mut l = rows(a);
+    let mut x: [T; M] = from_fn(|i| b[i]);
+    let mut reciprocals = [T::zero(); M];
+    for k in 0..M {
+        let pivot = l[k][k];
+        let agrees = (pivot > T::zero()) == (a[(0, 0)] > T::zero());
+        if !agrees || pivot == T::zero() || !pivot.is_finite() {
+            return solve_dense(a, b);
+        }
+        reciprocals[k] = T::one() / pivot;
+        for i in k + 1..M {
+            let factor = l[i][k] * reciprocals[k];
+            for j in k + 1..=i {
+                l[i][j] -= factor * l[j][k];
+            }
+            x[i] -= factor * x[k];
+        }
+    }
+    // row k of D Lᵀ stands in column k below the diagonal
+    for k in (0..M).rev() {
+        for i in k + 1..M {
+            x[k] -= l[i][k] * x[i];
+        }
+        x[k] *= reciprocals[k];
+    }
+    let negative = M % 2 == 1 && a[(0, 0)] < T::zero();
+    Some((SVector::from_fn(|i, _| x[i]), if negative { Orientation::Negative } else { Orientation::Positive }))
 }
 
 /// A square matrix by rows.
@@ -117,8 +177,8 @@ pub(crate) fn undefined<T: Scalar, const N: usize>() -> SMatrix<T, N, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Orientation, eliminate, norm, product, solve_linear};
-    use nalgebra::{Matrix2, Vector2};
+    use super::{Orientation, eliminate, norm, product, solve_dense, solve_linear, solve_symmetric};
+    use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3, Vector4};
     use proptest::prelude::*;
 
     #[test]
@@ -135,6 +195,29 @@ mod tests {
         assert_eq!(solve_linear(&Matrix2::new(1.0, 2.0, 2.0, 4.0), &Vector2::x()), None);
         assert_eq!(product(&[[1.0, 2.0], [3.0, 4.0]], &[[0.0, 1.0], [-1.0, 5.0]]), [[-2.0, 11.0], [-4.0, 23.0]]);
         assert_eq!(norm(&[[1.0, -2.0], [-3.0, -4.0]]), 7.0);
+    }
+
+    /// A definite matrix, an indefinite one, one whose leading minors vanish, and a singular one.
+    #[test]
+    fn symmetric_systems() {
+        let b = Vector2::new(3.0, -1.0);
+        let of = |a: f64, c: f64, d: f64| solve_symmetric(&Matrix2::new(a, f64::NAN, c, d), &b);
+        assert_eq!(of(2.0, 1.0, 1.0), Some((Vector2::new(4.0, -5.0), Orientation::Positive)));
+        assert_eq!(of(-2.0, -1.0, -1.0), Some((Vector2::new(-4.0, 5.0), Orientation::Positive)));
+        let solved = |a: f64, c: f64, d: f64| solve_symmetric(&Matrix2::new(a, c, c, d), &b);
+        assert_eq!(solved(1.0, 2.0, 1.0), Some((Vector2::new(-5.0 / 3.0, 7.0 / 3.0), Orientation::Negative)));
+        assert_eq!(solved(0.0, 1.0, 0.0), Some((Vector2::new(-1.0, 3.0), Orientation::Negative)));
+        assert_eq!(solved(1.0, 1.0, 1.0), None);
+        assert_eq!(solved(f64::NAN, 1.0, 1.0), None);
+        assert_eq!(solved(f64::INFINITY, 1.0, 1.0), None);
+        let cubic = solve_symmetric(&-Matrix3::<f64>::identity(), &Vector3::x());
+        assert_eq!(cubic, Some((-Vector3::x(), Orientation::Negative)));
+    }
+
+    #[test]
+    fn signs_of_determinants_multiply() {
+        let (plus, minus) = (Orientation::Positive, Orientation::Negative);
+        assert_eq!([plus * plus, plus * minus, minus * plus, minus * minus], [plus, minus, minus, plus]);
     }
 
     #[test]
@@ -169,6 +252,22 @@ mod tests {
                 let largest = x.iter().fold(0.0_f64, |m, [x]| m.max(x.abs()));
                 prop_assert!(residual.abs() <= 64.0 * f64::EPSILON * (size + largest + entry.abs()));
             }
+        }
+
+        /// Definite, indefinite and nearly singular ones, against elimination with pivoting.
+        #[test]
+        fn symmetric_solutions_are_those_of_elimination(
+            a in prop::array::uniform4(prop::array::uniform4(-1.0_f64..1.0)),
+            b in prop::array::uniform4(-1.0_f64..1.0),
+            shift in -3.0_f64..3.0,
+        ) {
+            let a = Matrix4::from(a);
+            let (a, b) = (a + a.transpose() + Matrix4::identity() * shift, Vector4::from(b));
+            let (dense, symmetric) = (solve_dense(&a, &b), solve_symmetric(&a, &b));
+            prop_assume!(dense.is_some());
+            let ((x, sign), (y, other)) = (dense.unwrap(), symmetric.unwrap());
+            prop_assert_eq!(sign, other);
+            prop_assert!((a * y - b).amax() <= 64.0 * f64::EPSILON * (a.amax() * (y.amax() + x.amax()) + b.amax()));
         }
 
         #[test]

@@ -8,7 +8,8 @@
 mod bracket;
 mod point;
 
-use super::{Equation, correct, is_much_smaller, size};
+use super::{Equation, is_much_smaller, size};
+use crate::linear::solve_dense;
 use crate::space::larger;
 use crate::{Error, Scalar, Space};
 use nalgebra::SVector;
@@ -20,9 +21,9 @@ pub const LINEARIZATIONS: u32 = 1024;
 /// The solution for s = 1 on the branch from the identity.
 #[cold]
 #[inline(never)]
-pub(super) fn follow<T: Scalar, const M: usize>(
-    equation: &impl Equation<T, M>,
-    target: &SVector<T, M>,
+pub(super) fn follow<T: Scalar, const M: usize, const N: usize>(
+    equation: &impl Equation<T, M, N>,
+    target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
     if !target.is_finite() {
         return Err(Error::NotFinite { name: "the momentum" });
@@ -64,7 +65,7 @@ fn unsolvable<T: Scalar>(s: T) -> Error {
     Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None }
 }
 
-impl<T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'_, T, E, M> {
+impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {
     /// Newton's method for s = 1 from the tangent at `here`, if that is within `reach` and contracts cleanly on the branch.
     fn land(&mut self, here: &Point<T, M>, reach: T) -> Option<SVector<T, M>> {
         let distance = T::one() - here.s;
@@ -78,7 +79,7 @@ impl<T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'_, T, E, M> {
         while self.is_affordable() {
             self.count(1);
             let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
-            let (correction, orientation) = correct(&residual, &jacobian)?;
+            let (correction, orientation) = solve_dense(&jacobian, &residual)?;
             if orientation != self.branch {
                 return None;
             }

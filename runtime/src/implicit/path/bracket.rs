@@ -11,8 +11,8 @@ use nalgebra::SVector;
 /// `before` is on the branch with s < 1; `after` has s ≥ 1 or is past the end of the branch. In a small bracket s is a concave
 /// function of the parameter, and its tangent at `before` bounds it. Each evaluation is regular at the end of the branch too, so
 /// that even there s is exact to round-off.
-pub(super) fn decide<T: Scalar, E: Equation<T, M>, const M: usize>(
-    homotopy: &mut Homotopy<'_, T, E, M>,
+pub(super) fn decide<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    homotopy: &mut Homotopy<'_, T, E, M, N>,
     mut before: Point<T, M>,
     mut after: Point<T, M>,
     parameter: Parameter,

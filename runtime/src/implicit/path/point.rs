@@ -23,7 +23,7 @@ pub(super) struct Point<T: Scalar, const M: usize> {
 pub(super) struct Parameter(pub usize);
 
 /// The equation ρ(ξ; sμ) = 0 in the M + 1 unknowns (ξ, s).
-pub(super) struct Homotopy<'a, T: Scalar, E: Equation<T, M>, const M: usize> {
+pub(super) struct Homotopy<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> {
     pub equation: &'a E,
     /// Terms for the target 0.
     still: E::Terms,
@@ -45,8 +45,8 @@ struct Linearization<T: Scalar, const M: usize> {
     rate: SVector<T, M>,
 }
 
-impl<'a, T: Scalar, E: Equation<T, M>, const M: usize> Homotopy<'a, T, E, M> {
-    pub fn new(equation: &'a E, target: &SVector<T, M>) -> Self {
+impl<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
+    pub fn new(equation: &'a E, target: &SVector<T, N>) -> Self {
         let still = equation.prepare(&SVector::from_element(T::zero()));
         let moving = equation.prepare(target);
         Self { equation, still, moving, branch: Orientation::Positive, scale: T::zero(), weight: T::zero(), count: 0 }
