@@ -30,6 +30,14 @@ impl<'g> Expr<'g> {
             Node::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
             Node::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
             Node::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
+            Node::Hadamard(a, b) => {
+                let [a, b] = [a, b].map(|factor| graph.expr(*factor).block(row, column, shape));
+                a.hadamard(b)
+            }
+            Node::DiagonalMatrix(inner) if shape.is_scalar() => match row == column {
+                true => graph.expr(*inner).entry(row, 0),
+                false => graph.zero(shape),
+            },
             Node::Embed(inner, r, c) => {
                 let given = graph.shape(*inner);
                 let (last_row, last_column) = (row + shape.rows, column + shape.columns);

@@ -12,7 +12,7 @@ use num_traits::ToPrimitive;
 
 use crate::evaluate::{Matrix, Number, negative, one, zero};
 use crate::group::sample;
-use crate::node::{Analytic, Function};
+use crate::node::{Analytic, Function, Term};
 use crate::{Expr, Group, Property, Rational, Shape};
 
 const PRIME: u64 = (1 << 61) - 1;
@@ -214,6 +214,13 @@ pub fn vanishes_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> b
 /// Whether the expression is zero for all values of its symbols that the properties allow.
 pub fn vanishes(expr: Expr<'_>) -> bool {
     equal(&[expr], &[expr.graph.zero(expr.shape())])
+}
+
+/// The same sum without those of its terms that are zero for all values of their symbols.
+pub fn without_vanishing_terms(expr: Expr<'_>) -> Expr<'_> {
+    let (graph, shape) = (expr.graph, expr.shape());
+    let stays = |term: &Term| !vanishes(graph.collect(shape, [term.clone()]));
+    graph.collect(shape, expr.terms().into_iter().filter(stays))
 }
 
 /// The rank of a matrix for general values of its symbols.

@@ -25,9 +25,9 @@ macro_rules! steppers {
 
 modules! {
     annotated_body centred_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
-    gravity_gradient harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
+    gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top
-    rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
+    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
     underwater_vehicle weighted_sl2
 }
 
@@ -42,6 +42,7 @@ steppers! {
     step_generic_body_in_f32: generic_body::GenericBody<f32>;
     step_generic_body_in_f64: generic_body::GenericBody<f64>;
     step_gravity_gradient: gravity_gradient::GravityGradient;
+    step_growing_shape: growing_shape::GrowingShape;
     step_harmonics: harmonics::Harmonics;
     step_heavy_top: heavy_top::HeavyTop;
     step_heavy_top_reduced: heavy_top_reduced::HeavyTopReduced;
@@ -56,6 +57,7 @@ steppers! {
     step_principal_body: principal_body::PrincipalBody;
     step_promised_top: promised_top::PromisedTop;
     step_quaternion_top: quaternion_top::QuaternionTop;
+    step_relativistic_particle: relativistic_particle::RelativisticParticle;
     step_rigid_body4: rigid_body4::RigidBody4;
     step_sided_pair: sided_pair::SidedPair;
     step_spatial_body: spatial_body::SpatialBody;

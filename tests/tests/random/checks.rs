@@ -2,7 +2,8 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use clebsch_compiler::lower::Program;
+use clebsch_compiler::derive::{Solution, Structure};
+use clebsch_compiler::lower::{Program, Solve};
 use clebsch_compiler::{Graph, compile};
 use clebsch_tests::oracle::precise::double_double::DoubleDouble;
 use clebsch_tests::oracle::precise::energy::energy;
@@ -29,7 +30,8 @@ pub struct Found {
     pub composed: bool,
     pub conserved: usize,
     pub couples: bool,
-    pub implicit: bool,
+    pub iterates: bool,
+    pub specialised: bool,
     pub deviation: f64,
     pub energy: f64,
     pub drift: f64,
@@ -54,6 +56,11 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
     result.map_err(|error| format!("seed {seed}: {error}\n{text}"))
 }
 
+/// Whether something was known of the Jacobian of an equation.
+fn is_specialised(solve: &Solve) -> bool {
+    solve.solution == Solution::Linear || !solve.given.is_empty() || solve.structure != Structure::Dense
+}
+
 fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> Result<Found, String> {
     let start = start(problem, random);
     let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
@@ -66,11 +73,13 @@ fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> R
         false => trajectory(problem, h, &first, STEPS),
     };
     let oracle = oracle.map_err(|lost| format!("the oracle has no step: {lost:?}"))?;
+    let solves = || program.steps.iter().flat_map(|step| &step.solves);
     let mut found = Found {
         composed,
         conserved: program.formulas.symmetries.conserved.len(),
         couples: program.formulas.lagrangian.couples,
-        implicit: program.steps.iter().any(|step| step.solves.iter().any(|solve| solve.predict.is_none())),
+        iterates: solves().any(|solve| solve.solution == Solution::Newton),
+        specialised: solves().any(is_specialised),
         ..Found::default()
     };
     let mut state = seen(problem, &start);

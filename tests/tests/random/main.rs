@@ -75,8 +75,9 @@ fn integrates(seeds: impl Iterator<Item = u64>) {
             count(&|one| !one.composed),
             count(&|one| one.conserved > 0),
             count(&|one| one.couples),
-            count(&|one| one.implicit),
-            count(&|one| !one.implicit),
+            count(&|one| one.iterates),
+            count(&|one| !one.iterates),
+            count(&|one| one.specialised),
         ];
         assert!(kinds.iter().all(|&count| count > 2), "the problems are too much alike: {kinds:?}");
     }

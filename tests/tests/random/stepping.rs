@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use clebsch::__private::{Equation, solve};
+use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
 use clebsch_compiler::derive::Solution;
 use clebsch_compiler::lower::{Kernel, Program, Solve, StepKernels};
 use clebsch_symbolic::Matrix;
@@ -113,25 +113,28 @@ impl<'a, 'g> Stepper<'a, 'g> {
                 return Err(format!("sin² = {sine_squared}"));
             }
         }
-        if solve.solution != Solution::Newton {
+        if matches!(solve.solution, Solution::Explicit | Solution::ClosedForm) {
             let x = self.run(solve.predict.as_ref().ok_or("no formula for the solution")?).remove(0);
             self.turn(solve, &x);
             return Ok(());
         }
-        let target: Vec<f64> = solve.components.iter().map(|&component| mu[component]).collect();
         let equation = Interpreted { stepper: RefCell::new(self), solve, mu };
-        let solution = solved(&equation, &target)?;
+        let solution = solved(&equation)?;
         self.turn(solve, &solution);
         Ok(())
     }
 
-    /// The components of an equation are numbered through all blocks, as its coordinates are.
+    /// Gives an equation's unknowns their values.
     fn turn(&mut self, solve: &Solve, x: &[f64]) {
         for block in &self.program.formulas.symbols.blocks {
-            let first = solve.components.iter().position(|&component| component == block.offset);
-            if let Some(first) = first {
-                self.values.set(block.coordinates, &x[first..first + block.dimension()]);
+            let known = self.values.0.get(&block.coordinates.as_symbol().expect("a symbol").name);
+            let mut entries = known.map_or(vec![0.0; block.dimension()], |known| known.entries.clone());
+            for (&component, value) in solve.components.iter().zip(x) {
+                if block.components().contains(&component) {
+                    entries[component - block.offset] = *value;
+                }
             }
+            self.values.set(block.coordinates, &entries);
         }
     }
 
@@ -180,7 +183,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     }
 }
 
-/// An equation of a program, for the solver of the runtime.
+/// An equation of a program, for the solvers of the runtime.
 struct Interpreted<'a, 'b, 'g> {
     stepper: RefCell<&'a mut Stepper<'b, 'g>>,
     solve: &'a Solve,
@@ -188,30 +191,32 @@ struct Interpreted<'a, 'b, 'g> {
     mu: &'a [f64],
 }
 
+/// More momenta than any equation of these tests holds: those behind its own are not read.
+const MOMENTA: usize = 12;
+
 impl Interpreted<'_, '_, '_> {
-    /// Gives the equation's components of the momentum their values.
-    fn aim(&self, target: &[f64]) {
+    /// Runs something where the equation's momenta have other values.
+    fn aimed<R>(&self, target: &SVector<f64, MOMENTA>, run: impl Fn(&Stepper<'_, '_>) -> R) -> R {
         let mut mu = self.mu.to_vec();
-        self.solve.components.iter().zip(target).for_each(|(&component, value)| mu[component] = *value);
-        self.stepper.borrow_mut().impel(&mu);
+        self.solve.momenta.iter().zip(target).for_each(|(&component, value)| mu[component] = *value);
+        let mut stepper = self.stepper.borrow_mut();
+        stepper.impel(&mu);
+        let result = run(&stepper);
+        stepper.impel(self.mu);
+        result
     }
 }
 
-impl<const M: usize> Equation<f64, M> for Interpreted<'_, '_, '_> {
+impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     type Terms = Vec<f64>;
 
-    fn prepare(&self, target: &SVector<f64, M>) -> Vec<f64> {
-        self.aim(target.as_slice());
-        let terms = self.stepper.borrow().run(&self.solve.prepare).concat();
-        self.aim(&self.solve.components.iter().map(|&component| self.mu[component]).collect::<Vec<_>>());
-        terms
+    fn prepare(&self, target: &SVector<f64, MOMENTA>) -> Vec<f64> {
+        self.aimed(target, |stepper| stepper.run(&self.solve.prepare).concat())
     }
 
-    fn predict(&self, target: &SVector<f64, M>) -> SVector<f64, M> {
-        self.aim(target.as_slice());
-        let stepper = self.stepper.borrow();
+    fn predict(&self, target: &SVector<f64, MOMENTA>) -> SVector<f64, M> {
         match &self.solve.predict {
-            Some(predict) => SVector::from_column_slice(&stepper.run(predict)[0]),
+            Some(predict) => self.aimed(target, |stepper| SVector::from_column_slice(&stepper.run(predict)[0])),
             None => SVector::zeros(),
         }
     }
@@ -224,12 +229,27 @@ impl<const M: usize> Equation<f64, M> for Interpreted<'_, '_, '_> {
     }
 }
 
-/// The solution on the branch of the identity, by the solver that emitted code calls.
-fn solved(equation: &Interpreted<'_, '_, '_>, target: &[f64]) -> Result<Vec<f64>, String> {
+impl<const M: usize> LinearEquation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
+    fn system(&self, target: &SVector<f64, MOMENTA>) -> (SMatrix<f64, M, M>, SVector<f64, M>) {
+        let outputs = self.aimed(target, |stepper| stepper.run(&self.solve.linearize));
+        (SMatrix::from_row_slice(&outputs[1]), SVector::from_column_slice(&outputs[0]))
+    }
+}
+
+/// The solution on the branch of the identity, by the solvers that emitted code calls.
+fn solved(equation: &Interpreted<'_, '_, '_>) -> Result<Vec<f64>, String> {
+    let mut target = SVector::<f64, MOMENTA>::zeros();
+    let momenta = equation.solve.momenta.iter().map(|&component| equation.mu[component]);
+    target.iter_mut().zip(momenta).for_each(|(target, mu)| *target = mu);
+    let is_linear = equation.solve.solution == Solution::Linear;
     macro_rules! of_dimension {
         ($($m:literal)*) => {
-            match target.len() {
-                $($m => solve(equation, &SVector::<f64, $m>::from_column_slice(target)).map(|x| x.as_slice().to_vec()),)*
+            match equation.solve.dimension {
+                $($m => {
+                    let x: Result<SVector<f64, $m>, _> =
+                        if is_linear { solve_linear_equation(equation, &target) } else { solve(equation, &target) };
+                    x.map(|x| x.as_slice().to_vec())
+                })*
                 other => return Err(format!("an equation for {other} unknowns")),
             }
         };

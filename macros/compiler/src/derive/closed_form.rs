@@ -3,18 +3,17 @@
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::Symbols;
-use super::equation::{Sources, chart_slope, is_moving, offset, own_part, without_part};
+use super::equation::{Sources, chart_slope, is_moving, own_part, without_part};
 use super::trivialisation::Covector;
 use crate::model::Model;
 
 /// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
 /// in one plane has sin θ = |a| and tan(θ/2) = |x|.
-#[derive(Copy, Clone)]
-pub struct ClosedForm<'g> {
+pub(super) struct ClosedForm<'g> {
     /// x(μ).
-    pub coordinates: Expr<'g>,
+    pub(super) coordinates: Expr<'g>,
     /// |a|², which has to be below one.
-    pub sine_squared: Expr<'g>,
+    pub(super) sine_squared: Expr<'g>,
 }
 
 /// Whether x = s·h·Σ⁻¹μ solves the equation: on a sphere with the exponential, for one.
@@ -25,7 +24,7 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
     }
     let total = sources.inertia.shape().rows;
     let momentum = symbols.momenta.iter().zip(0..).fold(model.graph.zero(Shape::vector(total)), |sum, (mu, k)| {
-        sum + mu.embed(Shape::vector(total), offset(model, k), 0)
+        sum + mu.embed(Shape::vector(total), model.offset(k), 0)
     });
     let velocity = sources.inertia.inverse() * momentum;
     let solution = |&i: &usize| {
@@ -49,7 +48,7 @@ pub(super) fn closed_form<'g>(
     let (model, symbols) = (sources.model, sources.symbols);
     let block = symbols.blocks[i];
     let factor = &model.factors[block.factor];
-    let start = block.offset - offset(model, block.factor);
+    let start = block.offset - model.offset(block.factor);
     let kappa = sources.inertia.entry(block.offset, block.offset);
     let step = model.step_size / sources.parts;
     let mu = own_part(model, symbols, i);

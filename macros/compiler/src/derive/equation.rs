@@ -2,28 +2,36 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
-use super::Symbols;
 use super::action::identities;
-use super::closed_form::{ClosedForm, closed_form, is_solved_by_predictor};
+use super::closed_form::{closed_form, is_solved_by_predictor};
+use super::structure::{self, Structure};
 use super::trivialisation::Covector;
+use super::{ChartBlock, Symbols};
 use crate::model::{Model, Side};
 
-/// The momentum equation of blocks that depend on each other.
+/// The momentum equation of coordinates that depend on each other.
+#[derive(Clone)]
 pub struct Equation<'g> {
-    /// The blocks, by their indices in [`Symbols::blocks`].
-    pub blocks: Vec<usize>,
+    /// Its coordinates, by their indices among those of all factors.
+    pub components: Vec<usize>,
     /// The factors that they belong to, by index.
     pub factors: Vec<usize>,
-    /// ρ(x), the components of all its blocks, with μ standing for the momentum after the kick.
+    /// ρ(x), the components of all its coordinates, with μ standing for the momentum after the kick.
     pub residual: Expr<'g>,
     /// Dρ(x)·δ.
     pub directional: Expr<'g>,
-    /// Whether the congruence with I ∓ Z has freed it of denominators, for each of its blocks.
-    pub cleared: Vec<bool>,
+    /// Whether the congruence with I ∓ Z has freed it of denominators.
+    pub cleared: bool,
     /// How it is solved.
     pub solution: Solution,
-    /// The closed form, where there is one.
-    pub closed_form: Option<ClosedForm<'g>>,
+    /// x, where a formula gives it that is not the predictor; the coordinates of equations before it may occur in it.
+    pub formula: Option<Expr<'g>>,
+    /// |a|² of the closed form, which has to be below one.
+    pub sine_squared: Option<Expr<'g>>,
+    /// What is known of its Jacobian.
+    pub structure: Structure,
+    /// The coordinates that were put in and have inertia in common with its own.
+    pub coupled: Vec<usize>,
     /// Whether it depends on the configuration or on the time.
     pub moves: bool,
 }
@@ -31,10 +39,12 @@ pub struct Equation<'g> {
 /// How an equation is solved.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Solution {
-    /// The residual is affine: the predictor x = s·h·Σ⁻¹μ solves it.
+    /// By the predictor x = s·h·Σ⁻¹μ, or by substituting what is known into equations of constant slope.
     Explicit,
     /// By a formula with one square root.
     ClosedForm,
+    /// By one elimination, as the residual is affine in x.
+    Linear,
     /// By Newton's method from the predictor.
     Newton,
 }
@@ -62,14 +72,18 @@ pub(super) fn equations<'g>(
     for k in 0..model.factors.len() {
         let (residual, cleared) = residual(sources, before, coupling, k);
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
-            let start = block.offset - offset(model, k);
+            let start = block.offset - model.offset(k);
             Residual { rows: residual.block(start, 0, Shape::vector(block.dimension())), cleared }
         }));
     }
     substitute_explicit(sources, &mut residuals);
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
     let groups = groups(residuals.len(), depends);
-    groups.into_iter().map(|group| equation(sources, before, &residuals, group)).collect()
+    groups
+        .into_iter()
+        .map(|group| equation(sources, before, &residuals, group))
+        .flat_map(|equation| structure::specialised(sources, equation))
+        .collect()
 }
 
 /// The residual of one block.
@@ -77,11 +91,6 @@ pub(super) fn equations<'g>(
 struct Residual<'g> {
     rows: Expr<'g>,
     cleared: bool,
-}
-
-/// The index of a factor's first component among those of all.
-pub(super) fn offset(model: &Model<'_>, k: usize) -> usize {
-    model.factors[..k].iter().map(|factor| factor.group.dimension()).sum()
 }
 
 /// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ, and its solution put into the others, where it often leaves
@@ -125,14 +134,14 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
 /// The part of the momentum symbol that belongs to a block.
 pub(super) fn own_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, i: usize) -> Expr<'g> {
     let block = symbols.blocks[i];
-    let start = block.offset - offset(model, block.factor);
+    let start = block.offset - model.offset(block.factor);
     symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension()))
 }
 
 /// An expression with the momentum of a block set to zero.
 pub(super) fn without_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
     let block = symbols.blocks[i];
-    let (start, mu) = (block.offset - offset(model, block.factor), symbols.momenta[block.factor]);
+    let (start, mu) = (block.offset - model.offset(block.factor), symbols.momenta[block.factor]);
     let keep =
         |a: usize| if a < start || a >= start + block.dimension() { mu.entry(a, 0) } else { mu.graph().integer(0) };
     let rest = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(keep).collect());
@@ -270,37 +279,89 @@ fn equation<'g>(
     blocks: Vec<usize>,
 ) -> Equation<'g> {
     let (model, symbols) = (sources.model, sources.symbols);
-    let dimension = blocks.iter().map(|&i| symbols.blocks[i].dimension()).sum();
-    let shape = Shape::vector(dimension);
+    let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).collect();
+    let shape = Shape::vector(components.len());
     let mut residual = model.graph.zero(shape);
     let mut row = 0;
     for &i in &blocks {
         residual = residual + residuals[i].rows.embed(shape, row, 0);
         row += symbols.blocks[i].dimension();
     }
-    let mut factors: Vec<usize> = blocks.iter().map(|&i| symbols.blocks[i].factor).collect();
-    factors.dedup();
-    let directions: Vec<_> =
-        blocks.iter().map(|&i| (symbols.blocks[i].coordinates, symbols.blocks[i].direction)).collect();
-    let moves = is_moving(model, residual);
-    let slope = residual.differential(&directions);
-    let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
-    let directional = if kept { slope } else { slope.expand() };
+    let cleared = blocks.iter().all(|&i| residuals[i].cleared);
+    let mut equation = Equation::new(sources, components, residual, cleared);
+    let (directional, moves) = (equation.directional, equation.moves);
     let affine = !moves
         && !directional.depends_on(model.time)
-        && !blocks.iter().any(|&i| directional.depends_on(symbols.blocks[i].coordinates))
-        && !factors.iter().any(|&k| directional.depends_on(symbols.momenta[k]));
+        && equation.is_affine(symbols)
+        && !equation.factors.iter().any(|&k| directional.depends_on(symbols.momenta[k]));
     let closed_form = match blocks.as_slice() {
         [only] if !moves => closed_form(sources, before, residual, *only),
         _ => None,
     };
-    let solution = match closed_form {
+    equation.solution = match &closed_form {
         Some(_) => Solution::ClosedForm,
         // where Σ changes with the configuration there is no predictor
         _ if is_moving(model, sources.inertia) => Solution::Newton,
         None if affine || !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
         None => Solution::Newton,
     };
-    let cleared = blocks.iter().map(|&i| residuals[i].cleared).collect();
-    Equation { blocks, factors, residual, directional, cleared, solution, closed_form, moves }
+    equation.formula = closed_form.as_ref().map(|closed_form| closed_form.coordinates);
+    equation.sine_squared = closed_form.map(|closed_form| closed_form.sine_squared);
+    equation
+}
+
+impl<'g> Equation<'g> {
+    /// An equation for Newton's method.
+    pub(super) fn new(
+        sources: &Sources<'_, 'g>,
+        components: Vec<usize>,
+        residual: Expr<'g>,
+        cleared: bool,
+    ) -> Equation<'g> {
+        let (model, symbols) = (sources.model, sources.symbols);
+        let blocks = symbols.blocks_of(&components);
+        let mut factors: Vec<usize> = blocks.iter().map(|&i| symbols.blocks[i].factor).collect();
+        factors.dedup();
+        let directions: Vec<_> =
+            blocks.iter().map(|&i| (symbols.blocks[i].coordinates, symbols.blocks[i].direction)).collect();
+        let moves = is_moving(model, residual);
+        let slope = residual.differential(&directions);
+        let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
+        Equation {
+            components,
+            factors,
+            residual,
+            directional: if kept { slope } else { slope.expand() },
+            cleared,
+            solution: Solution::Newton,
+            formula: None,
+            sine_squared: None,
+            structure: Structure::Dense,
+            coupled: Vec::new(),
+            moves,
+        }
+    }
+
+    /// Whether Dρ(x) holds no coordinate.
+    pub fn is_affine(&self, symbols: &Symbols<'g>) -> bool {
+        !symbols.blocks.iter().any(|block| self.directional.depends_on(block.coordinates))
+    }
+
+    /// The columns of Dρ(x), one for each of its coordinates.
+    pub fn columns(&self, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+        let graph = self.residual.graph();
+        let blocks: Vec<_> = symbols.blocks_of(&self.components).into_iter().map(|i| symbols.blocks[i]).collect();
+        let column = |&component: &usize| {
+            let direction = |block: &ChartBlock<'g>| {
+                let shape = block.direction.shape();
+                let unit = match block.components().contains(&component) {
+                    true => graph.unit(shape, component - block.offset, 0),
+                    false => graph.zero(shape),
+                };
+                (block.direction, unit)
+            };
+            self.directional.substitute(&blocks.iter().map(direction).collect::<Vec<_>>())
+        };
+        self.components.iter().map(column).collect()
+    }
 }

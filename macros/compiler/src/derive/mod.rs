@@ -14,6 +14,7 @@ mod naming;
 mod print;
 mod reference;
 mod signature;
+mod structure;
 mod symbols;
 mod symmetry;
 mod trivialisation;
@@ -27,13 +28,13 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Model;
 
 pub(crate) use action::generator_columns;
-pub use closed_form::ClosedForm;
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 pub use equation::{Equation, Solution};
 pub(crate) use equation::{chart_slope, is_diagonal};
 pub use print::Formula;
 pub use reference::Reference;
+pub use structure::Structure;
 pub use symbols::{ChartBlock, Symbols};
 pub use symmetry::{ConservedMomentum, Symmetries};
 use trivialisation::Covector;
@@ -253,6 +254,12 @@ impl Formulas<'_> {
     /// Whether the kinetic energy changes with the configuration or the time.
     pub fn inertia_moves(&self) -> bool {
         equation::is_moving(&self.model, self.inertia)
+    }
+
+    /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.
+    pub fn is_solved_after_others(&self, equation: &Equation<'_>) -> bool {
+        let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));
+        equation.formula.is_some_and(holds)
     }
 
     /// The number of substeps that make a step: two where ℓd is composed with its adjoint.

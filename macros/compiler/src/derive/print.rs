@@ -254,10 +254,24 @@ impl<'g> Formulas<'g> {
         Formula::new("Jacobian", format!("Dρ({x})·{direction}"), &[equation.directional])
     }
 
-    /// x(μ), where there is a closed form.
+    /// x(μ), where there is a formula for it.
     pub fn formula_of_solution(&self, equation: &Equation<'g>) -> Option<Formula> {
-        let closed_form = equation.closed_form.as_ref()?;
-        Some(Formula::new("solution", self.letter(&self.chart_symbols()), &[closed_form.coordinates]))
+        Some(Formula::new("solution", self.coordinates_of(equation), &[equation.formula?]))
+    }
+
+    /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
+    pub fn coordinates_of(&self, equation: &Equation<'g>) -> String {
+        let name = |i: usize| {
+            let block = &self.symbols.blocks[i];
+            let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).collect();
+            let entry = |component: &usize| format!("{}[{}]", block.coordinates, component - block.offset);
+            match held.len() == block.dimension() {
+                true => block.coordinates.to_string(),
+                false => held.iter().map(entry).collect::<Vec<_>>().join(", "),
+            }
+        };
+        let names = self.symbols.blocks_of(&equation.components).into_iter().map(name);
+        names.collect::<Vec<_>>().join(", ")
     }
 
     fn formula_of_update(&self, substep: &Substep<'g>) -> Formula {

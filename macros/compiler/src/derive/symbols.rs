@@ -45,12 +45,23 @@ impl ChartBlock<'_> {
     pub fn dimension(&self) -> usize {
         self.coordinates.shape().rows
     }
+
+    /// The indices of its components among those of all factors.
+    pub fn components(&self) -> std::ops::Range<usize> {
+        self.offset..self.offset + self.dimension()
+    }
 }
 
 impl<'g> Symbols<'g> {
     /// The chart coordinates of a factor, one vector for each of its blocks.
     pub fn coordinates(&self, factor: usize) -> Vec<Expr<'g>> {
         self.blocks.iter().filter(|block| block.factor == factor).map(|block| block.coordinates).collect()
+    }
+
+    /// The blocks that some components lie in, by index.
+    pub fn blocks_of(&self, components: &[usize]) -> Vec<usize> {
+        let holds_one = |i: &usize| components.iter().any(|component| self.blocks[*i].components().contains(component));
+        (0..self.blocks.len()).filter(holds_one).collect()
     }
 
     /// The chart coordinates of a factor in one vector.

@@ -20,8 +20,10 @@ pub struct Scope<'a, 'g> {
     pub constants: Option<TokenStream>,
     /// The names of the constants.
     pub constant_names: &'a [String],
-    /// Which of all momentum components the vectors `mu` and `x` hold, in order.
-    pub components: Vec<usize>,
+    /// Which of all components of the momentum `mu` holds, in order.
+    pub momenta: Vec<usize>,
+    /// Which of all components `x` holds, in order.
+    pub coordinates: Vec<usize>,
     /// The index of the first component of each chart block among those of all factors.
     pub blocks: Vec<usize>,
     /// The name of the momentum argument.
@@ -37,6 +39,14 @@ pub enum Nesting {
     Configuration,
     /// That of the group element.
     Element,
+}
+
+/// The entry of a flat vector, which holds some of all components, that belongs to one of them.
+fn entry(vector: &str, held: &[usize], wanted: usize) -> TokenStream {
+    // by construction: kernels read what their vectors hold
+    let position = held.iter().position(|&component| component == wanted).unwrap_or(wanted);
+    let (vector, position) = (format_ident!("{vector}"), Literal::usize_unsuffixed(position));
+    quote!(#vector[#position])
 }
 
 /// Tokens that reach a leaf: `.0[1]`.
@@ -64,26 +74,14 @@ impl Scope<'_, '_> {
             Role::Element(k) => leaf("f", factor(k)),
             Role::Increment(k) => leaf("d", factor(k)),
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
-            Role::Momentum(k) => self.component(self.momentum, k, input.row),
-            Role::Chart(block) => self.at_component("x", self.blocks[block] + input.row),
-            Role::Algebra(k) | Role::Logarithm(k) => self.component("x", k, input.row),
+            Role::Momentum(k) => entry(self.momentum, &self.momenta, self.model.offset(k) + input.row),
+            Role::Chart(block) => entry("x", &self.coordinates, self.blocks[block] + input.row),
+            Role::Algebra(k) | Role::Logarithm(k) => entry("x", &self.coordinates, self.model.offset(k) + input.row),
             Role::Auxiliary(_) => match &self.constants {
                 Some(constants) => quote!(#constants.inertia_inverse #index),
                 None => quote!(inertia_inverse #index),
             },
         }
-    }
-
-    /// The entry of a flat vector that belongs to a component of a factor.
-    fn component(&self, vector: &str, factor: usize, row: usize) -> TokenStream {
-        let offset: usize = self.model.factors[..factor].iter().map(|factor| factor.group.dimension()).sum();
-        self.at_component(vector, offset + row)
-    }
-
-    fn at_component(&self, vector: &str, wanted: usize) -> TokenStream {
-        let position = self.components.iter().position(|&component| component == wanted).unwrap_or(wanted);
-        let (vector, position) = (format_ident!("{vector}"), Literal::usize_unsuffixed(position));
-        quote!(#vector[#position])
     }
 
     fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {

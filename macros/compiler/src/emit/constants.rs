@@ -31,19 +31,34 @@ impl Emitter<'_, '_> {
 
     /// Whether the orientation of an equation is a constant, made of Σ.
     pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
-        solve.solution == Solution::Newton && !solve.moves && !self.program.formulas.inertia_moves()
+        let iterates = matches!(solve.solution, Solution::Newton | Solution::Linear);
+        iterates && !solve.moves && !self.program.formulas.inertia_moves()
     }
 
-    /// For each equation whose orientation is a constant: the name of its orientation, and its components.
-    pub(super) fn implicit_solves(&self) -> impl Iterator<Item = (proc_macro2::Ident, Vec<usize>)> {
+    /// For each equation whose orientation is a constant: the name of its orientation, and the equation.
+    pub(super) fn implicit_solves(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
         let solves = self.program.steps.iter().enumerate().flat_map(|(index, step)| {
             let suffix = self.program.suffix(index);
             step.solves.iter().enumerate().map(move |(number, solve)| (suffix, number, solve))
         });
         let implicit = solves.filter(|(_, _, solve)| self.has_orientation(solve));
-        implicit.map(|(suffix, number, solve)| {
-            (format_ident!("orientation{suffix}_{}", number + 1), solve.components.clone())
-        })
+        implicit.map(|(suffix, number, solve)| (format_ident!("orientation{suffix}_{}", number + 1), solve))
+    }
+
+    /// The sign of det Σ/h for some components, Dρ at the identity but for positive factors.
+    fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
+        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let rows = components.iter().map(|&i| {
+            let row = components.iter().map(|&j| {
+                let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
+                quote!(inertia[(#i, #j)] / h)
+            });
+            quote!([#(#row),*])
+        });
+        quote! {
+            #private::Orientation::of([#(#rows),*])
+                .ok_or(#krate::Error::SingularKineticEnergy { condition: ::core::f64::INFINITY })?
+        }
     }
 
     /// The method `constants`.
@@ -66,19 +81,12 @@ impl Emitter<'_, '_> {
                 let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
                 quote!(#name: #value,)
             });
-        let orientations = self.implicit_solves().map(|(name, components)| {
-            let entry = |i: &usize, j: &usize| {
-                let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
-                quote!(inertia[(#i, #j)] / h)
-            };
-            let rows = components.iter().map(|i| {
-                let row = components.iter().map(|j| entry(i, j));
-                quote!([#(#row),*])
-            });
-            quote! {
-                #name: #private::Orientation::of([#(#rows),*])
-                    .ok_or(#krate::Error::SingularKineticEnergy { condition: ::core::f64::INFINITY })?,
-            }
+        let orientations = self.implicit_solves().map(|(name, solve)| {
+            let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
+            // det Σ is the product of those of what was put in and of what that leaves
+            let coupled = (!solve.coupled.is_empty()).then(|| self.orientation_of_inertia(&solve.coupled));
+            let coupled = coupled.map(|coupled| quote!(* #coupled));
+            quote!(#name: #whole #coupled,)
         });
         let documentation = docs::formulas(
             "Checks the parameters and computes what no step changes.",

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clebsch_symbolic::Chart;
 
-use crate::derive::{Equation, Solution};
+use crate::derive::{Equation, Solution, Structure, Substep};
 use crate::lower::Program;
 use crate::model::{Isotropy, Model, Order, Side};
 
@@ -178,14 +178,13 @@ fn part(program: &Program<'_>, equation: &Equation<'_>, names: &[&str]) -> Strin
     if equation.residual.shape().rows == whole {
         return names;
     }
-    let blocks = equation.blocks.iter().map(|&i| formulas.symbols.blocks[i].coordinates.to_string());
-    format!("{names} in the coordinates {}", blocks.collect::<Vec<_>>().join(", "))
+    format!("{names} in the coordinates {}", formulas.coordinates_of(equation))
 }
 
 /// How an equation is solved, and in which chart.
 fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
     let formulas = &program.formulas;
-    let cleared = equation.cleared.iter().all(|cleared| *cleared);
+    let cleared = equation.cleared;
     let chart = match formulas.symbols.charts[equation.factors[0]] {
         Chart::Cayley if cleared => {
             "the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)"
@@ -199,14 +198,37 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         Chart::Identity => "the coordinates of the translation",
     };
     match equation.solution {
-        Solution::Explicit if formulas.symbols.charts[equation.factors[0]] == Chart::Exponential => {
+        Solution::Explicit if equation.formula.is_some() && formulas.is_solved_after_others(equation) => {
+            format!("is linear in {chart}, given the other coordinates: they are put in, no iteration")
+        }
+        Solution::Explicit if equation.formula.is_some() && !equation.is_affine(&formulas.symbols) => {
+            format!("is triangular in {chart}: solved by substitution, no iteration")
+        }
+        Solution::Explicit
+            if equation.formula.is_none() && formulas.symbols.charts[equation.factors[0]] == Chart::Exponential =>
+        {
             "is solved by the velocity itself, x = h Σ⁻¹μ, which commutes with the momentum: no iteration".to_string()
         }
         Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
         Solution::ClosedForm => {
             "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
         }
-        Solution::Newton => format!("is solved by Newton's method in {chart}"),
+        Solution::Linear => {
+            format!("is linear in {chart}, with coefficients that change: solved by one elimination, no iteration")
+        }
+        Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&equation.structure)),
+    }
+}
+
+/// What its linear systems make use of.
+fn structure(structure: &Structure) -> String {
+    match structure {
+        Structure::Dense => String::new(),
+        Structure::Symmetric => "; its Jacobian is symmetric, LDLᵀ where it is definite".to_string(),
+        Structure::Triangular(blocks) => {
+            let sizes: Vec<String> = blocks.iter().map(|block| block.len().to_string()).collect();
+            format!("; its Jacobian is block triangular, with blocks of {} unknowns", sizes.join(", "))
+        }
     }
 }
 
@@ -224,7 +246,11 @@ fn left_out(program: &Program<'_>) -> String {
     } else {
         text += "Some motions fix the configuration: state() demands momenta in 𝔤_q^⊥.\n";
     }
-    if formulas.substeps.iter().all(|substep| substep.equations.len() > 1) {
+    let uncouples = |substep: &Substep<'_>| {
+        let alone = substep.equations.iter().filter(|equation| !formulas.is_solved_after_others(equation));
+        alone.count() > 1
+    };
+    if formulas.substeps.iter().all(uncouples) {
         text += "The momentum equation uncouples: one small solve for each part.\n";
     }
     text

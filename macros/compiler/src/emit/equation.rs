@@ -2,14 +2,14 @@
 
 use clebsch_symbolic::Shape;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Equation, Formula, Solution};
 use crate::lower::Solve;
 
-impl Emitter<'_, '_> {
+impl<'g> Emitter<'_, 'g> {
     /// The types of the equations.
     pub(super) fn equations(&self) -> TokenStream {
         let mut types = TokenStream::new();
@@ -17,6 +17,7 @@ impl Emitter<'_, '_> {
             for (number, solve) in step.solves.iter().enumerate() {
                 types.extend(match solve.solution {
                     Solution::Newton => self.equation(index, number, solve),
+                    Solution::Linear => self.linear_equation(index, number, solve),
                     Solution::ClosedForm | Solution::Explicit => self.solved(index, number, solve),
                 });
             }
@@ -49,10 +50,8 @@ impl Emitter<'_, '_> {
         let (private, krate) = (&self.paths.private, &self.paths.krate);
         let lifetime = &self.names.lifetime;
         let name = self.names.equation(self.program.suffix(index), number);
-        let mut scope = self.scope_of_step();
-        scope.components = solve.components.clone();
-        scope.momentum = "target";
-        let vector = self.paths.matrix(solve.dimension, 1);
+        let scope = self.scope_of_solve(solve);
+        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let derived = &self.program.formulas.substeps[index].equations[number];
         let structure = self.equation_structure(&name, derived, false);
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
@@ -68,19 +67,28 @@ impl Emitter<'_, '_> {
                 quote! {
                     #documentation
                     #[inline]
-                    fn closed_form(&self, target: &#vector) -> ::core::result::Result<#vector, #krate::Error> {
+                    fn closed_form(&self, target: &#target) -> ::core::result::Result<#vector, #krate::Error> {
                         #private::check_sine_squared({ #locals #sine })?;
                         ::core::result::Result::Ok({ #body })
                     }
                 }
             }
             None => {
-                let documentation =
-                    docs::formulas("The solution, h Σ⁻¹μ in the units of the chart.", &[], solve.predict.as_ref());
+                let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
+                let title = match (solved.is_empty(), solve.given.is_empty()) {
+                    (true, _) => "The solution, h Σ⁻¹μ in the units of the chart.",
+                    (false, true) => "The solution, coordinate after coordinate.",
+                    (false, false) => "The solution where the coordinates of equations before this one are x.",
+                };
+                let documentation = docs::formulas(title, &solved, solve.predict.as_ref());
+                let given = (!solve.given.is_empty()).then(|| {
+                    let given = self.paths.matrix(solve.given.len(), 1);
+                    quote!(, x: &#given)
+                });
                 quote! {
                     #documentation
                     #[inline]
-                    fn explicit(&self, target: &#vector) -> #vector {
+                    fn explicit(&self, target: &#target #given) -> #vector {
                         #body
                     }
                 }
@@ -95,18 +103,80 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The scope of an equation's methods: `target` holds its momenta, and `x` its unknowns, or those that are given.
+    fn scope_of_solve(&self, solve: &Solve) -> code::Scope<'_, 'g> {
+        let mut scope = self.scope_of_step();
+        scope.momentum = "target";
+        scope.momenta = solve.momenta.clone();
+        scope.coordinates = if solve.given.is_empty() { solve.components.clone() } else { solve.given.clone() };
+        scope
+    }
+
+    /// The time and the configuration of an equation that depends on them, as names of their own.
+    fn place(&self, solve: &Solve) -> Option<TokenStream> {
+        solve.moves.then(|| {
+            let time = self.is_timed().then(|| quote!(let t = self.t;));
+            quote!(#time let q = self.q;)
+        })
+    }
+
+    /// The parameters of the traits: the scalar, the number of unknowns, and that of momenta where it is another.
+    fn dimensions(&self, solve: &Solve) -> TokenStream {
+        let (scalar, unknowns) = (&self.paths.scalar, Literal::usize_unsuffixed(solve.dimension));
+        let momenta = Literal::usize_unsuffixed(solve.momenta.len());
+        match solve.momenta.len() == solve.dimension {
+            true => quote!(#scalar, #unknowns),
+            false => quote!(#scalar, #unknowns, #momenta),
+        }
+    }
+
+    /// The vector and the matrix that a kernel gives.
+    fn linearized(&self, scope: &code::Scope<'_, '_>, solve: &Solve) -> (TokenStream, TokenStream) {
+        let [vector, matrix] = [0, 1].map(|k| &solve.linearize.outputs[k]);
+        let square = Shape::square(solve.dimension);
+        (code::grid(scope, vector.0, &vector.1, false), code::grid(scope, square, &matrix.1, false))
+    }
+
+    fn linear_equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (private, lifetime) = (&self.paths.private, &self.names.lifetime);
+        let name = self.names.equation(self.program.suffix(index), number);
+        let scope = self.scope_of_solve(solve);
+        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
+        let matrix = self.paths.matrix(solve.dimension, solve.dimension);
+        let derived = &self.program.formulas.substeps[index].equations[number];
+        let structure = self.equation_structure(&name, derived, solve.moves);
+        let formula = self.program.formulas.formula_of_jacobian(derived);
+        let documentation = docs::formulas("Dρ and −ρ(0).", &[formula], Some(&solve.linearize));
+        let (place, locals) = (self.place(solve), code::locals(&scope, &solve.linearize));
+        let (right, left) = self.linearized(&scope, solve);
+        let (dimensions, correct, orientation) =
+            (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
+        quote! {
+            #structure
+
+            impl<#lifetime, #parameters> #private::LinearEquation<#dimensions> for #name<#lifetime, #arguments> #predicates {
+                #documentation
+                #[inline]
+                fn system(&self, target: &#target) -> (#matrix, #vector) {
+                    #place
+                    #locals
+                    (#left, #right)
+                }
+
+                #correct
+                #orientation
+            }
+        }
+    }
+
     fn equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let lifetime = &self.names.lifetime;
-        let suffix = self.program.suffix(index);
-        let dimension = Literal::usize_unsuffixed(solve.dimension);
-        let name = self.names.equation(suffix, number);
-        let mut scope = self.scope_of_step();
-        scope.components = solve.components.clone();
-        scope.momentum = "target";
-        let (vector, jacobian) =
-            (self.paths.matrix(solve.dimension, 1), quote!(#private::SMatrix<#scalar, #dimension, #dimension>));
+        let (private, scalar, lifetime) = (&self.paths.private, &self.paths.scalar, &self.names.lifetime);
+        let name = self.names.equation(self.program.suffix(index), number);
+        let scope = self.scope_of_solve(solve);
+        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
+        let matrix = self.paths.matrix(solve.dimension, solve.dimension);
         let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
         let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
         let prepare_locals = code::locals(&scope, &solve.prepare);
@@ -115,41 +185,28 @@ impl Emitter<'_, '_> {
             quote! {
                 /// The solution to first order in h.
                 #[inline]
-                fn predict(&self, target: &#vector) -> #vector {
+                fn predict(&self, target: &#target) -> #vector {
                     #body
                 }
             }
         });
-        let place = solve.moves.then(|| {
-            let time = self.is_timed().then(|| quote!(let t = self.t;));
-            quote!(#time let q = self.q;)
-        });
-        let locals = code::locals(&scope, &solve.linearize);
-        let square = Shape::square(solve.dimension);
-        let residual = code::grid(&scope, solve.linearize.outputs[0].0, &solve.linearize.outputs[0].1, false);
-        let rows = code::grid(&scope, square, &solve.linearize.outputs[1].1, false);
+        let (place, locals) = (self.place(solve), code::locals(&scope, &solve.linearize));
+        let (residual, jacobian) = self.linearized(&scope, solve);
         let derived = &self.program.formulas.substeps[index].equations[number];
         let formulas =
             [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
         let structure = self.equation_structure(&name, derived, solve.moves);
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
-        let orientation = self.has_orientation(solve).then(|| {
-            let field = format_ident!("orientation{suffix}_{}", number + 1);
-            quote! {
-                #[inline]
-                fn orientation(&self) -> ::core::option::Option<#private::Orientation> {
-                    ::core::option::Option::Some(self.constants.#field)
-                }
-            }
-        });
+        let (dimensions, correct, orientation) =
+            (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
             #structure
 
-            impl<#lifetime, #parameters> #private::Equation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
+            impl<#lifetime, #parameters> #private::Equation<#dimensions> for #name<#lifetime, #arguments> #predicates {
                 type Terms = [#scalar; #terms];
 
                 #[inline]
-                fn prepare(&self, target: &#vector) -> Self::Terms {
+                fn prepare(&self, target: &#target) -> Self::Terms {
                     #place
                     #prepare_locals
                     [#(#prepared),*]
@@ -159,12 +216,13 @@ impl Emitter<'_, '_> {
 
                 #linearized
                 #[inline]
-                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #jacobian) {
+                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #matrix) {
                     #place
                     #locals
-                    (#residual, #rows)
+                    (#residual, #jacobian)
                 }
 
+                #correct
                 #orientation
             }
         }

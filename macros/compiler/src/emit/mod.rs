@@ -6,6 +6,7 @@ mod constants;
 mod derivation;
 mod docs;
 mod equation;
+mod jacobian;
 mod names;
 mod opaque;
 mod path;
@@ -173,7 +174,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
             system,
             constants,
             constant_names: &self.program.constant_names,
-            components: (0..dimension).collect(),
+            momenta: (0..dimension).collect(),
+            coordinates: (0..dimension).collect(),
             blocks: self.program.formulas.symbols.blocks.iter().map(|block| block.offset).collect(),
             momentum: "mu",
             item: self.item_type(),

@@ -111,25 +111,30 @@ impl Emitter<'_, '_> {
     fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
         let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
         let (place, parameters) = (self.time_argument(), self.place_parameters(step));
-        let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
-            let (name, solution) = (self.names.equation(suffix, number), format_ident!("x{}", number + 1));
-            let target = self.part_of("mu", &solve.components);
-            let place = if solve.moves { quote!(, #place q) } else { quote!() };
-            let equation = quote!(#name { system: self.system, constants: self.constants #place });
-            match solve.solution {
-                Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
-                Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target);),
-                Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
-            }
-        });
-        let entries = (0..self.dimension()).map(|component| {
-            let position = |solve: &Solve| solve.components.iter().position(|&other| other == component);
+        let solved = |component: &usize| {
+            let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
             let found = step.solves.iter().enumerate().find_map(|(number, solve)| Some((number, position(solve)?)));
             // by construction: every component belongs to one equation
             let (number, position) = found.unwrap_or((0, 0));
             let (solution, position) = (format_ident!("x{}", number + 1), Literal::usize_unsuffixed(position));
             quote!(#solution[#position])
+        };
+        let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
+            let (name, solution) = (self.names.equation(suffix, number), format_ident!("x{}", number + 1));
+            let target = self.part_of("mu", &solve.momenta);
+            let place = if solve.moves { quote!(, #place q) } else { quote!() };
+            let equation = quote!(#name { system: self.system, constants: self.constants #place });
+            let given = solve.given.iter().map(solved);
+            let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
+            match solve.solution {
+                Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
+                Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
+                Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
+                Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
+            }
         });
+        let components: Vec<usize> = (0..self.dimension()).collect();
+        let entries = components.iter().map(solved);
         let documentation =
             docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
         let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
@@ -158,7 +163,7 @@ impl Emitter<'_, '_> {
     /// Some components of a flat vector; all of them are the vector itself.
     fn part_of(&self, vector: &str, components: &[usize]) -> TokenStream {
         let (private, vector) = (&self.paths.private, format_ident!("{vector}"));
-        if components.len() == self.dimension() {
+        if components.iter().copied().eq(0..self.dimension()) {
             return quote!(*#vector);
         }
         let entries = components.iter().map(|&component| {

@@ -47,6 +47,31 @@ pub struct Kernel {
     pub outputs: Vec<(Shape, Vec<Code>)>,
 }
 
+impl Kernel {
+    /// The entries of arguments that it reads, as often as they stand in it.
+    pub fn inputs(&self) -> Vec<&Input> {
+        let mut inputs = Vec::new();
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        self.locals.iter().chain(outputs).for_each(|code| code.read(&mut inputs));
+        inputs
+    }
+}
+
+impl Code {
+    fn read<'a>(&'a self, inputs: &mut Vec<&'a Input>) {
+        match self {
+            Code::Read(input) => inputs.push(input),
+            Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.read(inputs)),
+            Code::Product(factors) => factors.iter().for_each(|factor| factor.read(inputs)),
+            Code::Reciprocal(x) | Code::Root(x, _) | Code::Function(_, x) => x.read(inputs),
+            Code::Call(_, arguments) => {
+                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| entry.read(inputs));
+            }
+            Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => {}
+        }
+    }
+}
+
 /// Values that are computed less often than the kernels that use them.
 #[derive(Clone, Default, Debug)]
 pub struct Hoisted {

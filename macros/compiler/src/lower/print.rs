@@ -74,6 +74,10 @@ impl Program<'_> {
                     kernels.extend(solve.predict.iter().map(|kernel| (of("explicit"), kernel)));
                     continue;
                 }
+                if solve.solution == Solution::Linear {
+                    kernels.push((of("system"), &solve.linearize));
+                    continue;
+                }
                 kernels.push((of("prepare"), &solve.prepare));
                 kernels.extend(solve.predict.iter().map(|kernel| (of("predict"), kernel)));
                 kernels.push((of("linearize"), &solve.linearize));

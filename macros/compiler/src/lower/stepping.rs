@@ -1,10 +1,12 @@
 //! The kernels of a step: kick, solve, move, update.
 
-use clebsch_symbolic::{Expr, Group, Shape, identity};
+use std::collections::BTreeSet;
+
+use clebsch_symbolic::{Expr, Group, Role, Shape, Zero, identity};
 
 use super::kernel::kernel;
-use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
-use crate::derive::{Equation, Formulas, Solution, Substep, chart_slope, is_diagonal};
+use super::{Code, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
+use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, is_diagonal};
 use crate::model::{Factor, Side};
 
 /// The kernels of one substep.
@@ -39,17 +41,25 @@ pub struct StepKernels {
 pub struct Solve {
     /// The number of unknowns.
     pub dimension: usize,
-    /// The components of all momenta that it holds, by index.
+    /// The unknowns by their indices among the components of all factors.
     pub components: Vec<usize>,
+    /// The components of the momentum that it holds: those of its unknowns, and behind them those of coordinates that were put in.
+    pub momenta: Vec<usize>,
+    /// The coordinates of equations before it that it holds.
+    pub given: Vec<usize>,
+    /// The coordinates that were put in and have inertia in common with its own.
+    pub coupled: Vec<usize>,
     /// How it is solved.
     pub solution: Solution,
+    /// What is known of its Jacobian.
+    pub structure: Structure,
     /// What is computed once per solve, one output each.
     pub prepare: Kernel,
     /// The starting point, or the solution where there is a formula for it; `None` where the inertia changes with the configuration.
     pub predict: Option<Kernel>,
     /// |a|² of the closed form, which has to be below one.
     pub sine_squared: Option<Kernel>,
-    /// ρ(x) and Dρ(x).
+    /// ρ(x) and Dρ(x); of a linear equation −ρ(0) and Dρ.
     pub linearize: Kernel,
     /// Whether the equation depends on the configuration or on the time.
     pub moves: bool,
@@ -138,68 +148,82 @@ fn solve<'g>(
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> Solve {
-    let predict = match &equation.closed_form {
-        Some(closed_form) => Some(stack(scalars, hoisted, &[closed_form.coordinates])),
-        None => predictor(formulas, substep, equation).map(|predictor| stack(scalars, hoisted, &predictor)),
+    let start = match (equation.formula, equation.solution) {
+        (Some(formula), _) => Some(vec![formula]),
+        (None, Solution::Linear) => None,
+        (None, _) => predictor(formulas, substep, equation),
     };
-    let sine_squared =
-        equation.closed_form.as_ref().map(|closed_form| stack(scalars, hoisted, &[closed_form.sine_squared]));
-    if equation.solution != Solution::Newton {
-        return Solve {
-            dimension: equation.residual.shape().rows,
-            components: components(formulas, equation),
-            solution: equation.solution,
-            prepare: kernel(scalars, &[], Hoisting::Nothing),
-            predict,
-            sine_squared,
-            linearize: kernel(scalars, &[], Hoisting::Nothing),
-            moves: false,
-        };
-    }
-    let residual = grids(scalars, &[equation.residual]).remove(0);
-    let dimension = residual.0.rows;
-    let columns: Vec<Expr<'g>> =
-        directions(formulas, equation).iter().map(|direction| equation.directional.substitute(direction)).collect();
-    let columns: Vec<Vec<Scalar>> = grids(scalars, &columns).into_iter().map(|(_, entries)| entries).collect();
-    let shape = Shape::square(dimension);
-    let jacobian = shape.positions().map(|(i, j)| columns[j][i]).collect();
-    let mut terms = Hoisted::default();
-    let linearize = kernel(scalars, &[residual, (shape, jacobian)], Hoisting::Terms(hoisted, &mut terms));
-    let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
-    let prepare = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
-    Solve {
-        dimension,
-        components: components(formulas, equation),
+    let predict = start.map(|start| stack(scalars, hoisted, &start));
+    let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
+    let (prepare, linearize) = match equation.solution {
+        Solution::Explicit | Solution::ClosedForm => {
+            (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
+        }
+        Solution::Linear => {
+            let rest = formulas.symbols.blocks.iter().map(|block| block.coordinates);
+            let rest: Vec<_> = rest.map(|x| (x, formulas.model.graph.zero(x.shape()))).collect();
+            let columns = equation.columns(&formulas.symbols);
+            let columns: Vec<Expr<'g>> = columns.iter().map(|column| column.substitute(&rest)).collect();
+            let outputs = linearized(scalars, -equation.residual.substitute(&rest), &columns);
+            let system = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
+            (kernel(scalars, &[], Hoisting::Nothing), system)
+        }
+        Solution::Newton => {
+            let outputs = linearized(scalars, equation.residual, &equation.columns(&formulas.symbols));
+            let mut terms = Hoisted::default();
+            let linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
+            let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
+            (kernel(scalars, &outputs, Hoisting::Constants(hoisted)), linearize)
+        }
+    };
+    let mut solve = Solve {
+        dimension: equation.components.len(),
+        components: equation.components.clone(),
+        momenta: equation.components.clone(),
+        given: Vec::new(),
+        coupled: equation.coupled.clone(),
         solution: equation.solution,
+        structure: equation.structure.clone(),
         prepare,
         predict,
         sine_squared,
         linearize,
         moves: equation.moves,
-    }
+    };
+    let (momenta, coordinates) = solve.read(formulas);
+    solve.momenta.extend(momenta.into_iter().filter(|component| !equation.components.contains(component)));
+    solve.given.extend(coordinates.into_iter().filter(|component| !equation.components.contains(component)));
+    solve
 }
 
-/// For each unknown of the equation, the replacement of the directions by the unit vector of that unknown.
-fn directions<'g>(formulas: &Formulas<'g>, equation: &Equation<'g>) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
-    let graph = formulas.model.graph;
-    let symbols: Vec<Expr<'g>> = equation.blocks.iter().map(|&i| formulas.symbols.blocks[i].direction).collect();
-    let mut all = Vec::new();
-    for moving in &symbols {
-        for i in 0..moving.shape().rows {
-            let value = |symbol: &Expr<'g>| match symbol == moving {
-                true => graph.unit(symbol.shape(), i, 0),
-                false => graph.zero(symbol.shape()),
+/// A vector and the matrix with these columns.
+fn linearized(scalars: &mut Scalars, vector: Expr<'_>, columns: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
+    let vector = grids(scalars, &[vector]).remove(0);
+    let columns: Vec<Vec<Scalar>> = grids(scalars, columns).into_iter().map(|(_, entries)| entries).collect();
+    let shape = Shape::square(columns.len());
+    let matrix = shape.positions().map(|(i, j)| columns[j][i]).collect();
+    vec![vector, (shape, matrix)]
+}
+
+impl Solve {
+    /// Whether an entry of Dρ is zero, whatever the numbers are.
+    pub fn is_zero(&self, i: usize, j: usize) -> bool {
+        matches!(&self.linearize.outputs[1].1[i * self.dimension + j], Code::Number(value) if value.is_zero())
+    }
+
+    /// The components of the momentum and the chart coordinates that its kernels read, by their indices among those of all factors.
+    fn read(&self, formulas: &Formulas<'_>) -> (BTreeSet<usize>, BTreeSet<usize>) {
+        let (mut momenta, mut coordinates) = (BTreeSet::new(), BTreeSet::new());
+        let kernels = [&self.prepare, &self.linearize].into_iter().chain(&self.predict).chain(&self.sine_squared);
+        for input in kernels.flat_map(Kernel::inputs) {
+            match input.role {
+                Role::Momentum(k) => momenta.insert(formulas.model.offset(k) + input.row),
+                Role::Chart(block) => coordinates.insert(formulas.symbols.blocks[block].offset + input.row),
+                _ => false,
             };
-            all.push(symbols.iter().map(|symbol| (*symbol, value(symbol))).collect());
         }
+        (momenta, coordinates)
     }
-    all
-}
-
-/// The indices of the equation's components among those of all factors.
-fn components(formulas: &Formulas<'_>, equation: &Equation<'_>) -> Vec<usize> {
-    let blocks = equation.blocks.iter().map(|&i| &formulas.symbols.blocks[i]);
-    blocks.flat_map(|block| block.offset..block.offset + block.dimension()).collect()
 }
 
 /// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity: the solution to first order in h. `None` where Σ changes with the configuration.
@@ -208,7 +232,8 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
     if formulas.inertia_moves() {
         return None;
     }
-    let components = components(formulas, equation);
+    let count = equation.components.len();
+    let components = [equation.components.as_slice(), &equation.coupled].concat();
     let shape = Shape::square(components.len());
     let block = |matrix: Expr<'g>| {
         let entry = |(i, j): (usize, usize)| matrix.entry(components[i], components[j]);
@@ -217,22 +242,21 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
     let inertia = block(formulas.inertia);
     let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momentum_entry(formulas, component)).collect();
     let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
-        true => (0..shape.rows).map(|i| momentum[i] / inertia.entry(i, i).expand()).collect(),
+        true => (0..count).map(|i| momentum[i] / inertia.entry(i, i).expand()).collect(),
         false => {
             let inverse = block(inertia_inverse(formulas));
             let row =
                 |i: usize| (0..shape.rows).fold(graph.integer(0), |sum, j| sum + inverse.entry(i, j) * momentum[j]);
-            (0..shape.rows).map(row).collect()
+            (0..count).map(row).collect()
         }
     };
-    let mut slopes = Vec::new();
-    for &i in &equation.blocks {
-        let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, i);
-        let slope = graph.rational(numerator, denominator * substep.parts);
-        slopes.extend(std::iter::repeat_n(slope, formulas.symbols.blocks[i].dimension()));
-    }
+    let slope = |component: usize| {
+        let block = formulas.symbols.blocks_of(&[component])[0];
+        let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, block);
+        graph.rational(numerator, denominator * substep.parts)
+    };
     let h = formulas.model.step_size;
-    Some(velocity.into_iter().zip(slopes).map(|(velocity, slope)| slope * h * velocity).collect())
+    Some(velocity.into_iter().zip(components).map(|(velocity, component)| slope(component) * h * velocity).collect())
 }
 
 /// A component of the momentum, counted through all factors.

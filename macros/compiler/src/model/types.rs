@@ -50,6 +50,13 @@ pub struct Model<'g> {
     pub spans: Spans,
 }
 
+impl Model<'_> {
+    /// The index of a factor's first component among those of all.
+    pub fn offset(&self, k: usize) -> usize {
+        self.factors[..k].iter().map(|factor| factor.group.dimension()).sum()
+    }
+}
+
 /// The user's struct, as generated code has to name it.
 pub struct Item {
     /// Its name.

@@ -1,0 +1,239 @@
+//! What is known of the Jacobian of a momentum equation before any number is: coordinates that the others determine, linear
+//! equations, symmetric and block triangular Jacobians.
+//!
+//! Entries are evaluated at random points of a prime field, so that what cancels counts as zero however it is written.
+
+mod pattern;
+
+use clebsch_symbolic::{Expr, Shape, identity};
+
+use super::equation::{Equation, Solution, Sources, chart_slope, is_moving};
+use super::symbols::ChartBlock;
+use pattern::Pattern;
+
+/// The structure of a Jacobian, which its linear systems are solved by.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Structure {
+    /// None that helps: elimination with pivoting.
+    Dense,
+    /// Symmetric for all x: LDLᵀ.
+    Symmetric,
+    /// Blocks of unknowns, by their positions, each of which depends on itself and on those before it: one small system for each.
+    Triangular(Vec<Vec<usize>>),
+}
+
+/// The equations, to be solved in this order, that an equation for Newton's method falls into.
+///
+/// Coordinates whose slope in their own equation is constant are put into the others and follow when these are solved, as long as
+/// those stay affine in the momentum: the path from the identity relies on it.
+pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>) -> Vec<Equation<'g>> {
+    if equation.solution != Solution::Newton {
+        return vec![equation];
+    }
+    let whole = Reduced::new(sources, equation, Vec::new());
+    if let Some(explicit) = whole.substituted() {
+        return vec![explicit];
+    }
+    let reduced = whole.reduced();
+    let mut equations = reduced.parts();
+    equations.extend(reduced.eliminated.into_iter().rev());
+    equations
+}
+
+/// An equation without the coordinates that the others determine.
+struct Reduced<'a, 'b, 'g> {
+    sources: &'a Sources<'b, 'g>,
+    equation: Equation<'g>,
+    columns: Vec<Expr<'g>>,
+    pattern: Pattern,
+    /// The equations of the coordinates that were put in, in the order in which they were.
+    eliminated: Vec<Equation<'g>>,
+}
+
+impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
+    fn new(sources: &'a Sources<'b, 'g>, equation: Equation<'g>, eliminated: Vec<Equation<'g>>) -> Reduced<'a, 'b, 'g> {
+        let columns = equation.columns(sources.symbols);
+        let pattern = Pattern::of(sources, &equation, &columns);
+        Reduced { sources, equation, columns, pattern, eliminated }
+    }
+
+    /// The solution by substitution, where coordinate after coordinate has a constant slope and needs only those before it.
+    fn substituted(&self) -> Option<Equation<'g>> {
+        let mut rest = self.without(&self.leaves())?;
+        while !rest.equation.components.is_empty() {
+            rest = rest.without(&rest.leaves())?;
+        }
+        let value = |component: &usize| {
+            rest.eliminated.iter().find_map(|equation| {
+                let row = equation.components.iter().position(|other| other == component)?;
+                Some(equation.formula?.entry(row, 0))
+            })
+        };
+        let values: Vec<Expr<'g>> = self.equation.components.iter().filter_map(value).collect();
+        let formula = self.sources.model.graph.stack(Shape::vector(values.len()), values);
+        Some(Equation { solution: Solution::Explicit, formula: Some(formula), ..self.equation.clone() })
+    }
+
+    /// Puts coordinates into the equations of the others as long as that can be done and is of use.
+    fn reduced(mut self) -> Reduced<'a, 'b, 'g> {
+        while !self.pattern.is_linear() {
+            let sets = std::iter::once(self.leaves()).chain(self.constant_blocks());
+            match sets.filter_map(|set| self.without(&set)).find(Reduced::is_solvable) {
+                Some(next) => self = next,
+                None => return self,
+            }
+        }
+        self
+    }
+
+    /// The positions of the coordinates whose equations hold no other and have a constant slope.
+    fn leaves(&self) -> Vec<usize> {
+        let is_leaf = |i: &usize| self.may_go(*i) && self.pattern.is_alone(*i) && self.is_uncoupled(*i);
+        (0..self.columns.len()).filter(is_leaf).collect()
+    }
+
+    /// The chart blocks whose equations have a constant multiple of each of their coordinates, and nothing else of them.
+    fn constant_blocks(&self) -> Vec<Vec<usize>> {
+        let (symbols, components) = (self.sources.symbols, &self.equation.components);
+        let position = |component| components.iter().position(|other| *other == component);
+        let block = |i: usize| symbols.blocks[i].components().map(position).collect::<Option<Vec<usize>>>();
+        let uncouples = |block: &[usize], i: usize| block.iter().all(|&j| i == j || self.pattern.is_zero(i, j));
+        let is_constant = |block: &Vec<usize>| block.iter().all(|&i| self.may_go(i) && uncouples(block, i));
+        symbols.blocks_of(components).into_iter().filter_map(block).filter(is_constant).collect()
+    }
+
+    /// Whether a coordinate has a constant slope.
+    fn may_go(&self, i: usize) -> bool {
+        !self.equation.moves && !is_moving(self.sources.model, self.sources.inertia) && self.pattern.is_constant(i)
+    }
+
+    /// Whether a coordinate has no inertia in common with others, so that its slope is zero only where the inertia is singular.
+    fn is_uncoupled(&self, i: usize) -> bool {
+        let (component, inertia) = (self.equation.components[i], self.sources.inertia);
+        (0..inertia.shape().rows).filter(|k| *k != component).all(|k| identity::vanishes(inertia.entry(component, k)))
+    }
+
+    /// The equation with the coordinates at these positions put in, x_i = −ρ_i(x_i = 0)/(∂ρ_i/∂x_i); `None` if there are none.
+    fn without(&self, positions: &[usize]) -> Option<Reduced<'a, 'b, 'g>> {
+        let first = self.slope(*positions.first()?);
+        let (sources, graph, whole) = (self.sources, self.sources.model.graph, &self.equation);
+        let shape = Shape::vector(positions.len());
+        let gone: Vec<usize> = positions.iter().map(|&i| whole.components[i]).collect();
+        // what others a leaf has in its formula cancels
+        let absent = if positions.iter().all(|&i| self.pattern.is_alone(i)) { &whole.components } else { &gone };
+        let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows(whole.residual, positions));
+        let rest = identity::without_vanishing_terms(rest.expand());
+        let formula = match positions.iter().all(|&i| identity::equal(&[self.slope(i)], &[first])) {
+            true => -(rest / first),
+            false => {
+                let value = |(row, &i): (usize, &usize)| -(rest.entry(row, 0) / self.slope(i));
+                graph.stack(shape, positions.iter().enumerate().map(value).collect())
+            }
+        };
+        let own = identity::without_vanishing_terms(rows(whole.residual, positions));
+        let own = Equation::new(sources, gone.clone(), own, whole.cleared);
+        let mut eliminated = self.eliminated.clone();
+        eliminated.push(Equation { solution: Solution::Explicit, formula: Some(formula), ..own });
+        let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).collect();
+        let residual = self.with(&gone, formula, rows(whole.residual, &left)).expand();
+        let residual = identity::without_vanishing_terms(residual);
+        let left = left.into_iter().map(|i| whole.components[i]).collect();
+        Some(Reduced::new(sources, Equation::new(sources, left, residual, whole.cleared), eliminated))
+    }
+
+    /// The constant ∂ρ_i/∂x_i, from the inertia where it is that: Σ_ii/(s·h).
+    fn slope(&self, i: usize) -> Expr<'g> {
+        let (model, symbols) = (self.sources.model, self.sources.symbols);
+        let component = self.equation.components[i];
+        let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[component])[0]);
+        let inertia = self.sources.inertia.entry(component, component).expand();
+        let expected = denominator * self.sources.parts * inertia / (numerator * model.step_size);
+        if identity::equal(&[self.columns[i].entry(i, 0)], &[expected]) {
+            return expected;
+        }
+        let moving = symbols.blocks.iter().map(|block| &block.coordinates).chain(&symbols.momenta);
+        let zero: Vec<_> = moving.map(|symbol| (*symbol, symbol.graph().zero(symbol.shape()))).collect();
+        self.columns[i].entry(i, 0).substitute(&zero).expand()
+    }
+
+    /// An expression with values for some coordinates.
+    fn with(&self, components: &[usize], values: Expr<'g>, expression: Expr<'g>) -> Expr<'g> {
+        let symbols = self.sources.symbols;
+        let value = |block: &ChartBlock<'g>| {
+            let known = |component: usize| components.iter().position(|other| *other == component);
+            let first = known(block.offset).filter(|_| block.components().all(|component| known(component).is_some()));
+            let entry = |component: usize| match known(component) {
+                Some(row) => values.entry(row, 0),
+                None => block.coordinates.entry(component - block.offset, 0),
+            };
+            match first {
+                Some(first) => values.block(first, 0, block.coordinates.shape()),
+                None => values.graph().stack(block.coordinates.shape(), block.components().map(entry).collect()),
+            }
+        };
+        let blocks = symbols.blocks_of(components).into_iter().map(|i| &symbols.blocks[i]);
+        expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).collect::<Vec<_>>())
+    }
+
+    /// Whether a path from the identity leads to the solution, as it is affine in the momentum, and the orientation at its start is known.
+    fn is_solvable(&self) -> bool {
+        (self.coupled().is_empty() || self.pattern.connected().len() == 1) && self.is_affine_in_momenta()
+    }
+
+    /// Whether ρ(x; sμ) = ρ(x; 0) + s(ρ(x; μ) − ρ(x; 0)).
+    fn is_affine_in_momenta(&self) -> bool {
+        let scaled = |factor: i64| {
+            let momenta = self.sources.symbols.momenta.iter().map(|mu| (*mu, factor * *mu));
+            self.equation.residual.substitute(&momenta.collect::<Vec<_>>())
+        };
+        identity::equal(&[scaled(2) + scaled(0)], &[2 * scaled(1)])
+    }
+
+    /// The coordinates that were put in and have inertia in common with those that are left.
+    fn coupled(&self) -> Vec<usize> {
+        let inertia = self.sources.inertia;
+        let meets = |i: usize| self.equation.components.iter().any(|&j| !identity::vanishes(inertia.entry(i, j)));
+        let gone = self.eliminated.iter().flat_map(|eliminated| eliminated.components.iter().copied());
+        gone.filter(|&component| meets(component)).collect()
+    }
+
+    /// One equation for each set of coordinates that depend on each other.
+    fn parts(&self) -> Vec<Equation<'g>> {
+        let sets = self.pattern.connected();
+        match sets.len() {
+            1 => vec![self.whole()],
+            _ => sets.iter().map(|positions| self.part(positions)).collect(),
+        }
+    }
+
+    fn whole(&self) -> Equation<'g> {
+        Equation {
+            solution: if self.pattern.is_linear() { Solution::Linear } else { Solution::Newton },
+            structure: self.pattern.structure(),
+            coupled: self.coupled(),
+            ..self.equation.clone()
+        }
+    }
+
+    /// The equation of coordinates that do not depend on the others.
+    fn part(&self, positions: &[usize]) -> Equation<'g> {
+        let (sources, whole) = (self.sources, &self.equation);
+        let is_other = |i: &usize| !positions.contains(i);
+        let others: Vec<usize> = (0..self.columns.len()).filter(is_other).map(|i| whole.components[i]).collect();
+        let absent = sources.model.graph.zero(Shape::vector(others.len()));
+        let residual = self.with(&others, absent, rows(whole.residual, positions)).expand();
+        let residual = identity::without_vanishing_terms(residual);
+        let components = positions.iter().map(|&i| whole.components[i]).collect();
+        let part = Reduced::new(sources, Equation::new(sources, components, residual, whole.cleared), Vec::new());
+        part.substituted().unwrap_or_else(|| part.whole())
+    }
+}
+
+/// Some rows of a vector.
+fn rows<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
+    let shape = Shape::vector(positions.len());
+    match positions {
+        [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),
+        _ => vector.graph().stack(shape, positions.iter().map(|&i| vector.entry(i, 0)).collect()),
+    }
+}

@@ -1,0 +1,115 @@
+//! Which entries of a Jacobian vanish, are constant, and agree with those on the other side of its diagonal.
+
+use clebsch_symbolic::identity::{Point, Residue};
+use clebsch_symbolic::{Expr, Matrix, Number, Shape};
+
+use super::Structure;
+use crate::derive::equation::{Equation, Sources};
+
+/// The values of a Jacobian at a random point, and at two others with the same parameters.
+pub(super) struct Pattern {
+    here: Matrix<Residue>,
+    /// Where the coordinates have other values.
+    there: Matrix<Residue>,
+    /// Where the momenta, the configuration and the time have other values.
+    elsewhere: Matrix<Residue>,
+}
+
+impl Pattern {
+    pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> Pattern {
+        let (model, symbols) = (sources.model, sources.symbols);
+        let shape = Shape::square(columns.len());
+        let placed = columns.iter().enumerate().map(|(j, column)| column.embed(shape, 0, j));
+        let jacobian = placed.fold(model.graph.zero(shape), |sum, column| sum + column);
+        let coordinates = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i].coordinates);
+        let coordinates: Vec<Expr<'g>> = coordinates.collect();
+        let places = model.configurations.iter().map(|leaf| leaf.symbol).chain([model.time]);
+        let others: Vec<Expr<'g>> = symbols.momenta.iter().copied().chain(places).collect();
+        let at = |moved: &[Expr<'g>]| {
+            let (mut point, mut other) = (Point::new(0), Point::new(1));
+            moved.iter().for_each(|symbol| point.set(*symbol, other.evaluate(*symbol)));
+            point.evaluate(jacobian)
+        };
+        let (here, there) = (at(&[]), at(&coordinates));
+        // most Jacobians are full, and every entry changes with x: then nothing else is of use
+        let may_serve = |(i, j): (usize, usize)| here.at(i, j) == there.at(i, j);
+        let elsewhere = if shape.positions().any(may_serve) { at(&others) } else { here.clone() };
+        Pattern { here, there, elsewhere }
+    }
+
+    fn count(&self) -> usize {
+        self.here.shape.rows
+    }
+
+    /// Whether ∂ρ_i/∂x_j = 0.
+    pub(super) fn is_zero(&self, i: usize, j: usize) -> bool {
+        let zero = Residue::from_rational(&clebsch_symbolic::integer(0));
+        [&self.here, &self.there, &self.elsewhere].iter().all(|matrix| matrix.at(i, j) == zero)
+    }
+
+    /// Whether ρ_i holds no other coordinate than x_i.
+    pub(super) fn is_alone(&self, i: usize) -> bool {
+        (0..self.count()).all(|j| i == j || self.is_zero(i, j))
+    }
+
+    /// Whether ∂ρ_i/∂x_i is made of parameters alone.
+    pub(super) fn is_constant(&self, i: usize) -> bool {
+        let here = self.here.at(i, i);
+        here == self.there.at(i, i) && here == self.elsewhere.at(i, i)
+    }
+
+    /// Whether no entry depends on the coordinates.
+    pub(super) fn is_linear(&self) -> bool {
+        self.here == self.there
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let agrees =
+            |matrix: &Matrix<Residue>| matrix.shape.positions().all(|(i, j)| matrix.at(i, j) == matrix.at(j, i));
+        [&self.here, &self.there, &self.elsewhere].into_iter().all(agrees)
+    }
+
+    /// The sets of unknowns that depend on each other, one way or the other.
+    pub(super) fn connected(&self) -> Vec<Vec<usize>> {
+        let reaches = self.closure(|i, j| !self.is_zero(i, j) || !self.is_zero(j, i));
+        classes(self.count(), |i, j| reaches[i][j])
+    }
+
+    /// What linear systems with this Jacobian are solved by.
+    pub(super) fn structure(&self) -> Structure {
+        let count = self.count();
+        let needs = self.closure(|i, j| !self.is_zero(i, j));
+        let mut blocks = classes(count, |i, j| needs[i][j] && needs[j][i]);
+        let regular = (0..count).all(|i| !self.is_zero(i, i));
+        match blocks.len() {
+            // a block needs more unknowns than each of those that it needs
+            2.. if regular => {
+                blocks.sort_by_key(|block| needs[block[0]].iter().filter(|needed| **needed).count());
+                Structure::Triangular(blocks)
+            }
+            _ if count > 1 && self.is_symmetric() => Structure::Symmetric,
+            _ => Structure::Dense,
+        }
+    }
+
+    /// The reflexive and transitive closure of a relation.
+    fn closure(&self, relates: impl Fn(usize, usize) -> bool) -> Vec<Vec<bool>> {
+        let count = self.count();
+        let mut closed: Vec<Vec<bool>> =
+            (0..count).map(|i| (0..count).map(|j| i == j || relates(i, j)).collect()).collect();
+        for k in 0..count {
+            let through = closed[k].clone();
+            for row in closed.iter_mut().filter(|row| row[k]) {
+                row.iter_mut().zip(&through).for_each(|(reached, next)| *reached |= *next);
+            }
+        }
+        closed
+    }
+}
+
+/// The classes of an equivalence, in the order of their first members.
+fn classes(count: usize, same: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let leader = |i: usize| (0..=i).find(|&j| same(i, j));
+    let members = |first: usize| (0..count).filter(|&i| leader(i) == Some(first)).collect::<Vec<_>>();
+    (0..count).filter(|&i| leader(i) == Some(i)).map(members).collect()
+}

@@ -1,0 +1,120 @@
+//! What is known of Jacobians before any number is: linear equations, coordinates that are put in, symmetric and block triangular
+//! Jacobians, each against closed forms.
+
+use clebsch::{Clebsch, Error};
+use clebsch_tests::fixtures::growing_shape::GrowingShape;
+use clebsch_tests::fixtures::heisenberg_geodesic::HeisenbergGeodesic;
+use clebsch_tests::fixtures::relativistic_particle::RelativisticParticle;
+use clebsch_tests::fixtures::spatial_body::SpatialBody;
+use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::oracle::random::Random;
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
+
+const H: f64 = 0.1;
+
+#[track_caller]
+fn assert_says<S: Clebsch>(sentences: &[&str]) {
+    for sentence in sentences {
+        assert!(S::DERIVATION.contains(sentence), "{}: no `{sentence}` in\n{}", S::NAME, S::DERIVATION);
+    }
+}
+
+/// cay Z with Z = x₁E₁₂ + x₂E₂₃ + x₃E₁₃, by its finite series.
+fn cayley(x: &Vector3<f64>) -> Matrix3<f64> {
+    let z = Matrix3::new(0.0, x.x, x.z, 0.0, 0.0, x.y, 0.0, 0.0, 0.0);
+    Matrix3::identity() + 2.0 * z + 2.0 * z * z
+}
+
+/// A particle in the plane whose third momentum is the strength of a magnetic field: the mean velocity obeys
+/// (2mₓ/h) x + μ₃ y = μ₁, (2m_y/h) y − μ₃ x = μ₂, solved by Cramer's rule.
+#[test]
+fn the_heisenberg_group_is_linear() {
+    assert_says::<HeisenbergGeodesic>(&["x[0], x[1] is linear", "one elimination, no iteration"]);
+    let random = &mut Random::new(311);
+    for _ in 0..20 {
+        let mass = random.vector::<3>().map(|m| 1.5 + m);
+        let mu: Vector3<f64> = random.vector::<3>() * 4.0;
+        let stepper = HeisenbergGeodesic { mass }.into_stepper(H).expect("a regular system");
+        let start = stepper.state(Matrix3::identity(), mu).expect("a state");
+        let (a, d, b) = (2.0 * mass.x / H, 2.0 * mass.y / H, mu.z);
+        let determinant = a * d + b * b;
+        let x = Vector3::new(
+            (d * mu.x - b * mu.y) / determinant,
+            (a * mu.y + b * mu.x) / determinant,
+            H * mu.z / (2.0 * mass.z),
+        );
+        let next = stepper.step(&start).expect("a solvable step");
+        assert_near(next.configuration(), &cayley(&x), 1e-14, "q⁺");
+    }
+}
+
+/// a = h p/√(m² + |p|²) at the momentum after the half kick, for momenta of up to a thousand rest masses.
+#[test]
+fn the_relativistic_particle_is_symmetric() {
+    assert_says::<RelativisticParticle>(&["its Jacobian is symmetric"]);
+    let random = &mut Random::new(312);
+    for size in [1e-3, 1.0, 3.0, 30.0, 1e3] {
+        let (mass, force) = (1.5, random.vector::<3>());
+        let stepper = RelativisticParticle { mass, force }.into_stepper(H).expect("a regular system");
+        let mut state = stepper.state(random.vector::<3>(), random.vector::<3>() * size).expect("a state");
+        for _ in 0..5 {
+            let (x, p) = (*state.configuration(), *state.momentum());
+            let middle = p + force * (H / 2.0);
+            let a = middle * (H / (mass * mass + middle.norm_squared()).sqrt());
+            state = stepper.step(&state).unwrap_or_else(|error| panic!("|p| = {}: {error}", p.norm()));
+            assert_near(state.configuration(), &(x + a), 1e-14, "x⁺");
+            assert_near(state.momentum(), &(p + force * H), 1e-14 * size.max(1.0), "p⁺");
+        }
+    }
+}
+
+/// The momentum of F = q⁻¹q⁺ by an independent formula: h r = k (F − I)Fᵀ, paired with the basis.
+#[test]
+fn similarities_are_block_triangular() {
+    assert_says::<GrowingShape>(&["its Jacobian is block triangular"]);
+    let random = &mut Random::new(313);
+    let stiffness = 1.25;
+    let stepper = GrowingShape { stiffness }.into_stepper(H).expect("a regular system");
+    for _ in 0..20 {
+        let mu: Vector4<f64> = random.vector::<4>() * 2.0;
+        let f = stepper.inverse_legendre(&Matrix3::identity(), &mu).expect("a solvable step");
+        let r = (f - Matrix3::identity()) * f.transpose() * (stiffness / H);
+        let paired = Vector4::new(r[(1, 0)] - r[(0, 1)], r[(0, 0)] + r[(1, 1)], r[(0, 2)], r[(1, 2)]);
+        assert_near(&paired, &mu, 1e-12, "r(F)");
+        let linear: Matrix2<f64> = f.fixed_view::<2, 2>(0, 0).into_owned();
+        assert_near(&(linear.transpose() * linear), &(Matrix2::identity() * linear.determinant()), 1e-14, "F");
+    }
+}
+
+/// The shift follows from the turn, b = hM_v/m − (W − I)c, and what is left are three unknowns.
+#[test]
+fn the_shift_of_a_body_is_put_in() {
+    assert_says::<SpatialBody>(&["x₁ is solved by Newton's method", "given the other coordinates"]);
+    let random = &mut Random::new(314);
+    let (mass, center) = (1.5, Vector3::new(0.2, -0.1, 0.3));
+    let spread = random.inertia::<3>() * 0.3;
+    let moments = spread + mass * center * center.transpose();
+    let mut mass_matrix = Matrix4::zeros();
+    mass_matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&moments);
+    mass_matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * center));
+    mass_matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&(center.transpose() * mass));
+    mass_matrix[(3, 3)] = mass;
+    let stepper = SpatialBody { mass_matrix, gravity: 0.0 }.into_stepper(H).expect("a regular system");
+    for _ in 0..20 {
+        let mu = random.vector::<6>();
+        let f = stepper.inverse_legendre(&Matrix4::identity(), &mu).expect("a solvable step");
+        let turn: Matrix3<f64> = f.fixed_view::<3, 3>(0, 0).into_owned();
+        let expected = mu.fixed_rows::<3>(3) * (H / mass) - (turn - Matrix3::identity()) * center;
+        assert_near(&f.fixed_view::<3, 1>(0, 3).into_owned(), &expected, 1e-14, "b");
+        assert_near(&stepper.legendre(&Matrix4::identity(), &f), &mu, 1e-13, "r(F)");
+    }
+}
+
+/// A body without mass has no shift: the stepper says so, before any division by it.
+#[test]
+fn singular_slopes_are_refused() {
+    let empty = SpatialBody { mass_matrix: Matrix4::from_diagonal(&Vector4::new(1.0, 1.0, 1.0, 0.0)), gravity: 0.0 };
+    assert!(matches!(empty.into_stepper(H), Err(Error::SingularKineticEnergy { .. })));
+    let flat = HeisenbergGeodesic { mass: Vector3::new(1.0, 1.0, 0.0) };
+    assert!(matches!(flat.into_stepper(H), Err(Error::SingularKineticEnergy { .. })));
+}
