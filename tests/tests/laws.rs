@@ -151,7 +151,7 @@ fn chart_laws<'g>(graph: &'g Graph, group: Group, random: &mut Random) {
     let product = group.compose(group.inverse(element), element);
     // x = slope · ξ for F = exp ξ, so that F − I = ξ + O(ξ²) with ξ = x/slope
     let tangent = blocks.iter().zip(&x).fold(graph.zero(group.element_shape()), |sum, (block, x)| {
-        let (slope, per) = chart.slope_at_identity(group, block);
+        let (slope, per) = chart.slope_at_identity(block);
         let part = (*x * graph.integer(per) / graph.integer(slope)).wedge(block.algebra);
         sum + part.embed(group.element_shape(), block.row, block.column)
     });

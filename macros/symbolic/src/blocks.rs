@@ -45,10 +45,17 @@ impl<'g> Expr<'g> {
                     row >= *r && column >= *c && last_row <= r + given.rows && last_column <= c + given.columns;
                 let outside =
                     last_row <= *r || last_column <= *c || row >= r + given.rows || column >= c + given.columns;
+                let (first_row, first_column) = (row.max(*r), column.max(*c));
+                let meets = |first: usize, last: usize, start: usize, size: usize| last.min(start + size) - first;
                 match (inside, outside) {
                     (true, _) => graph.expr(*inner).block(row - r, column - c, shape),
                     (_, true) => graph.zero(shape),
-                    _ => self.atom_of(Node::Block(self.id, row, column), shape),
+                    _ => {
+                        let rows = meets(first_row, last_row, *r, given.rows);
+                        let columns = meets(first_column, last_column, *c, given.columns);
+                        let part = graph.expr(*inner).block(first_row - r, first_column - c, Shape::new(rows, columns));
+                        part.embed(shape, first_row - row, first_column - column)
+                    }
                 }
             }
             Node::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {

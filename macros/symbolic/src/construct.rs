@@ -253,6 +253,15 @@ impl Graph {
                 self.number((0..n).map(|i| entries[i * n + i].clone()).sum())
             }
             Node::Symbol(_) if self.has_property(letter, Property::Skew) => self.integer(0),
+            Node::Embed(inner, row, column) => {
+                // the part on the diagonal of the whole
+                let (inner, first) = (self.expr(*inner), (*row).max(*column));
+                let last = (row + inner.shape().rows).min(column + inner.shape().columns);
+                match last.checked_sub(first) {
+                    Some(size) if size > 0 => inner.block(first - row, first - column, Shape::square(size)).trace(),
+                    _ => self.integer(0),
+                }
+            }
             _ => self.intern(Node::Trace(vec![letter]), Shape::scalar()),
         }
     }

@@ -32,6 +32,7 @@ mod shape;
 mod symbol;
 mod terms;
 mod view;
+mod windows;
 
 pub use algebra::{Algebra, Basis, Sparse};
 pub use evaluate::{Matrix, Number};

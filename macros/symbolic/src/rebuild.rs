@@ -86,7 +86,7 @@ impl<'g> Expr<'g> {
     }
 
     /// The same node over the images of its children.
-    fn rebuild(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    pub(crate) fn rebuild(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let node = self.node();
         if node.children().iter().all(|child| images[child].id == *child) {

@@ -60,6 +60,15 @@ pub struct WordTerm<'g> {
 }
 
 impl<'g> WordTerm<'g> {
+    /// The term without its word.
+    pub fn scale(&self, graph: &'g crate::Graph) -> Expr<'g> {
+        let number = graph.number(self.coefficient.clone());
+        let power = |(base, (numerator, denominator)): &(Expr<'g>, (i64, i64))| {
+            base.power(crate::rational(*numerator, *denominator))
+        };
+        self.scalars.iter().map(power).fold(number, |product, power| product * power)
+    }
+
     /// The terms of `inner`, each times the scalars of this term.
     pub fn over(&self, inner: Expr<'g>) -> Vec<WordTerm<'g>> {
         let mut terms = inner.word_terms();

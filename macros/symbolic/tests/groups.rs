@@ -87,7 +87,7 @@ fn chart_laws(graph: &Graph, group: Group) {
     for (block, x) in blocks.iter().zip(&x) {
         let direction = vector(graph, x.shape().rows, "δ", 9);
         let slope = f.differential(&[(*x, direction)]).substitute(&rest);
-        let (numerator, denominator) = chart.slope_at_identity(group, block);
+        let (numerator, denominator) = chart.slope_at_identity(block);
         let tangent = direction.wedge(block.algebra).embed(group.element_shape(), block.row, block.column);
         assert!(identity::equal(&[numerator * slope], &[denominator * tangent]), "{name}: slope at the identity");
     }

@@ -1,13 +1,14 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
-use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
+use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::action::identities;
+use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::structure::{self, Structure};
 use super::trivialisation::Covector;
 use super::{ChartBlock, Symbols};
-use crate::model::{Model, Side};
+use crate::model::Model;
 
 /// The momentum equation of coordinates that depend on each other.
 #[derive(Clone)]
@@ -77,6 +78,11 @@ pub(super) fn equations<'g>(
         }));
     }
     substitute_explicit(sources, &mut residuals);
+    for (residual, block) in residuals.iter_mut().zip(&symbols.blocks) {
+        if let Some(rows) = clearing::of_rotation(model, symbols, block, residual.rows) {
+            *residual = Residual { rows, cleared: true };
+        }
+    }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
     let groups = groups(residuals.len(), depends);
     groups
@@ -152,7 +158,7 @@ pub(super) fn without_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, express
 pub(crate) fn chart_slope(model: &Model<'_>, symbols: &Symbols<'_>, i: usize) -> (i64, i64) {
     let block = symbols.blocks[i];
     let group = model.factors[block.factor].group;
-    symbols.charts[block.factor].slope_at_identity(group, &model.graph.blocks(group)[block.block])
+    symbols.charts[block.factor].slope_at_identity(&model.graph.blocks(group)[block.block])
 }
 
 /// Whether a matrix is zero off its diagonal for all values of its symbols.
@@ -190,6 +196,9 @@ fn residual<'g>(
     let array = before[k].array.substitute(&elements).expand();
     let mu = symbols.momenta[k] + at_identity(model, before, coupling, k);
     let mut plain = group.components(array).expand() - mu;
+    if symbols.charts[k] == Chart::Product {
+        plain = plain.blockwise().expand();
+    }
     if let Some(coupling) = coupling {
         plain = plain + coupling[k].substitute(&elements).expand();
     }
@@ -212,16 +221,9 @@ fn residual<'g>(
     if coupling.is_some() || !late.is_empty() {
         return (plain.substitute(&late), false);
     }
-    let coordinates = symbols.coordinates(k);
-    let momentum = group.momentum_matrix(mu);
-    let clearing = symbols.charts[k].clearing(group, &coordinates, factor.side == Side::Left);
-    let cleared = clearing.map(|(left, right)| {
-        let congruent = |matrix: Expr<'g>| group.components((left * matrix * right).expand());
-        congruent(array) - congruent(momentum)
-    });
-    match cleared {
-        Some(cleared) if plain.has_inverse() && !cleared.has_inverse() => (cleared, true),
-        _ => (without_denominators(&coordinates, group, plain), false),
+    match clearing::by_congruence(model, symbols, k, (array, mu, plain)) {
+        Some(cleared) => (cleared, true),
+        None => (clearing::of_quaternions(&symbols.coordinates(k), group, plain), false),
     }
 }
 
@@ -242,19 +244,6 @@ pub(super) fn at_identity<'g>(
     let whole = coupling.map_or(kinetic, |coupling| kinetic + coupling[k]);
     let value = whole.substitute(&identities(model)).expand();
     if identity::vanishes(value) { value.graph().zero(value.shape()) } else { value }
-}
-
-/// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.
-fn without_denominators<'g>(coordinates: &[Expr<'g>], group: Group, plain: Expr<'g>) -> Expr<'g> {
-    if group != Group::UnitQuaternions {
-        return plain;
-    }
-    let square = coordinates[0].graph().integer(1) + coordinates[0].norm_squared();
-    let exponent = |expression: Expr<'g>| expression.least_exponent(square);
-    let negative =
-        |expression: Expr<'g>| exponent(expression).is_some_and(|least| least < clebsch_symbolic::integer(0));
-    let scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand()).find(|scaled| !negative(*scaled));
-    scaled.unwrap_or(plain)
 }
 
 /// The finest partition of 0..count in which what depends on each other is together.

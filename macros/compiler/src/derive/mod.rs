@@ -6,6 +6,7 @@
 //! r where K does not depend on q) plus J(q⁺, ∂U₁).
 
 mod action;
+mod clearing;
 mod closed_form;
 mod discrete_lagrangian;
 mod energy;

@@ -26,6 +26,7 @@ pub struct Formula {
 
 impl Formula {
     fn new(title: &'static str, symbol: impl Into<String>, expressions: &[Expr<'_>]) -> Formula {
+        let expressions: Vec<_> = expressions.iter().map(|expression| without_embeddings(*expression)).collect();
         Formula {
             title,
             symbol: symbol.into(),
@@ -175,21 +176,9 @@ impl<'g> Formulas<'g> {
         let (graph, shape) = (self.model.graph, self.inertia.shape());
         let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Auxiliary(0), Property::General);
         let inertia = graph.symbol("Σ", shape, Role::Auxiliary(1), Property::Symmetric);
-        let momentum = momentum - self.gyroscopic_momentum();
+        let momentum = momentum - self.symbols.slope(self.energy.gyroscopic);
         let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
         Formula::new("Hamiltonian", title, &[kinetic + self.potential_energy])
-    }
-
-    /// A, the gradient of A·ξ, in the components of all factors.
-    fn gyroscopic_momentum(&self) -> Expr<'g> {
-        let shape = Shape::vector(self.inertia.shape().rows);
-        let mut row = 0;
-        self.symbols.algebra.iter().fold(self.model.graph.zero(shape), |sum, xi| {
-            let part = self.energy.gyroscopic.gradient(*xi);
-            let placed = part.embed(shape, row, 0);
-            row += part.shape().rows;
-            sum + placed
-        })
     }
 
     /// The conserved momenta by their names.
@@ -291,6 +280,16 @@ impl<'g> Formulas<'g> {
         let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
         Formula::new("momentum update", "M⁺", &updates)
     }
+}
+
+/// The expression with matrices of blocks multiplied block by block, where it has such and that is shorter.
+fn without_embeddings(expression: Expr<'_>) -> Expr<'_> {
+    let text = expression.to_string();
+    if !text.contains("embed(") {
+        return expression;
+    }
+    let blockwise = expression.expand().blockwise().expand();
+    if blockwise.to_string().chars().count() < text.chars().count() { blockwise } else { expression }
 }
 
 /// Each expression as it is or expanded, whichever is shorter.

@@ -138,7 +138,8 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = self.with(&gone, formula, rows(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_iter().map(|i| whole.components[i]).collect();
-        Some(Reduced::new(sources, Equation::new(sources, left, residual, whole.cleared), eliminated))
+        let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
+        Some(Reduced::new(sources, Equation::new(sources, left, residual, cleared), eliminated))
     }
 
     /// The constant ∂ρ_i/∂x_i, from the inertia where it is that: Σ_ii/(s·h).
@@ -146,7 +147,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let (model, symbols) = (self.sources.model, self.sources.symbols);
         let component = self.equation.components[i];
         let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[component])[0]);
-        let inertia = self.sources.inertia.entry(component, component).expand();
+        let inertia = self.sources.inertia.entry(component, component).expand().blockwise();
         let expected = denominator * self.sources.parts * inertia / (numerator * model.step_size);
         if identity::equal(&[self.columns[i].entry(i, 0)], &[expected]) {
             return expected;

@@ -73,6 +73,17 @@ impl<'g> Symbols<'g> {
         parts.fold(self.logarithms[factor].graph().zero(shape), |sum, part| sum + part)
     }
 
+    /// The gradient with respect to the velocities of all factors, in one vector.
+    pub fn slope(&self, function: Expr<'g>) -> Expr<'g> {
+        let shape = Shape::vector(self.algebra.iter().map(|xi| xi.shape().rows).sum());
+        let mut row = 0;
+        self.algebra.iter().fold(function.graph().zero(shape), |sum, xi| {
+            let placed = function.gradient(*xi).embed(shape, row, 0);
+            row += xi.shape().rows;
+            sum + placed
+        })
+    }
+
     /// The element of a factor in its chart.
     pub fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
         self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))

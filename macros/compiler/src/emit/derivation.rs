@@ -191,6 +191,9 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         }
         Chart::Cayley => "the Cayley chart",
         Chart::Affine => "the chart F = I + x^ (coordinates of the second kind), in which it is a polynomial",
+        Chart::Product if cleared => {
+            "the chart of Cayley's map for the rotation and of the translation as it is, denominators cleared by the congruence with I − x^"
+        }
         Chart::Product => "the chart of Cayley's map for the rotation and of the translation as it is",
         Chart::Root => "the chart F = (I + x^) det(I + x^)^(−1/n), as the Cayley map leaves the group",
         Chart::Exponential if cleared => "the exponential chart, freed of dexp⁻¹ by dexp",

@@ -239,21 +239,12 @@ fn energy_coefficients(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel
 /// ℓ(ξ) with its gradient and its Hessian.
 fn velocity<'g>(formulas: &Formulas<'g>, scalars: &mut Scalars) -> Option<Kernel> {
     let lagrangian = formulas.energy.general?;
-    let (graph, algebra) = (formulas.model.graph, &formulas.symbols.algebra);
-    let shape = Shape::vector(formulas.inertia.shape().rows);
-    let stacked = |parts: Vec<Expr<'g>>| {
-        let mut row = 0;
-        parts.into_iter().fold(graph.zero(shape), |sum, part| {
-            let placed = part.embed(shape, row, 0);
-            row += part.shape().rows;
-            sum + placed
-        })
-    };
-    let gradient = stacked(algebra.iter().map(|xi| lagrangian.gradient(*xi)).collect());
-    let mut hessian = graph.zero(Shape::square(shape.rows));
+    let (graph, shape) = (formulas.model.graph, formulas.inertia.shape());
+    let gradient = formulas.symbols.slope(lagrangian);
+    let mut hessian = graph.zero(shape);
     let mut column = 0;
-    for xi in algebra {
-        hessian = hessian + gradient.jacobian(*xi).embed(Shape::square(shape.rows), 0, column);
+    for xi in &formulas.symbols.algebra {
+        hessian = hessian + gradient.jacobian(*xi).embed(shape, 0, column);
         column += xi.shape().rows;
     }
     Some(plain(scalars, &[lagrangian, gradient, hessian]))
@@ -261,9 +252,8 @@ fn velocity<'g>(formulas: &Formulas<'g>, scalars: &mut Scalars) -> Option<Kernel
 
 /// A, the gradient of A·ξ, in the components of all factors.
 fn gyroscopic(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
-    let gradients: Vec<_> =
-        formulas.symbols.algebra.iter().map(|xi| formulas.energy.gyroscopic.gradient(*xi)).collect();
-    gradients.iter().any(|gradient| !identity::vanishes(*gradient)).then(|| stack(scalars, &gradients))
+    let slope = formulas.symbols.slope(formulas.energy.gyroscopic);
+    (!identity::vanishes(slope)).then(|| stack(scalars, &[slope]))
 }
 
 /// The values of the conserved momenta, in one vector. Inverses are those of configurations, by the formulas of their groups.

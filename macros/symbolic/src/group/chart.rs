@@ -101,7 +101,7 @@ impl Chart {
                 let last = square / (one + root) * graph.unit(shape, 3, 0);
                 (x[0].embed(shape, 0, 0) - last, root)
             }
-            (Chart::Cayley, Group::SpecialEuclidean(n)) if n > 1 => {
+            (Chart::Cayley, Group::SpecialEuclidean(n)) => {
                 let turn = x[0].wedge(graph.algebra_of(group));
                 let (increment, denominator) = turn_increment(n, x[0], turn);
                 let (shape, shift) = (group.element_shape(), 2 * (resolvent(turn) * x[1]));
@@ -118,7 +118,7 @@ impl Chart {
                 let sum = (1..n).fold(one, |sum, power| sum + root.powi(power as i32));
                 (z - (excess / sum) * group.identity(graph), root)
             }
-            (Chart::Product, Group::SpecialEuclidean(n)) if n > 1 => {
+            (Chart::Product, Group::SpecialEuclidean(n)) => {
                 let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
                 let shape = group.element_shape();
                 ((turn / denominator).embed(shape, 0, 0) + x[1].embed(shape, 0, n), one)
@@ -152,11 +152,11 @@ impl Chart {
     }
 
     /// dx/dξ at the identity, for F = exp ξ, in a block.
-    pub fn slope_at_identity(self, group: Group, block: &Block) -> (i64, i64) {
-        let turns = block.offset == 0 && !matches!(group, Group::SpecialEuclidean(1) | Group::Similarity(1));
+    pub fn slope_at_identity(self, block: &Block) -> (i64, i64) {
         match self {
             Chart::Cayley => (1, 2),
-            Chart::Product if turns => (1, 2),
+            // the rotation
+            Chart::Product if block.offset == 0 => (1, 2),
             _ => (1, 1),
         }
     }

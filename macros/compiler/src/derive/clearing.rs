@@ -1,0 +1,79 @@
+//! Residuals freed of denominators, by maps that are regular near the identity: components of the result vanish where those of the
+//! residual do.
+
+use clebsch_symbolic::{Chart, Expr, Group, View, WordTerm};
+
+use super::Symbols;
+use super::symbols::ChartBlock;
+use crate::model::{Model, Side};
+
+/// The residual of a factor, the components of `array` less μ, by the congruence with I ∓ Z of a Cayley chart; `None` if denominators
+/// are left, or there are none.
+pub(super) fn by_congruence<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    k: usize,
+    (array, mu, plain): (Expr<'g>, Expr<'g>, Expr<'g>),
+) -> Option<Expr<'g>> {
+    let factor = &model.factors[k];
+    let group = factor.group;
+    let (left, right) = symbols.charts[k].clearing(group, &symbols.coordinates(k), factor.side == Side::Left)?;
+    let congruent = |matrix: Expr<'g>| group.components((left * matrix * right).expand());
+    let cleared = congruent(array) - congruent(group.momentum_matrix(mu));
+    (plain.has_inverse() && !cleared.has_inverse()).then_some(cleared)
+}
+
+/// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of the rotation;
+/// `None` if denominators are left, or there are none.
+pub(super) fn of_rotation<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    block: &ChartBlock<'g>,
+    rows: Expr<'g>,
+) -> Option<Expr<'g>> {
+    let factor = &model.factors[block.factor];
+    let n = factor.group.linear_part()?;
+    if symbols.charts[block.factor] != Chart::Product || block.block != 0 || !rows.has_inverse() {
+        return None;
+    }
+    let turn = Group::SpecialOrthogonal(n);
+    let (left, right) = Chart::Cayley.clearing(turn, &[block.coordinates], factor.side == Side::Left)?;
+    let congruent = |matrix: Expr<'g>| turn.components((left * matrix * right).expand());
+    let terms = rows.word_terms().into_iter().map(|term| congruent(skew_matrix(model, turn, term)));
+    let cleared = terms.fold(model.graph.zero(rows.shape()), |sum, term| sum + term).expand();
+    (!cleared.has_inverse()).then_some(cleared)
+}
+
+/// The skew matrix with components that are a term: ½(A − Aᵀ) for ⟨A, E⟩.
+fn skew_matrix<'g>(model: &Model<'g>, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
+    let matrix_of = |letter: Expr<'g>| match letter.view() {
+        View::Components(_, inner) => Some((inner - inner.transpose()) / 2),
+        _ => None,
+    };
+    // one component is a scalar among others
+    let known = match term.word.as_slice() {
+        [letter] => matrix_of(*letter),
+        [] => {
+            let linear = |(base, exponent): &(Expr<'g>, (i64, i64))| *exponent == (1, 1) && matrix_of(*base).is_some();
+            let found = term.scalars.iter().position(linear);
+            found.and_then(|position| matrix_of(term.scalars.remove(position).0))
+        }
+        _ => None,
+    };
+    let scale = term.scale(model.graph);
+    let one = model.graph.integer(1);
+    scale * known.unwrap_or_else(|| turn.momentum_matrix(term.word.into_iter().reduce(|a, b| a * b).unwrap_or(one)))
+}
+
+/// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.
+pub(super) fn of_quaternions<'g>(coordinates: &[Expr<'g>], group: Group, plain: Expr<'g>) -> Expr<'g> {
+    if group != Group::UnitQuaternions {
+        return plain;
+    }
+    let square = coordinates[0].graph().integer(1) + coordinates[0].norm_squared();
+    let exponent = |expression: Expr<'g>| expression.least_exponent(square);
+    let negative =
+        |expression: Expr<'g>| exponent(expression).is_some_and(|least| least < clebsch_symbolic::integer(0));
+    let scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand()).find(|scaled| !negative(*scaled));
+    scaled.unwrap_or(plain)
+}
