@@ -46,7 +46,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// The provided method eliminates with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
     /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`] for each block on its diagonal.
     #[inline]
-    fn correct(residual: &SVector<T, M>, jacobian: &SMatrix<T, M, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn correct(jacobian: &SMatrix<T, M, M>, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
         solve_dense(jacobian, residual)
     }
 
@@ -123,7 +123,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     let (mut before, mut residual_before) = (predicted, xi);
     for iteration in 0..QUICK {
         let (residual, jacobian) = equation.linearize(&terms, &xi);
-        let (correction, orientation) = E::correct(&residual, &jacobian)?;
+        let (correction, orientation) = E::correct(&jacobian, &residual)?;
         if orientation != branch {
             return None;
         }

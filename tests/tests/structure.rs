@@ -86,6 +86,83 @@ fn similarities_are_block_triangular() {
     }
 }
 
+/// Coordinates of the second kind: x + zy = hμ₁/k, y = hμ₂/k, z = hμ₃/k.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: Heisenberg<1>, q: Heisenberg<1>| q * F,
+    cost   = |h, F| self.stiffness * (F - I).norm_squared() / (2 * h),
+)]
+struct Dido {
+    stiffness: f64,
+}
+
+#[test]
+fn unipotent_groups_are_triangular() {
+    assert_says::<Dido>(&["coordinates of the second kind", "is triangular", "solved by substitution, no iteration"]);
+    let random = &mut Random::new(315);
+    let stepper = Dido { stiffness: 0.8 }.into_stepper(H).expect("a regular system");
+    for _ in 0..20 {
+        let mu: Vector3<f64> = random.vector::<3>() * 5.0;
+        let [x, y, z] = [0, 1, 2].map(|i| H * mu[i] / 0.8);
+        let expected = Matrix3::new(1.0, x - z * y, z, 0.0, 1.0, y, 0.0, 0.0, 1.0);
+        let f = stepper.inverse_legendre(&Matrix3::identity(), &mu).expect("an explicit step");
+        assert_near(&f, &expected, 1e-14, "F");
+    }
+}
+
+/// The midpoint rule for a spring: (M/h + hK/4) a = p − hKx/2, linear and symmetric at every place.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<2>, x: Vector2| x + a,
+    cost   = |h, x, a| self.mass * a.norm_squared() / (2 * h) - h * (x + a / 2).dot(&(self.spring * (x + a / 2))) / 2,
+)]
+struct Spring {
+    mass: f64,
+    #[clebsch(symmetric)]
+    spring: Matrix2<f64>,
+}
+
+#[test]
+fn the_midpoint_rule_of_a_spring_is_linear() {
+    assert_says::<Spring>(&["is linear in the coordinates of the translation", "one elimination, no iteration"]);
+    let random = &mut Random::new(316);
+    let (mass, spring) = (1.3, random.inertia::<2>());
+    for h in [H, 3.0, -H] {
+        let stepper = Spring { mass, spring }.into_stepper(h).expect("a regular system");
+        let state = stepper.state(random.vector::<2>(), random.vector::<2>()).expect("a state");
+        let (x, p) = (*state.configuration(), *state.momentum());
+        let matrix = Matrix2::identity() * (mass / h) + spring * (h / 4.0);
+        let a = matrix.try_inverse().expect("regular") * (p - spring * x * (h / 2.0));
+        let next = stepper.step(&state).expect("a solvable step");
+        assert_near(next.configuration(), &(x + a), 1e-13, "x⁺");
+        assert_near(next.momentum(), &(a * (mass / h) - spring * (x + a / 2.0) * (h / 2.0)), 1e-13, "p⁺");
+    }
+}
+
+/// The force does not couple directions: one equation each, two of them without iteration.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |v| self.mass * (v.norm_squared() / 2 + v.x.powi(4)),
+)]
+struct Quartic {
+    mass: f64,
+}
+
+#[test]
+fn directions_that_do_not_couple_are_solved_one_by_one() {
+    let random = &mut Random::new(317);
+    let stepper = Quartic { mass: 0.7 }.into_stepper(H).expect("a regular system");
+    for _ in 0..20 {
+        let v: Vector3<f64> = random.vector::<3>();
+        let p = Vector3::new(v.x + 4.0 * v.x.powi(3), v.y, v.z) * 0.7;
+        let next = stepper.step(&stepper.state(Vector3::zeros(), p).expect("a state")).expect("a solvable step");
+        assert_near(next.configuration(), &(v * H), 1e-15, "x⁺");
+    }
+    assert!(Quartic::DERIVATION.contains("[0] is solved by Newton's method"), "{}", Quartic::DERIVATION);
+    assert!(Quartic::DERIVATION.contains("[1], "), "{}", Quartic::DERIVATION);
+}
+
 /// The shift follows from the turn, b = hM_v/m − (W − I)c, and what is left are three unknowns.
 #[test]
 fn the_shift_of_a_body_is_put_in() {

@@ -33,6 +33,8 @@ pub struct Equation<'g> {
     pub structure: Structure,
     /// The coordinates that were put in and have inertia in common with its own.
     pub coupled: Vec<usize>,
+    /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in: not so where a cost adds to it at every step size.
+    pub is_inertial: bool,
     /// Whether it depends on the configuration or on the time.
     pub moves: bool,
 }
@@ -278,11 +280,7 @@ fn equation<'g>(
     }
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
     let mut equation = Equation::new(sources, components, residual, cleared);
-    let (directional, moves) = (equation.directional, equation.moves);
-    let affine = !moves
-        && !directional.depends_on(model.time)
-        && equation.is_affine(symbols)
-        && !equation.factors.iter().any(|&k| directional.depends_on(symbols.momenta[k]));
+    let moves = equation.moves;
     let closed_form = match blocks.as_slice() {
         [only] if !moves => closed_form(sources, before, residual, *only),
         _ => None,
@@ -291,7 +289,7 @@ fn equation<'g>(
         Some(_) => Solution::ClosedForm,
         // where Σ changes with the configuration there is no predictor
         _ if is_moving(model, sources.inertia) => Solution::Newton,
-        None if affine || !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
+        None if !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
         None => Solution::Newton,
     };
     equation.formula = closed_form.as_ref().map(|closed_form| closed_form.coordinates);
@@ -327,6 +325,7 @@ impl<'g> Equation<'g> {
             sine_squared: None,
             structure: Structure::Dense,
             coupled: Vec::new(),
+            is_inertial: true,
             moves,
         }
     }

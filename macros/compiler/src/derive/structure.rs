@@ -31,11 +31,13 @@ pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>)
         return vec![equation];
     }
     let whole = Reduced::new(sources, equation, Vec::new());
+    let is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
     if let Some(explicit) = whole.substituted() {
         return vec![explicit];
     }
     let reduced = whole.reduced();
     let mut equations = reduced.parts();
+    equations.iter_mut().for_each(|equation| equation.is_inertial = is_inertial);
     equations.extend(reduced.eliminated.into_iter().rev());
     equations
 }

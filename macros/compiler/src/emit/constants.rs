@@ -32,7 +32,7 @@ impl Emitter<'_, '_> {
     /// Whether the orientation of an equation is a constant, made of Σ.
     pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
         let iterates = matches!(solve.solution, Solution::Newton | Solution::Linear);
-        iterates && !solve.moves && !self.program.formulas.inertia_moves()
+        iterates && solve.is_inertial && !solve.moves && !self.program.formulas.inertia_moves()
     }
 
     /// For each equation whose orientation is a constant: the name of its orientation, and the equation.

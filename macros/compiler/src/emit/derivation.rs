@@ -217,7 +217,7 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
             "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
         }
         Solution::Linear => {
-            format!("is linear in {chart}, with coefficients that change: solved by one elimination, no iteration")
+            format!("is linear in {chart}: solved by one elimination, no iteration")
         }
         Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&equation.structure)),
     }

@@ -39,7 +39,7 @@ impl Emitter<'_, '_> {
         Some(quote! {
             #[doc = #title]
             #[inline]
-            fn correct(b: &#vector, a: &#matrix) -> ::core::option::Option<(#vector, #private::Orientation)> {
+            fn correct(a: &#matrix, b: &#vector) -> ::core::option::Option<(#vector, #private::Orientation)> {
                 #body
             }
         })

@@ -61,6 +61,8 @@ pub struct Solve {
     pub sine_squared: Option<Kernel>,
     /// ρ(x) and Dρ(x); of a linear equation −ρ(0) and Dρ.
     pub linearize: Kernel,
+    /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in.
+    pub is_inertial: bool,
     /// Whether the equation depends on the configuration or on the time.
     pub moves: bool,
 }
@@ -188,6 +190,7 @@ fn solve<'g>(
         predict,
         sine_squared,
         linearize,
+        is_inertial: equation.is_inertial,
         moves: equation.moves,
     };
     let (momenta, coordinates) = solve.read(formulas);

@@ -1,10 +1,10 @@
 //! Which entries of a Jacobian vanish, are constant, and agree with those on the other side of its diagonal.
 
-use clebsch_symbolic::identity::{Point, Residue};
-use clebsch_symbolic::{Expr, Matrix, Number, Shape};
+use clebsch_symbolic::identity::{self, Point, Residue};
+use clebsch_symbolic::{Expr, Graph, Matrix, Number, Shape};
 
 use super::Structure;
-use crate::derive::equation::{Equation, Sources};
+use crate::derive::equation::{Equation, Sources, chart_slope};
 
 /// The values of a Jacobian at a random point, and at two others with the same parameters.
 pub(super) struct Pattern {
@@ -15,12 +15,39 @@ pub(super) struct Pattern {
     elsewhere: Matrix<Residue>,
 }
 
+/// The matrix with these columns.
+fn matrix<'g>(graph: &'g Graph, columns: &[Expr<'g>]) -> Expr<'g> {
+    let shape = Shape::square(columns.len());
+    let placed = columns.iter().enumerate().map(|(j, column)| column.embed(shape, 0, j));
+    placed.fold(graph.zero(shape), |sum, column| sum + column)
+}
+
+/// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h).
+pub(super) fn is_inertial<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> bool {
+    let (model, symbols, components) = (sources.model, sources.symbols, &equation.components);
+    let graph = model.graph;
+    let shape = Shape::square(columns.len());
+    let entry = |(i, j): (usize, usize)| {
+        let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[components[j]])[0]);
+        let inertia = sources.inertia.entry(components[i], components[j]);
+        denominator * sources.parts * inertia / (numerator * model.step_size)
+    };
+    let expected = graph.stack(shape, shape.positions().map(entry).collect());
+    let still = symbols.blocks.iter().map(|block| &block.coordinates).chain(&symbols.momenta);
+    let still: Vec<_> = still.map(|symbol| (*symbol, graph.zero(symbol.shape()))).collect();
+    identity::vanishes_where(matrix(graph, columns) - expected, &|point| {
+        for (symbol, zero) in &still {
+            let value = point.evaluate(*zero);
+            point.set(*symbol, value);
+        }
+    })
+}
+
 impl Pattern {
     pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> Pattern {
         let (model, symbols) = (sources.model, sources.symbols);
         let shape = Shape::square(columns.len());
-        let placed = columns.iter().enumerate().map(|(j, column)| column.embed(shape, 0, j));
-        let jacobian = placed.fold(model.graph.zero(shape), |sum, column| sum + column);
+        let jacobian = matrix(model.graph, columns);
         let coordinates = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i].coordinates);
         let coordinates: Vec<Expr<'g>> = coordinates.collect();
         let places = model.configurations.iter().map(|leaf| leaf.symbol).chain([model.time]);
