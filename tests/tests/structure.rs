@@ -8,7 +8,7 @@ use clebsch_tests::fixtures::relativistic_particle::RelativisticParticle;
 use clebsch_tests::fixtures::spatial_body::SpatialBody;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, Vector3, Vector4};
 
 const H: f64 = 0.1;
 
@@ -163,20 +163,49 @@ fn directions_that_do_not_couple_are_solved_one_by_one() {
     assert!(Quartic::DERIVATION.contains("[1], "), "{}", Quartic::DERIVATION);
 }
 
+/// A body with this mass and centre of mass.
+fn body(random: &mut Random, mass: f64, center: Vector3<f64>) -> SpatialBody {
+    let moments = random.inertia::<3>() * 0.3 + mass * center * center.transpose();
+    let mut mass_matrix = Matrix4::zeros();
+    mass_matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&moments);
+    mass_matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * center));
+    mass_matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&(center.transpose() * mass));
+    mass_matrix[(3, 3)] = mass;
+    SpatialBody { mass_matrix, gravity: 0.0 }
+}
+
+/// Where a momentum is too large for three unknowns, which know of six of its components, the largest solvable fraction is exact.
+#[test]
+fn solvable_fractions_count_what_was_put_in() {
+    let random = &mut Random::new(318);
+    let mut refused = 0;
+    for k in 1..=40 {
+        let center = random.vector::<3>();
+        let stepper = body(random, 1.5, center).into_stepper(H).expect("a regular system");
+        let solved = |mu: &SVector<f64, 6>| stepper.inverse_legendre(&Matrix4::identity(), mu);
+        let mu = random.vector::<6>() * (0.5 * f64::from(k));
+        match solved(&mu) {
+            Ok(f) => assert_near(&stepper.legendre(&Matrix4::identity(), &f), &mu, 1e-11, "r(F)"),
+            Err(Error::Unsolvable { solvable_fraction, .. }) => {
+                refused += 1;
+                assert!(solvable_fraction > 0.0 && solvable_fraction < 1.0, "{solvable_fraction}");
+                assert!(solved(&(mu * (solvable_fraction * 0.999))).is_ok(), "below {solvable_fraction}");
+                assert!(solved(&(mu * (solvable_fraction * 1.001))).is_err(), "above {solvable_fraction}");
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+    println!("{refused} refused");
+    assert!((5..36).contains(&refused), "{refused} of 40 refused");
+}
+
 /// The shift follows from the turn, b = hM_v/m − (W − I)c, and what is left are three unknowns.
 #[test]
 fn the_shift_of_a_body_is_put_in() {
     assert_says::<SpatialBody>(&["x₁ is solved by Newton's method", "given the other coordinates"]);
     let random = &mut Random::new(314);
     let (mass, center) = (1.5, Vector3::new(0.2, -0.1, 0.3));
-    let spread = random.inertia::<3>() * 0.3;
-    let moments = spread + mass * center * center.transpose();
-    let mut mass_matrix = Matrix4::zeros();
-    mass_matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&moments);
-    mass_matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * center));
-    mass_matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&(center.transpose() * mass));
-    mass_matrix[(3, 3)] = mass;
-    let stepper = SpatialBody { mass_matrix, gravity: 0.0 }.into_stepper(H).expect("a regular system");
+    let stepper = body(random, mass, center).into_stepper(H).expect("a regular system");
     for _ in 0..20 {
         let mu = random.vector::<6>();
         let f = stepper.inverse_legendre(&Matrix4::identity(), &mu).expect("a solvable step");
