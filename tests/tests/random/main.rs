@@ -94,6 +94,23 @@ fn what_compiles_integrates_as_the_oracle_does_too() {
     integrates(seeds(100).filter(|seed| seed % 2 == 1));
 }
 
+/// Costs on abelian groups that couple configuration and group element: their equations are linear where the cost is quadratic, with
+/// more in them than the inertia. Few of the problems above are such.
+#[test]
+fn what_is_linear_integrates_as_the_oracle_does() {
+    let is_abelian = |name: &str| name.starts_with("Translation") || ["SO<2>", "U<1>"].contains(&name);
+    let couples = |seed: &u64| {
+        let problem = problem(*seed);
+        let is_cost = matches!(problem.kinetic, problem::Kinetic::Cost(_));
+        is_cost
+            && problem.factors.iter().all(|factor| is_abelian(&factor.group.name))
+            && problem.text().contains("(h * ")
+    };
+    let some: Vec<u64> = (1000..4000).filter(couples).take(40).collect();
+    assert_eq!(some.len(), 40);
+    integrates(some.into_iter());
+}
+
 #[test]
 fn what_is_refused_says_why() {
     let mut failures = Vec::new();
