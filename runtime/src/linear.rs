@@ -103,7 +103,7 @@ pub fn solve_dense<T: Scalar, const M: usize>(
 /// x of A x = b and the sign of det A for a symmetric matrix.
 ///
 /// A = L D Lᵀ without pivoting where A is definite, which is stable (Higham, *Accuracy and Stability of Numerical Algorithms*,
-/// theorem 10.3): M³/6 + 2M² multiplications to leading orders and M divisions, about half the work of [`solve_dense`] for large M, and
+/// theorem 10.3): M³/6 + 3M²/2 multiplications to leading orders and M divisions, about half the work of [`solve_dense`] for large M, and
 /// no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.

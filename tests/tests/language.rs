@@ -34,8 +34,7 @@ macro_rules! potentials {
 
             #[test]
             fn derived_and_plain() {
-                // few formulas read every parameter
-                #[allow(unused_variables)]
+                #[allow(unused_variables, reason = "few formulas read every parameter")]
                 let plain = |particle: &Particle, $x: Vector3<f64>| -> f64 {
                     let ($a, $b, $s) = (particle.matrix, particle.vector, particle.scalar);
                     $body

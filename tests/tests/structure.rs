@@ -99,6 +99,8 @@ struct Dido {
 #[test]
 fn unipotent_groups_are_triangular() {
     assert_says::<Dido>(&["coordinates of the second kind", "is triangular", "solved by substitution, no iteration"]);
+    // half a step of the adjoint is linear for what is known, with the determinant of the inertia
+    assert!(!Dido::DERIVATION.contains("Newton"), "{}", Dido::DERIVATION);
     let random = &mut Random::new(315);
     let stepper = Dido { stiffness: 0.8 }.into_stepper(H).expect("a regular system");
     for _ in 0..20 {
@@ -137,6 +139,28 @@ fn the_midpoint_rule_of_a_spring_is_linear() {
         assert_near(next.configuration(), &(x + a), 1e-13, "x⁺");
         assert_near(next.momentum(), &(a * (mass / h) - spring * (x + a / 2.0) * (h / 2.0)), 1e-13, "p⁺");
     }
+}
+
+/// The slope m/h + hk/4 of a spring that pushes apart vanishes at one step size: an error, and no number.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    cost   = |h, x, a| (self.mass * a.norm_squared() / h - h * self.spring * (x + a / 2).norm_squared()) / 2,
+)]
+struct Repelled {
+    mass: f64,
+    spring: f64,
+}
+
+#[test]
+fn slopes_that_vanish_are_refused() {
+    let stepper = Repelled { mass: 1.0, spring: -16.0 }.into_stepper(0.5).expect("a regular inertia");
+    let state = stepper.state([1.0].into(), [2.0].into()).expect("a state");
+    assert!(matches!(stepper.step(&state), Err(Error::Unsolvable { .. })), "{:?}", stepper.step(&state));
+    let stepper = Repelled { mass: 1.0, spring: -16.0 }.into_stepper(0.25).expect("a regular inertia");
+    let next = stepper.step(&stepper.state([1.0].into(), [2.0].into()).expect("a state")).expect("a solvable step");
+    // (4 − 1) a = 2 + 16·0.25/2
+    assert!((next.configuration().x - (1.0 + 4.0 / 3.0)).abs() < 1e-15);
 }
 
 /// The force does not couple directions: one equation each, two of them without iteration.

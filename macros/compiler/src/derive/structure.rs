@@ -25,19 +25,18 @@ pub enum Structure {
 /// The equations, to be solved in this order, that an equation for Newton's method falls into.
 ///
 /// Coordinates whose slope in their own equation is constant are put into the others and follow when these are solved, as long as
-/// those stay affine in the momentum: the path from the identity relies on it.
+/// those stay affine in the momentum, which the path from the identity relies on, or become linear and regular for every momentum.
 pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>) -> Vec<Equation<'g>> {
     if equation.solution != Solution::Newton {
         return vec![equation];
     }
-    let whole = Reduced::new(sources, equation, Vec::new());
-    let is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
+    let mut whole = Reduced::new(sources, equation, Vec::new());
+    whole.equation.is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
     if let Some(explicit) = whole.substituted() {
         return vec![explicit];
     }
     let reduced = whole.reduced();
     let mut equations = reduced.parts();
-    equations.iter_mut().for_each(|equation| equation.is_inertial = is_inertial);
     equations.extend(reduced.eliminated.into_iter().rev());
     equations
 }
@@ -104,9 +103,10 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         symbols.blocks_of(components).into_iter().filter_map(block).filter(is_constant).collect()
     }
 
-    /// Whether a coordinate has a constant slope.
+    /// Whether a coordinate has a constant slope that is its inertia: any other may vanish at some step size.
     fn may_go(&self, i: usize) -> bool {
-        !self.equation.moves && !is_moving(self.sources.model, self.sources.inertia) && self.pattern.is_constant(i)
+        let is_still = !self.equation.moves && !is_moving(self.sources.model, self.sources.inertia);
+        is_still && self.equation.is_inertial && self.pattern.is_constant(i)
     }
 
     /// Whether a coordinate has no inertia in common with others, so that its slope is zero only where the inertia is singular.
@@ -154,9 +154,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         if identity::equal(&[self.columns[i].entry(i, 0)], &[expected]) {
             return expected;
         }
-        let moving = symbols.blocks.iter().map(|block| &block.coordinates).chain(&symbols.momenta);
-        let zero: Vec<_> = moving.map(|symbol| (*symbol, symbol.graph().zero(symbol.shape()))).collect();
-        self.columns[i].entry(i, 0).substitute(&zero).expand()
+        self.columns[i].entry(i, 0).substitute(&symbols.at_rest()).expand()
     }
 
     /// An expression with values for some coordinates.
@@ -178,9 +176,12 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).collect::<Vec<_>>())
     }
 
-    /// Whether a path from the identity leads to the solution, as it is affine in the momentum, and the orientation at its start is known.
+    /// Whether a path from the identity leads to the solution, as it is affine in the momentum, or none is needed, as a linear equation
+    /// is regular for every momentum; and whether the orientation at its start is known.
     fn is_solvable(&self) -> bool {
-        (self.coupled().is_empty() || self.pattern.connected().len() == 1) && self.is_affine_in_momenta()
+        let is_regular = self.pattern.is_linear() && self.pattern.has_constant_determinant();
+        let is_oriented = self.coupled().is_empty() || self.pattern.connected().len() == 1;
+        is_oriented && (is_regular || self.is_affine_in_momenta())
     }
 
     /// Whether ρ(x; sμ) = ρ(x; 0) + s(ρ(x; μ) − ρ(x; 0)).
@@ -227,7 +228,8 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = self.with(&others, absent, rows(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let components = positions.iter().map(|&i| whole.components[i]).collect();
-        let part = Reduced::new(sources, Equation::new(sources, components, residual, whole.cleared), Vec::new());
+        let part = Equation::new(sources, components, residual, whole.cleared);
+        let part = Reduced::new(sources, Equation { is_inertial: whole.is_inertial, ..part }, Vec::new());
         part.substituted().unwrap_or_else(|| part.whole())
     }
 }

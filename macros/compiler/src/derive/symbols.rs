@@ -73,6 +73,12 @@ impl<'g> Symbols<'g> {
         parts.fold(self.logarithms[factor].graph().zero(shape), |sum, part| sum + part)
     }
 
+    /// The replacement of all coordinates and momenta by zero: the motion that rests.
+    pub fn at_rest(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let moving = self.blocks.iter().map(|block| &block.coordinates).chain(&self.momenta);
+        moving.map(|symbol| (*symbol, symbol.graph().zero(symbol.shape()))).collect()
+    }
+
     /// The gradient with respect to the velocities of all factors, in one vector.
     pub fn slope(&self, function: Expr<'g>) -> Expr<'g> {
         let shape = Shape::vector(self.algebra.iter().map(|xi| xi.shape().rows).sum());

@@ -46,8 +46,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     let methods = methods(&krate, &scalar);
     quote! {
         #[automatically_derived]
-        // no body reads its arguments
-        #[allow(unused_variables)]
+        #[allow(unused_variables, reason = "no body reads its arguments")]
         impl #parameters #krate::Clebsch for #ident #arguments where #(#predicates,)* #bound {
             type Scalar = #scalar;
             type Configuration = #configuration;

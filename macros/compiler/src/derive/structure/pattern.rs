@@ -33,10 +33,9 @@ pub(super) fn is_inertial<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>
         denominator * sources.parts * inertia / (numerator * model.step_size)
     };
     let expected = graph.stack(shape, shape.positions().map(entry).collect());
-    let still = symbols.blocks.iter().map(|block| &block.coordinates).chain(&symbols.momenta);
-    let still: Vec<_> = still.map(|symbol| (*symbol, graph.zero(symbol.shape()))).collect();
+    let at_rest = symbols.at_rest();
     identity::vanishes_where(matrix(graph, columns) - expected, &|point| {
-        for (symbol, zero) in &still {
+        for (symbol, zero) in &at_rest {
             let value = point.evaluate(*zero);
             point.set(*symbol, value);
         }
@@ -88,6 +87,12 @@ impl Pattern {
     /// Whether no entry depends on the coordinates.
     pub(super) fn is_linear(&self) -> bool {
         self.here == self.there
+    }
+
+    /// Whether the determinant is made of parameters alone.
+    pub(super) fn has_constant_determinant(&self) -> bool {
+        let [here, there, elsewhere] = [&self.here, &self.there, &self.elsewhere].map(|matrix| matrix.inverse().1);
+        here == there && here == elsewhere
     }
 
     fn is_symmetric(&self) -> bool {
