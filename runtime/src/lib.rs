@@ -80,6 +80,7 @@ mod stumpff;
 mod system;
 mod time;
 mod trajectory;
+mod variational;
 
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
@@ -92,3 +93,4 @@ pub use stepper::Stepper;
 pub use system::Clebsch;
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
+pub use variational::{Edge, Variational};

@@ -1,0 +1,66 @@
+//! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
+
+use crate::Clebsch;
+use nalgebra::{SMatrix, SVector};
+
+/// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
+/// endpoints. Implemented by `#[derive(Clebsch)]` with `emit = [variations]`.
+///
+/// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k); k counts *edges*, of which a step has
+/// [`EDGES`](Self::EDGES). Its vertices are varied along the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: for a left
+/// action F_k ↦ exp(η_{k+1}) F_k exp(−η_k), for a right one exp(−η_k) F_k exp(η_{k+1}). The group element of an edge is given by its
+/// increment D = F − I (for translations F itself), which small steps do not cancel.
+///
+/// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
+pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>> {
+    /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1.
+    const EDGES: usize;
+
+    /// The increment of τ(η), a group element with τ(0) = I, dτ = id there, and, but for SL(n) with n > 2, τ(−η) = τ(η)⁻¹.
+    fn retraction(&self, eta: &Self::Momentum) -> Self::Element;
+
+    /// The increment of the motion by `first` and after it by `second`, of both as increments.
+    fn compose(&self, first: &Self::Element, second: &Self::Element) -> Self::Element;
+
+    /// The configuration Φ_F(q) that F = I + D moves q to.
+    fn advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration;
+
+    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to Φ_F(q), F = I + D.
+    fn edge(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+    ) -> Edge<Self::Scalar, M>;
+
+    /// GᵀG of the infinitesimal generator G: ξ ↦ ξ_Q(q): the metric that the space around Q induces on 𝔤. Its kernel is 𝔤_q.
+    fn orbit_metric(&self, q: &Self::Configuration) -> SMatrix<Self::Scalar, M, M>;
+
+    /// Gᵀ(target − q) = J(q, target − q), which vanishes where no motion of q along its orbit comes nearer to `target` to first order.
+    fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum;
+}
+
+/// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of the vertex where it starts and η′ of the
+/// one where it ends.
+///
+/// dℓd = F⁺ℓd·η′ − F⁻ℓd·η with the discrete Legendre transforms F⁻ℓd = N_k and F⁺ℓd = N_{k+1}, kicks included. A path is an extremal
+/// where F⁺ℓd of each edge is F⁻ℓd of the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge<T, const M: usize> {
+    /// ℓd(t, h, q, F)
+    pub lagrangian: T,
+    /// F⁻ℓd, the momentum at the start.
+    pub before: SVector<T, M>,
+    /// F⁺ℓd, the momentum at the end.
+    pub after: SVector<T, M>,
+    /// ∂F⁻ℓd/∂η, column j its derivative along E_j. Where momentum is not zero it is not symmetric.
+    pub before_by_start: SMatrix<T, M, M>,
+    /// ∂F⁻ℓd/∂η′
+    pub before_by_end: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η = −(∂F⁻ℓd/∂η′)ᵀ, for second derivatives commute; not so where forces act.
+    pub after_by_start: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η′
+    pub after_by_end: SMatrix<T, M, M>,
+}
