@@ -83,6 +83,11 @@ pub enum Error {
         /// Number of linearisations that were made.
         iterations: u32,
     },
+    /// The step has no derivative: it is at the very edge of what is solvable.
+    SingularTangent {
+        /// The step size.
+        step_size: f64,
+    },
 }
 
 impl Error {
@@ -166,6 +171,10 @@ impl Display for Error {
                 f,
                 "the implicit equation was not solved in {iterations} linearisations (relative residual {residual:.1e}): \
                  reduce the step size"
+            ),
+            Self::SingularTangent { step_size } => write!(
+                f,
+                "the step of {step_size:.3e} has no derivative, as it is at the edge of what can be solved: reduce the step size"
             ),
         }
     }

@@ -40,6 +40,7 @@
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | follow a potential in time | [`Stepper::state_at`] and [`State::time`], which exist where the time matters |
 //! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |
+//! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
 //! | solve an implicit equation of one's own | [`implicit`] |
@@ -78,6 +79,7 @@ mod state;
 mod stepper;
 mod stumpff;
 mod system;
+mod tangent;
 mod time;
 mod trajectory;
 mod variational;
@@ -91,6 +93,7 @@ pub use space::Space;
 pub use state::{CotangentState, State};
 pub use stepper::Stepper;
 pub use system::Clebsch;
+pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
-pub use variational::{Edge, Variational};
+pub use variational::{Edge, Sensitive, Variational};

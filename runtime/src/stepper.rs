@@ -139,6 +139,12 @@ impl<S: Clebsch> Stepper<S> {
         &self.system
     }
 
+    /// What no step changes.
+    #[inline]
+    pub(crate) fn constants(&self) -> &S::Constants {
+        &self.constants
+    }
+
     fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
         self.check_configuration(&q)?;
         if !mu.is_finite() {

@@ -1,10 +1,10 @@
 //! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
 
-use crate::Clebsch;
+use crate::{Clebsch, Error};
 use nalgebra::{SMatrix, SVector};
 
 /// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
-/// endpoints. Implemented by `#[derive(Clebsch)]` with `emit = [variations]`.
+/// endpoints. Implemented by `#[derive(Clebsch)]` with `emit = [tangent]` or `emit = [boundary]`.
 ///
 /// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k); k counts *edges*, of which a step has
 /// [`EDGES`](Self::EDGES). Its vertices are varied along the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: for a left
@@ -16,16 +16,30 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1.
     const EDGES: usize;
 
-    /// The increment of τ(η), a group element with τ(0) = I, dτ = id there, and, but for SL(n) with n > 2, τ(−η) = τ(η)⁻¹.
+    /// The increment of τ(η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map or the
+    /// exponential.
     fn retraction(&self, eta: &Self::Momentum) -> Self::Element;
 
-    /// The increment of the motion by `first` and after it by `second`, of both as increments.
-    fn compose(&self, first: &Self::Element, second: &Self::Element) -> Self::Element;
+    /// The increment of the motion by `d` and after it by `second`, of both as increments.
+    fn compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element;
 
     /// The configuration Φ_F(q) that F = I + D moves q to.
     fn advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration;
 
-    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to Φ_F(q), F = I + D.
+    /// The increment D of the group element with F⁻ℓd(q, F) = μ on an edge: its implicit solve.
+    ///
+    /// # Errors
+    /// As [`Clebsch::inverse_legendre`].
+    fn drift(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Result<Self::Element, Error>;
+
+    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D.
     fn edge(
         &self,
         constants: &Self::Constants,
@@ -33,9 +47,13 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
+        next: &Self::Configuration,
     ) -> Edge<Self::Scalar, M>;
 
-    /// GᵀG of the infinitesimal generator G: ξ ↦ ξ_Q(q): the metric that the space around Q induces on 𝔤. Its kernel is 𝔤_q.
+    /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
+    fn infinitesimal_motion(&self, q: &Self::Configuration, xi: &Self::Momentum) -> Self::Configuration;
+
+    /// GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q): the metric that the space around Q induces on 𝔤. Its kernel is 𝔤_q.
     fn orbit_metric(&self, q: &Self::Configuration) -> SMatrix<Self::Scalar, M, M>;
 
     /// Gᵀ(target − q) = J(q, target − q), which vanishes where no motion of q along its orbit comes nearer to `target` to first order.
@@ -55,12 +73,32 @@ pub struct Edge<T, const M: usize> {
     pub before: SVector<T, M>,
     /// F⁺ℓd, the momentum at the end.
     pub after: SVector<T, M>,
-    /// ∂F⁻ℓd/∂η, column j its derivative along E_j. Where momentum is not zero it is not symmetric.
+    /// ∂F⁻ℓd/∂η, column j its derivative along E_j. Not symmetric where there is momentum: Φ_{exp η} is no second derivative.
     pub before_by_start: SMatrix<T, M, M>,
     /// ∂F⁻ℓd/∂η′
     pub before_by_end: SMatrix<T, M, M>,
-    /// ∂F⁺ℓd/∂η = −(∂F⁻ℓd/∂η′)ᵀ, for second derivatives commute; not so where forces act.
+    /// ∂F⁺ℓd/∂η = −(∂F⁻ℓd/∂η′)ᵀ, for motions of different vertices commute.
     pub after_by_start: SMatrix<T, M, M>,
     /// ∂F⁺ℓd/∂η′
     pub after_by_end: SMatrix<T, M, M>,
+}
+
+/// A system whose steps have been differentiated with respect to all that is fixed during a step, P quantities. Implemented by
+/// `#[derive(Clebsch)]` with `emit = [tangent]`.
+pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
+    /// The quantities as a declaration writes them, without `self.`: the entries of the fields that closures read, in their order and
+    /// row by row, then `h`, then `t` where the time matters. The two entries of a symmetric matrix are one quantity.
+    const QUANTITIES: [&'static str; P];
+
+    /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
+    #[allow(clippy::type_complexity)]
+    fn edge_slopes(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+    ) -> (SMatrix<Self::Scalar, M, P>, SMatrix<Self::Scalar, M, P>);
 }

@@ -17,7 +17,7 @@ pub mod fixtures {
         generic_body gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics
         lopsided_pendulum lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top
         quaternion_top relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies
-        two_pendulums underwater_vehicle weighted_sl2
+        two_pendulums underwater_vehicle watched_top weighted_sl2
     }
 }
 

@@ -15,6 +15,8 @@ pub enum Role {
     Constant(usize),
     /// A leaf of the configuration q.
     Configuration(usize),
+    /// A leaf of the configuration q⁺ that q is moved to.
+    Image(usize),
     /// A leaf of the covector p.
     Covector(usize),
     /// A factor of the group element F.
@@ -23,6 +25,8 @@ pub enum Role {
     Logarithm(usize),
     /// A factor of the increment F − I that a step has found.
     Increment(usize),
+    /// A factor of the increment of a motion that follows another.
+    Following(usize),
     /// The coordinates of an algebra element ξ of a factor.
     Algebra(usize),
     /// The momentum μ of a factor.

@@ -28,7 +28,7 @@ modules! {
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top
     relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
-    underwater_vehicle weighted_sl2
+    underwater_vehicle watched_top weighted_sl2
 }
 
 steppers! {
@@ -67,5 +67,6 @@ steppers! {
     step_two_bodies: two_bodies::TwoBodies;
     step_two_pendulums: two_pendulums::TwoPendulums;
     step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;
+    step_watched_top: watched_top::WatchedTop;
     step_weighted_sl2: weighted_sl2::WeightedSl2;
 }

@@ -83,19 +83,9 @@ pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &
 
 /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
 pub(crate) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
-    let mut columns = Vec::new();
-    for xi in &symbols.algebra {
-        for i in 0..xi.shape().rows {
-            let direction = |other: &Expr<'g>| match other == xi {
-                true => xi.graph().unit(xi.shape(), i, 0),
-                false => xi.graph().zero(other.shape()),
-            };
-            let element: Vec<_> = symbols.algebra.iter().map(|other| (*other, direction(other))).collect();
-            let images = generator.iter().map(|velocity| velocity.substitute(&element));
-            columns.push(
-                images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect(),
-            );
-        }
-    }
-    columns
+    let column = |element: Vec<(Expr<'g>, Expr<'g>)>| {
+        let images = generator.iter().map(|velocity| velocity.substitute(&element));
+        images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect()
+    };
+    symbols.basis().into_iter().map(column).collect()
 }

@@ -19,11 +19,12 @@ mod structure;
 mod symbols;
 mod symmetry;
 mod trivialisation;
+mod variation;
 mod velocity;
 
 use std::cell::OnceCell;
 
-use clebsch_symbolic::{Expr, identity};
+use clebsch_symbolic::{Chart, Expr, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Model;
@@ -39,6 +40,7 @@ pub use structure::Structure;
 pub use symbols::{ChartBlock, Symbols};
 pub use symmetry::{ConservedMomentum, Symmetries};
 use trivialisation::Covector;
+pub use variation::{Quantity, Variation};
 
 /// What is derived, as matrix expressions.
 pub struct Formulas<'g> {
@@ -72,6 +74,8 @@ pub struct Formulas<'g> {
     pub legendre_next: Vec<Expr<'g>>,
     /// J(q, ∂U₁), the last kick of F⁺ℓd, to be taken at q⁺; `None` if there is none.
     pub legendre_kick: Option<Vec<Expr<'g>>>,
+    /// What steps are differentiated with respect to, where that is asked for.
+    pub quantities: Vec<Quantity<'g>>,
     /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
     /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
     pub substeps: Vec<Substep<'g>>,
@@ -102,6 +106,8 @@ pub struct Substep<'g> {
     /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
     /// changes with the time.
     pub other: Option<Vec<Expr<'g>>>,
+    /// Second derivatives of the discrete Lagrangian, where they are asked for.
+    pub variation: Option<Variation<'g>>,
 }
 
 /// Derives the formulas of a model.
@@ -110,6 +116,7 @@ pub struct Substep<'g> {
 /// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     symbols::check_chart(&model)?;
+    variation::check(&model)?;
     let symbols = Symbols::new(&model);
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
@@ -119,6 +126,17 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     check_unmoved(&model, &lagrangian)?;
     let potential_energy = energy::potential(&model, &lagrangian)?;
     let inertia = energy::inertia(&symbols, energy.kinetic);
+    let quantities = match model.emit.tangent {
+        true => variation::quantities(&model, is_timed(&model, &lagrangian)),
+        false => Vec::new(),
+    };
+    let variations = variation::Source {
+        model: &model,
+        symbols: &symbols,
+        generator: &generator,
+        momentum_map: &momentum_map,
+        quantities: &quantities,
+    };
     let sources =
         |parts| equation::Sources { model: &model, symbols: &symbols, momentum_map: &momentum_map, inertia, parts };
     let substeps = discrete_lagrangian::substeps(&model, &lagrangian)
@@ -127,7 +145,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         .map(|(index, (parts, lagrangian))| {
             let part = model.step_size / parts;
             let begins = if index == 1 { part } else { model.graph.integer(0) };
-            substep(&sources(parts), lagrangian, begins)
+            substep(&sources(parts), &variations, lagrangian, begins)
         })
         .collect();
     let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
@@ -152,6 +170,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         potential_energy,
         symmetries,
         lagrangian,
+        quantities,
         substeps,
     })
 }
@@ -185,6 +204,7 @@ fn check_offers(model: &Model<'_>, symmetries: &Symmetries<'_>) -> Result<(), Di
 
 fn substep<'g>(
     sources: &equation::Sources<'_, 'g>,
+    variations: &variation::Source<'_, 'g>,
     lagrangian: DiscreteLagrangian<'g>,
     begins: Expr<'g>,
 ) -> Substep<'g> {
@@ -203,9 +223,12 @@ fn substep<'g>(
         true => vec![false; model.factors.len()],
         false => trivialisation::agreement(model, &before, &after),
     };
+    let ends = begins + model.step_size / sources.parts;
+    let varied = model.emit.variations();
     Substep {
+        variation: varied.then(|| variations.variation(&lagrangian, (&before, &after), (begins, ends))),
         begins,
-        ends: begins + model.step_size / sources.parts,
+        ends,
         parts: sources.parts,
         start: total(impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest))),
         end: impulse(lagrangian.end),
@@ -248,8 +271,12 @@ impl Formulas<'_> {
 
     /// Whether the cost or the potential depends on the time.
     pub fn is_timed(&self) -> bool {
-        let lagrangian = &self.lagrangian;
-        [lagrangian.kinetic, lagrangian.start, lagrangian.end].iter().any(|part| part.depends_on(self.model.time))
+        is_timed(&self.model, &self.lagrangian)
+    }
+
+    /// The chart in which small motions of a factor are written.
+    pub fn retraction(&self, k: usize) -> Chart {
+        variation::retraction(&self.model, &self.symbols, k)
     }
 
     /// Whether the kinetic energy changes with the configuration or the time.
@@ -267,6 +294,11 @@ impl Formulas<'_> {
     pub fn parts(&self) -> usize {
         if self.substeps.len() == 1 { 1 } else { 2 }
     }
+}
+
+/// Whether a discrete Lagrangian depends on the time.
+fn is_timed(model: &Model<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
+    [lagrangian.kinetic, lagrangian.start, lagrangian.end].iter().any(|part| part.depends_on(model.time))
 }
 
 /// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.

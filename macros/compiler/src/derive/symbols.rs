@@ -19,6 +19,10 @@ pub struct Symbols<'g> {
     pub blocks: Vec<ChartBlock<'g>>,
     /// The increment F − I (F itself for translations), for each factor.
     pub increments: Vec<Expr<'g>>,
+    /// The increment of a motion that follows another, for each factor.
+    pub following: Vec<Expr<'g>>,
+    /// q⁺ = Φ_F(q), for each leaf of the configuration.
+    pub images: Vec<Expr<'g>>,
     /// The coordinates of log F, for each factor: what a Lagrangian that is discretised by the exponential depends on.
     pub logarithms: Vec<Expr<'g>>,
     /// The representing matrix of the momentum, for each factor.
@@ -79,6 +83,19 @@ impl<'g> Symbols<'g> {
         moving.map(|symbol| (*symbol, symbol.graph().zero(symbol.shape()))).collect()
     }
 
+    /// The replacements of ξ by each element of the basis, factor after factor.
+    pub fn basis(&self) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
+        let element = |k: usize, i: usize| {
+            let part = |(j, xi): (usize, &Expr<'g>)| {
+                let graph = xi.graph();
+                (*xi, if j == k { graph.unit(xi.shape(), i, 0) } else { graph.zero(xi.shape()) })
+            };
+            self.algebra.iter().enumerate().map(part).collect()
+        };
+        let factors = self.algebra.iter().enumerate();
+        factors.flat_map(|(k, xi)| (0..xi.shape().rows).map(move |i| (k, i))).map(|(k, i)| element(k, i)).collect()
+    }
+
     /// The gradient with respect to the velocities of all factors, in one vector.
     pub fn slope(&self, function: Expr<'g>) -> Expr<'g> {
         let shape = Shape::vector(self.algebra.iter().map(|xi| xi.shape().rows).sum());
@@ -126,9 +143,17 @@ impl<'g> Symbols<'g> {
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
             logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
             increments: factor(&["D", "Δ", "B"], Role::Increment, true),
+            following: factor(&["D⁺"], Role::Following, true),
+            images: model.configurations.iter().enumerate().map(|(i, leaf)| image(model, i, leaf)).collect(),
             momentum_matrices: factor(&["M", "N", "P"], Role::MomentumMatrix, true),
         }
     }
+}
+
+/// The symbol of a leaf of q⁺, which lies in the same space as that of q.
+fn image<'g>(model: &Model<'g>, i: usize, leaf: &crate::model::Configuration<'g>) -> Expr<'g> {
+    let property = leaf.symbol.as_symbol().map_or(Property::General, |symbol| symbol.property);
+    model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), property)
 }
 
 /// The symbol of the coordinates of log F.

@@ -70,9 +70,11 @@ impl Scope<'_, '_> {
             Role::Parameter(leaf) => self.parameter(leaf, index),
             Role::Constant(index) => self.constant_of_crate(index),
             Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
+            Role::Image(i) => leaf("next", &self.model.configurations[i].accessor),
             Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
             Role::Element(k) => leaf("f", factor(k)),
             Role::Increment(k) => leaf("d", factor(k)),
+            Role::Following(k) => leaf("second", factor(k)),
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
             Role::Momentum(k) => entry(self.momentum, &self.momenta, self.model.offset(k) + input.row),
             Role::Chart(block) => entry("x", &self.coordinates, self.blocks[block] + input.row),
@@ -203,7 +205,7 @@ impl Scope<'_, '_> {
     }
 
     /// A number, rounded once to the scalar.
-    fn number(&self, value: &Rational) -> TokenStream {
+    pub fn number(&self, value: &Rational) -> TokenStream {
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         let parts = (i64::try_from(value.numer()), i64::try_from(value.denom()));
         match (&self.model.item.scalar, parts) {
@@ -290,6 +292,14 @@ pub fn locals(scope: &Scope<'_, '_>, kernel: &Kernel) -> TokenStream {
     quote!(#(#locals)*)
 }
 
+/// A matrix of entries, row by row, whatever its shape.
+pub fn matrix(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStream {
+    let private = &scope.paths.private;
+    let entries: Vec<TokenStream> = entries.iter().map(|entry| scope.code(entry, false)).collect();
+    let rows = entries.chunks(shape.columns.max(1)).map(|row| quote!([#(#row),*]));
+    quote!(#private::matrix([#(#rows),*]))
+}
+
 /// A matrix, vector or quaternion of entries.
 pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code], is_quaternion: bool) -> TokenStream {
     let private = &scope.paths.private;
@@ -317,6 +327,25 @@ pub fn nested(structure: &Structure, leaf: &mut impl FnMut(usize) -> TokenStream
             quote!([#(#parts),*])
         }
     }
+}
+
+/// A sum or difference of two configurations, leaf by leaf. Quaternions over a type parameter add through their coordinates alone.
+pub fn combined(
+    model: &Model<'_>,
+    a: &TokenStream,
+    operator: TokenStream,
+    b: &TokenStream,
+    paths: &Paths,
+) -> TokenStream {
+    let private = &paths.private;
+    nested(&model.configuration, &mut |leaf| {
+        let configuration = &model.configurations[leaf];
+        let access = accessor(&configuration.accessor);
+        match configuration.is_quaternion {
+            true => quote!(#private::Quaternion { coords: #a #access.coords #operator #b #access.coords }),
+            false => quote!(#a #access #operator #b #access),
+        }
+    })
 }
 
 /// The type of a nesting of leaves.

@@ -13,6 +13,7 @@ mod path;
 mod step;
 mod stub;
 mod system;
+mod variation;
 
 use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -128,7 +129,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let conserves = self.conserves();
         let step = self.step_type();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
-        quote!(#groups #constants #system #conserves #check #step #equations #velocity)
+        let (variational, sensitive) = (self.variational(), self.sensitive());
+        quote!(#groups #constants #system #conserves #variational #sensitive #check #step #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.

@@ -17,7 +17,7 @@ impl Emitter<'_, '_> {
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
         let Names { lifetime, constants: constants_name, .. } = &self.names;
         let parts = self.program.steps.iter().enumerate().map(|(index, step)| self.parts(index, step));
-        let (shared, whole) = (self.shared_parts(), self.whole_steps());
+        let (shared, whole, edges) = (self.shared_parts(), self.whole_steps(), self.edges());
         let step = &self.names.step;
         let documentation =
             docs::lines(
@@ -34,6 +34,7 @@ impl Emitter<'_, '_> {
                 #whole
                 #(#parts)*
                 #shared
+                #edges
             }
         }
     }
@@ -155,7 +156,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The time and the configuration as they are handed to such a solve.
-    fn place_arguments(&self, step: &StepKernels) -> TokenStream {
+    pub(super) fn place_arguments(&self, step: &StepKernels) -> TokenStream {
         let time = self.time_argument();
         if step.solves.iter().any(|solve| solve.moves) { quote!(#time &q,) } else { quote!() }
     }
@@ -247,7 +248,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
-    fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
+    pub(super) fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
         let start = format_ident!("start_kick{}", self.program.suffix(index));
         let time = self.time_argument();
         match (&step.start, with_impulse && index == 0 && self.shares_impulse()) {
@@ -312,10 +313,7 @@ impl Emitter<'_, '_> {
             let (time, place) = (self.time_argument(), self.place_arguments(step));
             let kick = |name: &str, increment: TokenStream| {
                 let name = format_ident!("{name}{suffix}");
-                let sum = code::nested(&self.model.configuration, &mut |leaf| {
-                    let access = code::accessor(&self.model.configurations[leaf].accessor);
-                    quote!(p #access + gradient #access)
-                });
+                let sum = code::combined(self.model, &quote!(p), quote!(+), &quote!(gradient), &self.paths);
                 quote! {
                     let gradient = self.#name(#time &q #increment);
                     let p = #sum;

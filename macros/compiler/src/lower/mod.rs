@@ -10,6 +10,7 @@ mod names;
 mod print;
 mod scalar;
 mod stepping;
+mod variation;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
@@ -22,6 +23,7 @@ pub use grid::{Grid, Lowering};
 pub use kernel::{Code, Hoisted, Hoisting, Kernel};
 pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
 pub use stepping::{Solve, StepKernels};
+pub use variation::{EdgeKernels, VariationKernels};
 
 /// More operations than this in one expansion are refused: unrolled code of that size helps nobody.
 const LARGEST_PROGRAM: usize = 60_000;
@@ -65,6 +67,8 @@ pub struct Program<'g> {
     pub generator: Option<Kernel>,
     /// The kernels of each substep.
     pub steps: Vec<StepKernels>,
+    /// What variations need, where they are asked for.
+    pub variations: Option<VariationKernels>,
     /// (TΦ_F)^{-*} p, from the increment of F, q⁺ and p.
     pub cotangent_lift: Kernel,
     /// Computes the constants, one output each.
@@ -88,6 +92,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
+    let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let inverses = inverses(&formulas);
     let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
     let after = legendre_next(&formulas);
@@ -116,6 +121,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed)
             .then(|| generator(&formulas, &mut scalars)),
         cotangent_lift: lift,
+        variations,
         needs_inertia_inverse: hoisted.scalars.iter().any(|&scalar| uses_inertia_inverse(&scalars, scalar)),
         constants,
         constant_names: names,

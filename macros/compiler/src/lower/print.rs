@@ -6,7 +6,7 @@ use clebsch_symbolic::{Analytic, integer};
 
 use crate::derive::Solution;
 
-use super::{Callee, Code, Cost, Input, Kernel, Program};
+use super::{Callee, Code, Cost, Input, Kernel, Program, VariationKernels};
 
 impl Cost {
     /// The sum of two costs.
@@ -57,6 +57,7 @@ impl Program<'_> {
         kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
         kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
         kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
+        kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
         for (index, step) in self.steps.iter().enumerate() {
             let suffix = self.suffix(index);
             let named = |name: &str| format!("{name}{suffix}");
@@ -90,6 +91,21 @@ impl Program<'_> {
             if !step.end_is_start {
                 kernels.extend(step.end.iter().map(|kernel| (named("end_kick"), kernel)));
             }
+        }
+        kernels
+    }
+
+    fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {
+        let mut kernels = vec![
+            ("retraction".to_string(), &variations.retraction),
+            ("compose".to_string(), &variations.compose),
+            ("infinitesimal_motion".to_string(), &variations.generator),
+            ("orbit_metric".to_string(), &variations.orbit_metric),
+        ];
+        for (index, edge) in variations.edges.iter().enumerate() {
+            let suffix = self.suffix(index);
+            kernels.push((format!("edge{suffix}"), &edge.edge));
+            kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }
         kernels
     }

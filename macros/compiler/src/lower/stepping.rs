@@ -281,7 +281,7 @@ fn increment(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
 }
 
 /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
-fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let symbols = &formulas.symbols;
     let factors = formulas.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
     let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
@@ -303,7 +303,7 @@ pub(super) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) 
     vec![(symbol.inverse(), inverse), (symbol.transpose().inverse(), inverse.transpose())]
 }
 
-fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
+pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
     if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
 }
 

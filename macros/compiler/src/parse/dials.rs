@@ -57,4 +57,27 @@ pub enum Order {
 pub struct Emit {
     /// The constant `GENERATED`, the generated code as text.
     pub generated: bool,
+    /// The derivatives of a step with respect to state, parameters, step size and time.
+    pub tangent: bool,
+    /// What problems with fixed endpoints need: second derivatives of the discrete Lagrangian.
+    pub boundary: bool,
+}
+
+impl Emit {
+    /// Nothing beside the integrator.
+    pub(super) const NOTHING: Emit = Emit { generated: false, tangent: false, boundary: false };
+
+    /// What either of two asks for.
+    pub(super) fn and(self, other: Emit) -> Emit {
+        Emit {
+            generated: self.generated || other.generated,
+            tangent: self.tangent || other.tangent,
+            boundary: self.boundary || other.boundary,
+        }
+    }
+
+    /// Whether discrete Lagrangians are differentiated twice.
+    pub fn variations(self) -> bool {
+        self.tangent || self.boundary
+    }
 }

@@ -77,8 +77,12 @@ pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
     [("fixed", Some(Isotropy::Fixed)), ("free", Some(Isotropy::Free))];
 
 /// What may be emitted beside the integrator.
-pub(super) const EMITTED: [(&str, Option<Emit>); 2] =
-    [("generated", Some(Emit { generated: true })), ("connection", None)];
+pub(super) const EMITTED: [(&str, Option<Emit>); 4] = [
+    ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
+    ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
+    ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
+    ("connection", None),
+];
 
 /// Orders by number.
 pub(super) const ORDERS: [(i64, Option<Order>); 5] =

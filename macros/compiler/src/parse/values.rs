@@ -7,7 +7,7 @@ use syn::parse::{Parse, ParseBuffer, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Expr, ExprClosure, LitInt, Path, Token, bracketed, parenthesized};
 
-use super::dials::Order;
+use super::dials::{Emit, Order};
 use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS};
 use super::{Closure, Potential, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
@@ -70,7 +70,7 @@ pub(super) fn read(
                 return Err(expected("a list"));
             }
             let chosen = read_names(stream)?.into_iter().filter_map(|name| choose(key, &name, &EMITTED, diagnostics));
-            keys.dials.emit = chosen.last().unwrap_or_default();
+            keys.dials.emit = chosen.fold(Emit::default(), Emit::and);
         }
         Kind::Scalar => {
             keys.dials.scalar = Some(stream.call(Ident::parse_any).map_err(|_| expected("a type"))?);

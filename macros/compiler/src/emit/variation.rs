@@ -1,0 +1,310 @@
+//! The implementations of `Variational` and `Sensitive`: motions, edges, and their derivatives.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::code::Nesting;
+use super::{Emitter, Generics, code, docs};
+use crate::lower::{EdgeKernels, Kernel, VariationKernels};
+
+impl Emitter<'_, '_> {
+    /// The implementation of `Variational`, where it is asked for.
+    pub(super) fn variational(&self) -> TokenStream {
+        let Some(variations) = &self.program.variations else { return TokenStream::new() };
+        let krate = &self.paths.krate;
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let ident = &self.model.item.ident;
+        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let edges = Literal::usize_unsuffixed(variations.edges.len());
+        let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #krate::Variational<#dimension> for #ident<#arguments> #predicates {
+                const EDGES: ::core::primitive::usize = #edges;
+
+                #motions
+                #drift
+                #edge
+            }
+        }
+    }
+
+    /// Retraction, composition, advance, and the geometry of the orbit.
+    fn motions(&self, variations: &VariationKernels) -> TokenStream {
+        let method = |documentation: &str, signature: TokenStream, kernel: &Kernel, nesting, before: TokenStream| {
+            let documentation = docs::formulas(documentation, &[], Some(kernel));
+            let body = code::body(&self.scope_of_system(), kernel, nesting);
+            quote! {
+                #documentation
+                #[inline]
+                fn #signature {
+                    #before
+                    #body
+                }
+            }
+        };
+        let retraction = method(
+            "The increment τ(η) − I of a small motion.",
+            quote!(retraction(&self, eta: &Self::Momentum) -> Self::Element),
+            &variations.retraction,
+            Some(Nesting::Element),
+            self.chart_coordinates(&variations.slopes),
+        );
+        let compose = method(
+            "The increment of the motion by I + d and after it by I + second.",
+            quote!(compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element),
+            &variations.compose,
+            Some(Nesting::Element),
+            quote!(),
+        );
+        let advance = method(
+            "The configuration that F = I + D moves q to.",
+            quote!(advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration),
+            &self.program.steps[0].advance,
+            Some(Nesting::Configuration),
+            quote!(),
+        );
+        let motion = method(
+            "The infinitesimal motion ξ_Q(q).",
+            quote!(infinitesimal_motion(&self, q: &Self::Configuration, x: &Self::Momentum) -> Self::Configuration),
+            &variations.generator,
+            Some(Nesting::Configuration),
+            quote!(),
+        );
+        let (matrix, orbit_metric) = (self.block_type(), &variations.orbit_metric);
+        let metric = method(
+            "GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).",
+            quote!(orbit_metric(&self, q: &Self::Configuration) -> #matrix),
+            orbit_metric,
+            None,
+            quote!(),
+        );
+        let difference = code::combined(self.model, &quote!(target), quote!(-), &quote!(q), &self.paths);
+        let krate = &self.paths.krate;
+        quote! {
+            #retraction
+            #compose
+            #advance
+            #motion
+            #metric
+            /// J(q, target − q).
+            #[inline]
+            fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum {
+                #krate::Clebsch::momentum_map(self, q, &(#difference))
+            }
+        }
+    }
+
+    /// The coordinates of exp η in the chart of small motions, to first order.
+    fn chart_coordinates(&self, slopes: &[(i64, i64)]) -> TokenStream {
+        let private = &self.paths.private;
+        if slopes.iter().all(|slope| *slope == (1, 1)) {
+            return quote!(let x = eta;);
+        }
+        let scope = self.scope_of_system();
+        let entries = slopes.iter().enumerate().map(|(i, &(numerator, denominator))| {
+            let i = Literal::usize_unsuffixed(i);
+            let slope = scope.number(&clebsch_symbolic::rational(numerator, denominator));
+            if (numerator, denominator) == (1, 1) { quote!(eta[#i]) } else { quote!(#slope * eta[#i]) }
+        });
+        quote!(let x = #private::vector([#(#entries),*]);)
+    }
+
+    /// The implicit solve of an edge.
+    fn drift(&self) -> TokenStream {
+        let (krate, scalar, step, time) =
+            (&self.paths.krate, &self.paths.scalar, &self.names.step, self.time_argument());
+        let call = self.on_edge(&|suffix| {
+            let drift = format_ident!("drift{suffix}");
+            quote!(step.#drift(#time q, mu))
+        });
+        quote! {
+            /// The increment of the group element of an edge with the momentum μ.
+            #[inline]
+            fn drift(
+                &self,
+                constants: &Self::Constants,
+                edge: ::core::primitive::usize,
+                t: #scalar,
+                q: &Self::Configuration,
+                mu: &Self::Momentum,
+            ) -> ::core::result::Result<Self::Element, #krate::Error> {
+                let step = #step { system: self, constants };
+                #call
+            }
+        }
+    }
+
+    /// A call for the edge that is asked for.
+    fn on_edge(&self, call: &dyn Fn(&'static str) -> TokenStream) -> TokenStream {
+        let first = call(self.program.suffix(0));
+        if self.program.formulas.parts() == 1 {
+            return first;
+        }
+        let second = call(self.program.suffix(1));
+        quote!(if edge == 0 { #first } else { #second })
+    }
+
+    /// The edges, handed to the type `Step`.
+    fn edge(&self) -> TokenStream {
+        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        let (dimension, time) = (Literal::usize_unsuffixed(self.dimension()), self.time_argument());
+        let call = self.on_edge(&|suffix| {
+            let edge = format_ident!("edge{suffix}");
+            quote!(step.#edge(#time q, d, next))
+        });
+        quote! {
+            /// An edge with its second derivatives.
+            #[inline]
+            fn edge(
+                &self,
+                constants: &Self::Constants,
+                edge: ::core::primitive::usize,
+                t: #scalar,
+                q: &Self::Configuration,
+                d: &Self::Element,
+                next: &Self::Configuration,
+            ) -> #krate::Edge<#scalar, #dimension> {
+                let step = #step { system: self, constants };
+                #call
+            }
+        }
+    }
+
+    /// The implementation of `Sensitive`, where it is asked for.
+    pub(super) fn sensitive(&self) -> TokenStream {
+        let asked = self.program.variations.iter().flat_map(|variations| &variations.edges);
+        if !asked.into_iter().any(|edge| edge.slopes.is_some()) {
+            return TokenStream::new();
+        }
+        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let ident = &self.model.item.ident;
+        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let names = self.program.formulas.quantities.iter().map(|quantity| quantity.name.as_str());
+        let count = Literal::usize_unsuffixed(self.program.formulas.quantities.len());
+        let (slopes, time) = (self.slopes_type(), self.time_argument());
+        let call = self.on_edge(&|suffix| {
+            let edge = format_ident!("edge_slopes{suffix}");
+            quote!(step.#edge(#time q, d, next))
+        });
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #krate::Sensitive<#dimension, #count> for #ident<#arguments> #predicates {
+                const QUANTITIES: [&'static ::core::primitive::str; #count] = [#(#names),*];
+
+                /// How the momenta of an edge depend on parameters, step size and time.
+                #[inline]
+                fn edge_slopes(
+                    &self,
+                    constants: &Self::Constants,
+                    edge: ::core::primitive::usize,
+                    t: #scalar,
+                    q: &Self::Configuration,
+                    d: &Self::Element,
+                    next: &Self::Configuration,
+                ) -> (#slopes, #slopes) {
+                    let step = #step { system: self, constants };
+                    #call
+                }
+            }
+        }
+    }
+
+    fn block_type(&self) -> TokenStream {
+        self.matrix_type(self.dimension())
+    }
+
+    fn slopes_type(&self) -> TokenStream {
+        self.matrix_type(self.program.formulas.quantities.len())
+    }
+
+    /// A matrix with a row for each component of the momentum.
+    fn matrix_type(&self, columns: usize) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let (rows, columns) = (Literal::usize_unsuffixed(self.dimension()), Literal::usize_unsuffixed(columns));
+        quote!(#private::SMatrix<#scalar, #rows, #columns>)
+    }
+
+    /// The methods of `Step` that belong to edges.
+    pub(super) fn edges(&self) -> TokenStream {
+        let Some(variations) = &self.program.variations else { return TokenStream::new() };
+        let edges = variations.edges.iter().enumerate().map(|(index, edge)| {
+            let (drift, edge_with_slopes) = (self.drift_of(index), self.edge_of(index, edge));
+            quote!(#drift #edge_with_slopes)
+        });
+        quote!(#(#edges)*)
+    }
+
+    fn drift_of(&self, index: usize) -> TokenStream {
+        let (krate, suffix, step) = (&self.paths.krate, self.program.suffix(index), &self.program.steps[index]);
+        let (solve, drift) = (format_ident!("solve{suffix}"), format_ident!("drift{suffix}"));
+        let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
+        let (time, place, kicked) =
+            (self.time_parameter(), self.place_arguments(step), self.kicked(index, step, false));
+        quote! {
+            /// The increment of the group element whose momentum is μ at q.
+            #[inline]
+            fn #drift(&self, #time q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
+                let (q, mu) = (*q, *mu);
+                #kicked
+                let x = self.#solve(#place &mu)?;
+                ::core::result::Result::Ok(self.increment(&x))
+            }
+        }
+    }
+
+    fn edge_of(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
+        let (krate, scalar, suffix) = (&self.paths.krate, &self.paths.scalar, self.program.suffix(index));
+        let (configuration, element, time) = (self.configuration_type(), self.element_type(), self.time_parameter());
+        let place = quote!(#time q: &#configuration, d: &#element, next: &#configuration);
+        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let scope = self.scope_of_step();
+        let grid = |kernel: &Kernel, index: usize| {
+            let (shape, entries) = &kernel.outputs[index];
+            code::matrix(&scope, *shape, entries)
+        };
+        let kernel = &kernels.edge;
+        let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+        let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
+        let (before, after) = (vector(1), vector(2));
+        let (by_start, by_end, after_by_end) = (grid(kernel, 3), grid(kernel, 4), grid(kernel, 5));
+        let documentation = docs::formulas(
+            "ℓd with both Legendre transforms and their derivatives along the motions of both ends.",
+            &[],
+            Some(kernel),
+        );
+        let edge = format_ident!("edge{suffix}");
+        let slopes = kernels.slopes.as_ref().map(|kernel| {
+            let documentation =
+                docs::formulas("∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.", &[], Some(kernel));
+            let (name, slopes) = (format_ident!("edge_slopes{suffix}"), self.slopes_type());
+            let (locals, before, after) = (code::locals(&scope, kernel), grid(kernel, 0), grid(kernel, 1));
+            quote! {
+                #documentation
+                fn #name(&self, #place) -> (#slopes, #slopes) {
+                    #locals
+                    (#before, #after)
+                }
+            }
+        });
+        quote! {
+            #documentation
+            #[inline]
+            fn #edge(&self, #place) -> #krate::Edge<#scalar, #dimension> {
+                #locals
+                let before_by_end = #by_end;
+                #krate::Edge {
+                    lagrangian: #lagrangian,
+                    before: #before,
+                    after: #after,
+                    before_by_start: #by_start,
+                    before_by_end,
+                    after_by_start: -before_by_end.transpose(),
+                    after_by_end: #after_by_end,
+                }
+            }
+            #slopes
+        }
+    }
+}

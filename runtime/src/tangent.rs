@@ -1,0 +1,221 @@
+//! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
+
+use crate::linear::{eliminate, rows};
+use crate::{Clebsch, Edge, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
+
+/// A variation of a state: the motion η of q ↦ Φ_{exp η}(q), in the basis of 𝔤, and the change ν of the momentum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variation<T, const M: usize> {
+    /// η; the configuration moves by η_Q(q).
+    pub motion: SVector<T, M>,
+    /// ν = δN, in the same units as N.
+    pub momentum: SVector<T, M>,
+}
+
+/// The derivative of a map of states (q, N) ↦ (q⁺, N⁺), from variations (η, ν) at the one to variations (η′, ν′) at the other.
+///
+/// In these coordinates the canonical symplectic form is Ω_N((η₁, ν₁), (η₂, ν₂)) = ν₂·η₁ − ν₁·η₂ ± N·[η₁, η₂], + for the body
+/// momenta of a right action and − for the spatial ones of a left action; tangent maps of unforced steps preserve it. Where motions
+/// fix the configuration, the directions η of 𝔤_q do nothing to q and the map is that of the body that has them as motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent<T, const M: usize> {
+    /// ∂η′/∂η
+    pub motion_by_motion: SMatrix<T, M, M>,
+    /// ∂η′/∂ν
+    pub motion_by_momentum: SMatrix<T, M, M>,
+    /// ∂ν′/∂η
+    pub momentum_by_motion: SMatrix<T, M, M>,
+    /// ∂ν′/∂ν
+    pub momentum_by_momentum: SMatrix<T, M, M>,
+}
+
+/// The derivatives of a state with respect to P quantities that are fixed during a step; column k belongs to
+/// [`QUANTITIES`](Sensitive::QUANTITIES)`[k]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity<T, const M: usize, const P: usize> {
+    /// ∂η
+    pub motion: SMatrix<T, M, P>,
+    /// ∂N
+    pub momentum: SMatrix<T, M, P>,
+}
+
+impl<T: Scalar, const M: usize> Tangent<T, M> {
+    /// The identity, the derivative of no step at all.
+    pub fn identity() -> Self {
+        let (one, zero) = (unit(), SMatrix::from_element(T::zero()));
+        Self { motion_by_motion: one, motion_by_momentum: zero, momentum_by_motion: zero, momentum_by_momentum: one }
+    }
+
+    /// (η′, ν′) of (η, ν).
+    pub fn apply(&self, variation: &Variation<T, M>) -> Variation<T, M> {
+        let Variation { motion, momentum } = variation;
+        Variation {
+            motion: times(&self.motion_by_motion, motion) + times(&self.motion_by_momentum, momentum),
+            momentum: times(&self.momentum_by_motion, motion) + times(&self.momentum_by_momentum, momentum),
+        }
+    }
+
+    /// The transposed map, which pulls gradients back: the gradient of a function of the state after is turned into that of the
+    /// same function of the state before.
+    pub fn apply_transposed(&self, gradient: &Variation<T, M>) -> Variation<T, M> {
+        let Variation { motion, momentum } = gradient;
+        let back = |a: &SMatrix<T, M, M>, v| times(&a.transpose(), v);
+        Variation {
+            motion: back(&self.motion_by_motion, motion) + back(&self.momentum_by_motion, momentum),
+            momentum: back(&self.motion_by_momentum, motion) + back(&self.momentum_by_momentum, momentum),
+        }
+    }
+
+    /// The derivative of this map and after it `next`.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        let row = |a: &SMatrix<T, M, M>, b: &SMatrix<T, M, M>| {
+            (
+                times(a, &self.motion_by_motion) + times(b, &self.momentum_by_motion),
+                times(a, &self.motion_by_momentum) + times(b, &self.momentum_by_momentum),
+            )
+        };
+        let (motion_by_motion, motion_by_momentum) = row(&next.motion_by_motion, &next.motion_by_momentum);
+        let (momentum_by_motion, momentum_by_momentum) = row(&next.momentum_by_motion, &next.momentum_by_momentum);
+        Self { motion_by_motion, motion_by_momentum, momentum_by_motion, momentum_by_momentum }
+    }
+}
+
+impl<T: Scalar, const M: usize, const P: usize> Sensitivity<T, M, P> {
+    /// Nothing: the sensitivity of a state that depends on no quantity.
+    pub fn zero() -> Self {
+        Self { motion: SMatrix::from_element(T::zero()), momentum: SMatrix::from_element(T::zero()) }
+    }
+
+    /// The sensitivity after a step with the tangent map `tangent`, whose own sensitivity is `of_step`.
+    #[must_use]
+    pub fn after(&self, tangent: &Tangent<T, M>, of_step: &Self) -> Self {
+        let motion =
+            times(&tangent.motion_by_motion, &self.motion) + times(&tangent.motion_by_momentum, &self.momentum);
+        let momentum =
+            times(&tangent.momentum_by_motion, &self.motion) + times(&tangent.momentum_by_momentum, &self.momentum);
+        Self { motion: motion + of_step.motion, momentum: momentum + of_step.momentum }
+    }
+}
+
+/// A B
+#[inline]
+fn times<T: Scalar, const M: usize, const K: usize>(a: &SMatrix<T, M, M>, b: &SMatrix<T, M, K>) -> SMatrix<T, M, K> {
+    SMatrix::from_fn(|i, j| (0..M).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
+}
+
+fn unit<T: Scalar, const M: usize>() -> SMatrix<T, M, M> {
+    SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() })
+}
+
+/// The tangent map of an edge, by the implicit function theorem: F⁻ℓd = N gives η′, F⁺ℓd = N⁺ gives ν′. `None` where ∂F⁻ℓd/∂η′ is
+/// singular.
+#[inline]
+fn of_edge<T: Scalar, const M: usize>(edge: &Edge<T, M>) -> Option<Tangent<T, M>> {
+    let inverse = solve(&edge.before_by_end, &unit())?;
+    let motion_by_motion = -times(&inverse, &edge.before_by_start);
+    Some(Tangent {
+        motion_by_motion,
+        motion_by_momentum: inverse,
+        momentum_by_motion: edge.after_by_start + times(&edge.after_by_end, &motion_by_motion),
+        momentum_by_momentum: times(&edge.after_by_end, &inverse),
+    })
+}
+
+/// A⁻¹B
+fn solve<T: Scalar, const M: usize, const K: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SMatrix<T, M, K>,
+) -> Option<SMatrix<T, M, K>> {
+    let mut unknowns: [[T; K]; M] = from_fn(|i| from_fn(|j| b[(i, j)]));
+    eliminate(rows(a), &mut unknowns)?;
+    Some(SMatrix::from_fn(|i, j| unknowns[i][j]))
+}
+
+/// One edge of a step: where it leads, and what it is there.
+struct Passed<S: Clebsch, const M: usize> {
+    increment: S::Element,
+    next: S::Configuration,
+    edge: Edge<S::Scalar, M>,
+    tangent: Tangent<S::Scalar, M>,
+}
+
+impl<S, T: Scalar, const M: usize> Stepper<S>
+where
+    S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
+{
+    /// One step with its derivative with respect to the state: (q⁺, N⁺) and the tangent map there.
+    ///
+    /// The map is exact up to round-off, by the implicit function theorem on the solved step: one linear system of M unknowns and
+    /// no further iteration.
+    ///
+    /// # Errors
+    /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
+    pub fn step_tangent(&self, state: &State<S>) -> Result<(State<S>, Tangent<T, M>), Error> {
+        let (mut q, mut mu) = (*state.configuration(), *state.momentum());
+        let mut tangent = Tangent::identity();
+        for number in 0..S::EDGES {
+            let passed = self.pass(number, state.time.now(), &q, &mu)?;
+            tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
+            (q, mu) = (passed.next, passed.edge.after);
+        }
+        Ok((self.stepped(state, q, mu)?, tangent))
+    }
+
+    fn pass(&self, number: usize, t: T, q: &S::Configuration, mu: &SVector<T, M>) -> Result<Passed<S, M>, Error> {
+        let (system, constants) = (self.system(), self.constants());
+        let increment = match system.drift(constants, number, t, q, mu) {
+            Ok(increment) => increment,
+            Err(error) => return Err(error.with_step_size(self.step_size().to_f64())),
+        };
+        let next = system.advance(q, &increment);
+        let edge = system.edge(constants, number, t, q, &increment, &next);
+        let tangent = of_edge(&edge).ok_or(Error::SingularTangent { step_size: self.step_size().to_f64() })?;
+        Ok(Passed { increment, next, edge, tangent })
+    }
+
+    fn stepped(&self, state: &State<S>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S>, Error> {
+        if !(q.is_finite() & mu.is_finite()) {
+            return Err(Error::NotFinite { name: "the state after the step" });
+        }
+        let time = state.time.after_step(self.step_size());
+        let impulse = self.system().impulse(self.constants(), time.now(), &q);
+        Ok(State { time, configuration: q, momentum: mu, impulse, h: self.step_size() })
+    }
+
+    /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time.
+    ///
+    /// # Errors
+    /// As [`step_tangent`](Self::step_tangent).
+    #[allow(clippy::type_complexity)]
+    pub fn step_sensitivity<const P: usize>(
+        &self,
+        state: &State<S>,
+    ) -> Result<(State<S>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+    where
+        S: Sensitive<M, P>,
+    {
+        let (mut q, mut mu) = (*state.configuration(), *state.momentum());
+        let (mut tangent, mut sensitivity) = (Tangent::identity(), Sensitivity::zero());
+        for number in 0..S::EDGES {
+            let t = state.time.now();
+            let passed = self.pass(number, t, &q, &mu)?;
+            let (before, after) =
+                self.system().edge_slopes(self.constants(), number, t, &q, &passed.increment, &passed.next);
+            let motion = -times(&passed.tangent.motion_by_momentum, &before);
+            let of_edge = Sensitivity { motion, momentum: after + times(&passed.edge.after_by_end, &motion) };
+            sensitivity = sensitivity.after(&passed.tangent, &of_edge);
+            tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
+            (q, mu) = (passed.next, passed.edge.after);
+        }
+        Ok((self.stepped(state, q, mu)?, tangent, sensitivity))
+    }
+
+    /// ξ_Q(q): how the configuration moves under the motion η of a [`Variation`].
+    #[inline]
+    pub fn infinitesimal_motion(&self, q: &S::Configuration, eta: &SVector<T, M>) -> S::Configuration {
+        self.system().infinitesimal_motion(q, eta)
+    }
+}

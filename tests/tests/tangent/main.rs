@@ -1,0 +1,351 @@
+//! Tangent maps of steps: equal to dual numbers put through the generated code, equal to differences of the step, symplectic.
+//!
+//! Derivatives are exact up to round-off, of numbers of order one: 1e-12 allowed.
+
+mod systems;
+
+use clebsch::{Clebsch, Scalar, Sensitive, Sensitivity, Space, Tangent, Variation, Variational};
+use clebsch_tests::oracle::dual::Dual;
+use clebsch_tests::oracle::near::{assert_near, distance};
+use clebsch_tests::oracle::random::Random;
+use clebsch_tests::oracle::rotation::hat;
+use nalgebra::{Matrix3, Matrix6, Quaternion, SMatrix, SVector, Vector3};
+use std::cell::RefCell;
+
+const H: f64 = 0.1;
+const NEAR: f64 = 1e-12;
+/// The directions of a dual number: few, as each is a copy of all operations, and all directions are gone through in turns.
+const K: usize = 3;
+
+/// All scalars of a space, in one order.
+fn entries<T: Scalar>(space: &impl Space<T>) -> Vec<T> {
+    let found = RefCell::new(Vec::new());
+    space.all(|entry| {
+        found.borrow_mut().push(entry);
+        true
+    });
+    found.into_inner()
+}
+
+/// A system as numbers and as dual numbers, at a state.
+struct Case<S: Clebsch, D: Clebsch, const M: usize> {
+    plain: fn(&[f64]) -> S,
+    dual: fn(&[D::Scalar]) -> D,
+    /// The quantities, but for step size and time.
+    numbers: Vec<f64>,
+    q: S::Configuration,
+    lift: fn(&S::Configuration) -> D::Configuration,
+    mu: SVector<f64, M>,
+    /// N·[E_i, E_j] in the symplectic form, with its sign.
+    bracket: fn(&SVector<f64, M>) -> SMatrix<f64, M, M>,
+}
+
+/// Columns of motions and of momenta, for all variations and quantities.
+fn columns<const M: usize, const P: usize>(
+    tangent: &Tangent<f64, M>,
+    sensitivity: &Sensitivity<f64, M, P>,
+) -> Vec<(SVector<f64, M>, SVector<f64, M>)> {
+    let pairs = |a: Vec<SVector<f64, M>>, b: Vec<SVector<f64, M>>| a.into_iter().zip(b);
+    let square = |a: &SMatrix<f64, M, M>| a.column_iter().map(Into::into).collect::<Vec<_>>();
+    let wide = |a: &SMatrix<f64, M, P>| a.column_iter().map(Into::into).collect::<Vec<_>>();
+    pairs(square(&tangent.motion_by_motion), square(&tangent.momentum_by_motion))
+        .chain(pairs(square(&tangent.motion_by_momentum), square(&tangent.momentum_by_momentum)))
+        .chain(pairs(wide(&sensitivity.motion), wide(&sensitivity.momentum)))
+        .collect()
+}
+
+/// Against dual numbers, and DᵀΩD = Ω.
+fn check<S, D, const M: usize, const P: usize>(case: &Case<S, D, M>)
+where
+    S: Sensitive<M, P> + Clebsch<Scalar = f64, Momentum = SVector<f64, M>> + Clone,
+    D: Variational<M> + Clebsch<Scalar = Dual<K>, Momentum = SVector<Dual<K>, M>>,
+{
+    let place = |name: &str| S::QUANTITIES.iter().position(|quantity| *quantity == name);
+    assert_eq!(place("h"), Some(case.numbers.len()), "{:?}", S::QUANTITIES);
+    let stepper = (case.plain)(&case.numbers).into_stepper(H).expect("a regular system");
+    let state = stepper.state(case.q, case.mu).expect("a state");
+    let (next, tangent, sensitivity) = stepper.step_sensitivity::<P>(&state).expect("a solvable step");
+    assert_eq!(stepper.step_tangent(&state).expect("a solvable step"), (next, tangent));
+    let stepped = stepper.step(&state).expect("a solvable step");
+    assert_near(stepped.momentum(), next.momentum(), NEAR, S::NAME);
+
+    let mut worst = 0.0_f64;
+    for (turn, columns) in columns(&tangent, &sensitivity).chunks(K).enumerate() {
+        let (q, mu) = dual_step(case, place("t").is_some(), turn * K);
+        for (k, (motion, momentum)) in columns.iter().enumerate() {
+            let moved = entries::<f64>(&stepper.infinitesimal_motion(next.configuration(), motion));
+            let expected = entries::<Dual<K>>(&q);
+            assert_eq!(moved.len(), expected.len());
+            let of_q = moved.iter().zip(&expected).map(|(moved, dual)| (moved - dual.derivatives[k]).abs());
+            let of_mu = momentum.iter().zip(mu.iter()).map(|(slope, dual)| (slope - dual.derivatives[k]).abs());
+            let error = of_q.chain(of_mu).fold(0.0, |max: f64, e| if e.is_nan() { f64::INFINITY } else { max.max(e) });
+            assert!(error < NEAR, "{}: column {} is {error:.1e} off", S::NAME, turn * K + k);
+            worst = worst.max(error);
+        }
+    }
+    let kept = keeps_the_form(case.bracket, &tangent, &case.mu, next.momentum());
+    println!("{}: {worst:.1e} from dual numbers, DᵀΩD − Ω {kept:.1e}", S::NAME);
+    assert!(kept < NEAR, "{}: DᵀΩD − Ω {kept:.1e}", S::NAME);
+    transposes(&tangent);
+}
+
+/// The step with dual numbers in the directions `first`, … of η, ν, the quantities of the fields, step size and time.
+fn dual_step<S, D, const M: usize>(
+    case: &Case<S, D, M>,
+    is_timed: bool,
+    first: usize,
+) -> (D::Configuration, SVector<Dual<K>, M>)
+where
+    S: Clebsch<Scalar = f64>,
+    D: Variational<M> + Clebsch<Scalar = Dual<K>, Momentum = SVector<Dual<K>, M>>,
+{
+    let variable = |k: usize, value: f64| match k.checked_sub(first) {
+        Some(k) if k < K => Dual::<K>::variable(value, k),
+        _ => Dual::constant(value),
+    };
+    let fields = case.numbers.len();
+    let numbers: Vec<Dual<K>> = (0..fields).map(|k| variable(2 * M + k, case.numbers[k])).collect();
+    let h = variable(2 * M + fields, H);
+    let t = if is_timed { variable(2 * M + fields + 1, 0.0) } else { Dual::constant(0.0) };
+    let system = (case.dual)(&numbers);
+    let eta = SVector::from_fn(|i, _| variable(i, 0.0));
+    let q = system.advance(&(case.lift)(&case.q), &system.retraction(&eta));
+    let mu = SVector::from_fn(|i, _| variable(M + i, case.mu[i]));
+    let constants = system.constants(h).expect("a regular system");
+    let impulse = system.impulse(&constants, t, &q);
+    let (q, mu, _) = system.step(&constants, t, &q, &mu, &impulse).expect("a solvable step");
+    (q, mu)
+}
+
+/// By how much DᵀΩ⁺D differs from Ω, block by block: Ω = (B(N), I; −I, 0) on (η, ν).
+fn keeps_the_form<const M: usize>(
+    bracket: fn(&SVector<f64, M>) -> SMatrix<f64, M, M>,
+    tangent: &Tangent<f64, M>,
+    mu: &SVector<f64, M>,
+    next: &SVector<f64, M>,
+) -> f64 {
+    let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
+        tangent;
+    let form = |a: &SMatrix<f64, M, M>, c: &SMatrix<f64, M, M>, b: &SMatrix<f64, M, M>, d: &SMatrix<f64, M, M>| {
+        a.transpose() * bracket(next) * b + a.transpose() * d - c.transpose() * b
+    };
+    let one = SMatrix::identity();
+    distance(&form(a, c, a, c), &bracket(mu))
+        .max(distance(&form(a, c, b, d), &one))
+        .max(distance(&form(b, d, b, d), &SMatrix::zeros()))
+}
+
+/// ⟨D v, w⟩ = ⟨v, Dᵀw⟩.
+fn transposes<const M: usize>(tangent: &Tangent<f64, M>) {
+    let random = &mut Random::new(7);
+    let mut variation = || Variation { motion: random.vector::<M>(), momentum: random.vector::<M>() };
+    let (v, w) = (variation(), variation());
+    let pairing = |a: &Variation<f64, M>, b: &Variation<f64, M>| a.motion.dot(&b.motion) + a.momentum.dot(&b.momentum);
+    let (forward, back) = (pairing(&tangent.apply(&v), &w), pairing(&v, &tangent.apply_transposed(&w)));
+    assert!((forward - back).abs() < 1e-13 * (1.0 + forward.abs()), "{forward} is not {back}");
+}
+
+fn constant<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> SMatrix<Dual<K>, R, C> {
+    a.map(Dual::constant)
+}
+
+/// N·(x × y), of body momenta.
+fn of_body(n: &Vector3<f64>) -> Matrix3<f64> {
+    -hat(n)
+}
+
+/// The same of spatial momenta.
+fn of_space(n: &Vector3<f64>) -> Matrix3<f64> {
+    hat(n)
+}
+
+/// The upper triangle of a random inertia, and further numbers.
+fn numbers<const N: usize>(random: &mut Random, further: &[f64]) -> Vec<f64> {
+    let inertia = random.inertia::<N>();
+    let upper = (0..N).flat_map(|i| (i..N).map(move |j| (i, j))).map(|place| inertia[place]);
+    upper.chain(further.iter().copied()).collect()
+}
+
+#[test]
+fn an_implicit_step_from_the_right() {
+    let random = &mut Random::new(81);
+    for _ in 0..5 {
+        check::<systems::Top<f64>, systems::Top<Dual<K>>, 3, 11>(&Case {
+            plain: systems::top,
+            dual: systems::top,
+            numbers: numbers::<3>(random, &[1.3, 0.4, -0.2, 0.7]),
+            q: random.attitude(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_body,
+        });
+    }
+}
+
+#[test]
+fn a_closed_form_from_the_left_with_isotropy() {
+    let random = &mut Random::new(82);
+    for _ in 0..5 {
+        check::<systems::Pendulum<f64>, systems::Pendulum<Dual<K>>, 3, 3>(&Case {
+            plain: systems::pendulum,
+            dual: systems::pendulum,
+            numbers: vec![0.8, 3.0],
+            q: random.unit(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_space,
+        });
+    }
+}
+
+#[test]
+fn a_step_of_two_edges() {
+    let random = &mut Random::new(83);
+    for _ in 0..5 {
+        check::<systems::Composed<f64>, systems::Composed<Dual<K>>, 3, 12>(&Case {
+            plain: systems::composed,
+            dual: systems::composed,
+            numbers: numbers::<3>(random, &[1.3, 0.4, -0.2, 0.7, 0.1]),
+            q: random.attitude(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_body,
+        });
+    }
+}
+
+/// Body momenta of SE(3): (l, p)·[(ω, v), (ω′, v′)] = l·(ω × ω′) + p·(ω × v′ − ω′ × v).
+fn of_motions(n: &SVector<f64, 6>) -> Matrix6<f64> {
+    let (l, p) = (n.fixed_rows::<3>(0).into_owned(), n.fixed_rows::<3>(3).into_owned());
+    let mut form = Matrix6::zeros();
+    form.fixed_view_mut::<3, 3>(0, 0).copy_from(&of_body(&l));
+    form.fixed_view_mut::<3, 3>(0, 3).copy_from(&of_body(&p));
+    form.fixed_view_mut::<3, 3>(3, 0).copy_from(&of_body(&p));
+    form
+}
+
+#[test]
+fn six_coupled_unknowns() {
+    let random = &mut Random::new(84);
+    for _ in 0..2 {
+        let mut q = random.rotation::<3>(1.0).to_homogeneous();
+        q.fixed_view_mut::<3, 1>(0, 3).copy_from(&random.vector::<3>());
+        check::<systems::Vehicle<f64>, systems::Vehicle<Dual<K>>, 6, 26>(&Case {
+            plain: systems::vehicle,
+            dual: systems::vehicle,
+            numbers: numbers::<6>(random, &[1.3, 0.4, -0.2, 0.7]),
+            q,
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_motions,
+        });
+    }
+}
+
+#[test]
+fn the_logarithm_and_the_time() {
+    let random = &mut Random::new(85);
+    for _ in 0..5 {
+        check::<systems::Satellite<f64>, systems::Satellite<Dual<K>>, 3, 9>(&Case {
+            plain: systems::satellite,
+            dual: systems::satellite,
+            numbers: numbers::<3>(random, &[1.1]),
+            q: random.attitude(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_body,
+        });
+    }
+}
+
+#[test]
+fn a_coupled_cost_that_changes_with_the_time() {
+    let random = &mut Random::new(86);
+    for _ in 0..5 {
+        check::<systems::Growing<f64>, systems::Growing<Dual<K>>, 3, 5>(&Case {
+            plain: systems::growing,
+            dual: systems::growing,
+            numbers: vec![0.3, 1.4, 0.8],
+            q: random.attitude(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_space,
+        });
+    }
+}
+
+/// Translations commute; quaternions have the bracket of rotations.
+fn of_flyer(n: &SVector<f64, 6>) -> Matrix6<f64> {
+    let mut form = Matrix6::zeros();
+    form.fixed_view_mut::<3, 3>(3, 3).copy_from(&of_body(&n.fixed_rows::<3>(3).into_owned()));
+    form
+}
+
+type Place<T> = (Vector3<T>, Quaternion<T>);
+
+#[test]
+fn a_product_with_quaternions() {
+    let random = &mut Random::new(87);
+    let lift = |(x, q): &Place<f64>| (constant(x), Quaternion::from_vector(constant(&q.coords)));
+    for _ in 0..5 {
+        check::<systems::Flyer<f64>, systems::Flyer<Dual<K>>, 6, 5>(&Case {
+            plain: systems::flyer,
+            dual: systems::flyer,
+            numbers: vec![1.7, 1.0, 1.4, 1.9],
+            q: (random.vector(), Quaternion::from_vector(random.unit())),
+            lift,
+            mu: random.vector(),
+            bracket: of_flyer,
+        });
+    }
+}
+
+/// [X, Y] = Z: body momenta, p_z (x y′ − y x′).
+fn of_heisenberg(n: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, n.z, 0.0, -n.z, 0.0, 0.0, 0.0, 0.0, 0.0)
+}
+
+#[test]
+fn a_unipotent_group() {
+    let random = &mut Random::new(88);
+    for _ in 0..5 {
+        let (x, y, z) = (random.number(), random.number(), random.number());
+        check::<systems::Nil<f64>, systems::Nil<Dual<K>>, 3, 7>(&Case {
+            plain: systems::nil,
+            dual: systems::nil,
+            numbers: numbers::<3>(random, &[]),
+            q: Matrix3::new(1.0, x, z, 0.0, 1.0, y, 0.0, 0.0, 1.0),
+            lift: constant,
+            mu: random.vector(),
+            bracket: of_heisenberg,
+        });
+    }
+}
+
+/// The tangent map of many steps is the product of theirs, and its columns are central differences of the last momentum.
+#[test]
+fn long_runs_against_differences() {
+    let random = &mut Random::new(89);
+    let system = systems::top::<f64>(&numbers::<3>(random, &[1.3, 0.4, -0.2, 0.7]));
+    let stepper = system.clone().into_stepper(H).expect("a regular top");
+    let (q, mu) = (random.attitude::<3>(), random.vector::<3>());
+    let mut state = stepper.state(q, mu).expect("a state");
+    let mut whole = Tangent::identity();
+    for _ in 0..50 {
+        let (next, tangent) = stepper.step_tangent(&state).expect("a solvable step");
+        (state, whole) = (next, whole.then(&tangent));
+    }
+    let end = |eta: Vector3<f64>, nu: Vector3<f64>| {
+        let q = system.advance(&q, &system.retraction(&eta));
+        let start = stepper.state(q, mu + nu).expect("a state");
+        *stepper.trajectory(start).nth(50).expect("endless").expect("solvable").momentum()
+    };
+    let (epsilon, zero) = (1e-5, Vector3::zeros());
+    for k in 0..3 {
+        let step = Vector3::ith(k, epsilon);
+        let by_motion = (end(step, zero) - end(-step, zero)) / (2.0 * epsilon);
+        let by_momentum = (end(zero, step) - end(zero, -step)) / (2.0 * epsilon);
+        assert_near(&by_motion, &whole.momentum_by_motion.column(k).into_owned(), 1e-7, "∂π/∂η after 50 steps");
+        assert_near(&by_momentum, &whole.momentum_by_momentum.column(k).into_owned(), 1e-7, "∂π/∂π after 50 steps");
+    }
+}

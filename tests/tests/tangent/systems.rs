@@ -1,0 +1,181 @@
+//! The systems whose tangent maps are tested, generic so that dual numbers can be put through their steps.
+
+use clebsch::{Clebsch, Scalar};
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+
+/// An implicit step on a group that acts from the right.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| self.weight * (R * self.center).z,
+    emit      = [tangent],
+)]
+pub struct Top<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub mass_matrix: Matrix3<T>,
+    pub weight: T,
+    pub center: Vector3<T>,
+}
+
+/// A closed form on a sphere, whose points motions fix, with an action from the left.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| self.inertia * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.gravity * q.z + q.x.powi(3) / 3,
+    isotropy  = free,
+    emit      = [tangent],
+)]
+pub struct Pendulum<T: Scalar> {
+    pub inertia: T,
+    pub gravity: T,
+}
+
+/// Two edges a step: a discrete Lagrangian that is not time-symmetric.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| {
+        let kinetic = (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h);
+        kinetic + self.skew * (F[(1, 0)] - F[(0, 1)]).powi(3) / h
+    },
+    potential = |R| self.weight * (R * self.center).z,
+    emit      = [tangent],
+)]
+pub struct Composed<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub mass_matrix: Matrix3<T>,
+    pub weight: T,
+    pub center: Vector3<T>,
+    pub skew: T,
+}
+
+/// Six coupled unknowns on SE(3).
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SE<3>, q: SE<3>| q * F,
+    lagrangian = |xi| xi.dot(&(self.inertia * xi)) / 2,
+    potential  = |q| self.weight * (q.rotation() * self.center).z + q.translation().norm_squared() / 2,
+    emit       = [tangent],
+)]
+pub struct Vehicle<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix6<T>,
+    pub weight: T,
+    pub center: Vector3<T>,
+}
+
+/// The logarithm in the Lagrangian, and a potential that knows the time.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    discretization = exponential,
+    potential      = |t, R| {
+        let phase = self.orbital_rate * t;
+        let zenith = R.transpose() * Vector3::new(phase.cos(), phase.sin(), 0);
+        3 * self.orbital_rate.powi(2) / 2 * zenith.dot(&(self.inertia * zenith))
+    },
+    emit           = [tangent],
+)]
+pub struct Satellite<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<T>,
+    pub orbital_rate: T,
+}
+
+/// An inertia that depends on the attitude and on the time: a coupled cost.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| F * R,
+    cost      = |t, h, R, F| {
+        let size = (1 + self.growth * (t + h / 2)) * (3 + R[(2, 2)] + (F * R)[(2, 2)]) / 3;
+        self.inertia * size * (F - I).norm_squared() / (4 * h)
+    },
+    potential = |R| self.weight * R[(0, 1)],
+    emit      = [tangent],
+)]
+pub struct Growing<T: Scalar> {
+    pub growth: T,
+    pub inertia: T,
+    pub weight: T,
+}
+
+/// Explicit steps of a product, one of whose factors is a group of unit quaternions.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |(a, F): (Translation<3>, SU<2>), (x, q): (Vector3, SU<2>)| (x + a, q * F),
+    lagrangian = |(v, omega)| (self.mass * v.norm_squared() + omega.dot(&self.moments.component_mul(&omega))) / 2,
+    potential = |(x, q)| (x + q * Vector3::z()).norm_squared() / 2 + x.z,
+    emit      = [tangent],
+)]
+pub struct Flyer<T: Scalar> {
+    pub mass: T,
+    pub moments: Vector3<T>,
+}
+
+/// A unipotent group.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: Heisenberg<1>, q: Heisenberg<1>| q * F,
+    lagrangian = |v| v.dot(&(self.mass * v)) / 2,
+    potential  = |q| q[(0, 1)].powi(2) / 2 + q[(0, 2)] * q[(1, 2)],
+    emit       = [tangent],
+)]
+pub struct Nil<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub mass: SMatrix<T, 3, 3>,
+}
+
+/// The symmetric matrix with this upper triangle, row by row.
+fn symmetric<T: Scalar, const N: usize>(upper: &[T]) -> SMatrix<T, N, N> {
+    // rows before row i hold N, N − 1, …, N − i + 1 numbers
+    let place = |i: usize, j: usize| i * N - i * (i + 1) / 2 + j;
+    SMatrix::from_fn(|i, j| upper[place(i.min(j), i.max(j))])
+}
+
+fn vector<T: Scalar>(entries: &[T]) -> Vector3<T> {
+    Vector3::from_column_slice(entries)
+}
+
+/// From the numbers in the order of its quantities; what is behind them is not read.
+pub fn top<T: Scalar>(numbers: &[T]) -> Top<T> {
+    Top { mass_matrix: symmetric(numbers), weight: numbers[6], center: vector(&numbers[7..10]) }
+}
+
+/// As [`top`].
+pub fn pendulum<T: Scalar>(numbers: &[T]) -> Pendulum<T> {
+    Pendulum { inertia: numbers[0], gravity: numbers[1] }
+}
+
+/// As [`top`].
+pub fn composed<T: Scalar>(numbers: &[T]) -> Composed<T> {
+    let Top { mass_matrix, weight, center } = top(numbers);
+    Composed { mass_matrix, weight, center, skew: numbers[10] }
+}
+
+/// As [`top`].
+pub fn vehicle<T: Scalar>(numbers: &[T]) -> Vehicle<T> {
+    Vehicle { inertia: symmetric(numbers), weight: numbers[21], center: vector(&numbers[22..25]) }
+}
+
+/// As [`top`].
+pub fn satellite<T: Scalar>(numbers: &[T]) -> Satellite<T> {
+    Satellite { inertia: symmetric(numbers), orbital_rate: numbers[6] }
+}
+
+/// As [`top`].
+pub fn growing<T: Scalar>(numbers: &[T]) -> Growing<T> {
+    Growing { growth: numbers[0], inertia: numbers[1], weight: numbers[2] }
+}
+
+/// As [`top`].
+pub fn flyer<T: Scalar>(numbers: &[T]) -> Flyer<T> {
+    Flyer { mass: numbers[0], moments: vector(&numbers[1..4]) }
+}
+
+/// As [`top`].
+pub fn nil<T: Scalar>(numbers: &[T]) -> Nil<T> {
+    Nil { mass: symmetric(numbers) }
+}
