@@ -83,6 +83,8 @@ pub enum Error {
         /// Number of linearisations that were made.
         iterations: u32,
     },
+    /// A step on T*Q was asked of a system with forces: they act on momenta in 𝔤*, which determine no covector.
+    NoCovector,
     /// The step has no derivative: it is at the very edge of what is solvable.
     SingularTangent {
         /// The step size.
@@ -171,6 +173,9 @@ impl Display for Error {
                 f,
                 "the implicit equation was not solved in {iterations} linearisations (relative residual {residual:.1e}): \
                  reduce the step size"
+            ),
+            Self::NoCovector => f.write_str(
+                "a system with forces has no step in (q, p), as forces in 𝔤* are no covectors of the configuration: step in (q, N), by `Stepper::step`",
             ),
             Self::SingularTangent { step_size } => write!(
                 f,

@@ -15,6 +15,9 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// The largest |x| of all scalars x, 0 for `()`. NaN are passed over.
     fn max_abs(&self) -> T;
 
+    /// Where all scalars are 0.
+    fn origin() -> Self;
+
     /// Whether no scalar is NaN or infinite.
     #[inline]
     fn is_finite(&self) -> bool {
@@ -37,6 +40,10 @@ impl<T: Scalar> Space<T> for T {
     fn max_abs(&self) -> T {
         larger(T::zero(), self.abs())
     }
+    #[inline]
+    fn origin() -> Self {
+        T::zero()
+    }
 }
 
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
@@ -47,6 +54,10 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn max_abs(&self) -> T {
         self.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
+    }
+    #[inline]
+    fn origin() -> Self {
+        SMatrix::from_element(T::zero())
     }
 }
 
@@ -59,6 +70,10 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     fn max_abs(&self) -> T {
         self.coords.max_abs()
     }
+    #[inline]
+    fn origin() -> Self {
+        Quaternion { coords: SMatrix::origin() }
+    }
 }
 
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
@@ -69,6 +84,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     #[inline]
     fn max_abs(&self) -> T {
         self.iter().fold(T::zero(), |max, part| larger(max, part.max_abs()))
+    }
+    #[inline]
+    fn origin() -> Self {
+        [S::origin(); N]
     }
 }
 
@@ -85,6 +104,10 @@ macro_rules! tuple {
                 let max = T::zero();
                 $(let max = larger(max, self.$index.max_abs());)*
                 max
+            }
+            #[inline]
+            fn origin() -> Self {
+                ($($name::origin(),)*)
             }
         }
     };

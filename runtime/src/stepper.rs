@@ -66,10 +66,25 @@ impl<S: Clebsch> Stepper<S> {
     /// NaN or numbers overflowed, [`Error::NotConverged`].
     #[inline]
     pub fn step(&self, state: &State<S>) -> Result<State<S>, Error> {
+        self.step_with(state, &S::Input::origin())
+    }
+
+    /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.
+    ///
+    /// By the discrete Lagrange–d'Alembert principle the force acts at both ends, of second order in h. A forced step is not symplectic,
+    /// and conserves those momenta alone on which the force does not act.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
+    #[inline]
+    pub fn step_with(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+        if size_of::<S::Input>() > 0 && !u.is_finite() {
+            return Err(Error::NotFinite { name: "the input" });
+        }
         let State { time, configuration, momentum, .. } = state;
         let impulse = self.impulse_of(state);
         let (configuration, momentum, impulse) =
-            match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse) {
+            match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse, u) {
                 Ok(next) => next,
                 Err(error) => return Err(error.with_step_size(self.h.to_f64())),
             };
@@ -91,7 +106,7 @@ impl<S: Clebsch> Stepper<S> {
     /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`step`](Self::step), and [`Error::NoCovector`] where forces act.
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let CotangentState { time, configuration, covector } = state;

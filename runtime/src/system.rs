@@ -29,6 +29,8 @@ pub trait Clebsch {
     type MomentumMatrix: Space<Self::Scalar>;
     /// The kick that the end of one step and the start of the next share; `()` where there is none.
     type Impulse: Space<Self::Scalar>;
+    /// What forces take from outside during a step, `()` where they take nothing; the `u` of `force`.
+    type Input: Space<Self::Scalar>;
     /// What is computed once per stepper.
     type Constants: Clone + Debug;
     /// What a state knows of the time: `()` for an autonomous system, [`Clock`](crate::Clock) where the cost or the potential
@@ -85,7 +87,7 @@ pub trait Clebsch {
     fn impulse(&self, constants: &Self::Constants, t: Self::Scalar, q: &Self::Configuration) -> Self::Impulse;
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, given the impulse
-    /// at q; returns that at q⁺ too.
+    /// at q and the input of its forces; returns the impulse at q⁺ too.
     ///
     /// # Errors
     /// As [`inverse_legendre`](Self::inverse_legendre).
@@ -97,12 +99,13 @@ pub trait Clebsch {
         q: &Self::Configuration,
         mu: &Self::Momentum,
         impulse: &Self::Impulse,
+        u: &Self::Input,
     ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error>;
 
     /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
     ///
     /// # Errors
-    /// As [`inverse_legendre`](Self::inverse_legendre).
+    /// As [`inverse_legendre`](Self::inverse_legendre), and [`Error::NoCovector`] where forces act.
     fn step_symmetric(
         &self,
         constants: &Self::Constants,

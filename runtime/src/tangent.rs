@@ -154,24 +154,42 @@ where
     /// # Errors
     /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
     pub fn step_tangent(&self, state: &State<S>) -> Result<(State<S>, Tangent<T, M>), Error> {
+        self.step_tangent_with(state, &S::Input::origin())
+    }
+
+    /// The same while the input of the forces is `u`.
+    ///
+    /// # Errors
+    /// As [`step_tangent`](Self::step_tangent), and [`Error::NotFinite`] where the input is not.
+    pub fn step_tangent_with(&self, state: &State<S>, u: &S::Input) -> Result<(State<S>, Tangent<T, M>), Error> {
         let (mut q, mut mu) = (*state.configuration(), *state.momentum());
         let mut tangent = Tangent::identity();
         for number in 0..S::EDGES {
-            let passed = self.pass(number, state.time.now(), &q, &mu)?;
+            let passed = self.pass(number, state.time.now(), &q, &mu, u)?;
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.after);
         }
         Ok((self.stepped(state, q, mu)?, tangent))
     }
 
-    fn pass(&self, number: usize, t: T, q: &S::Configuration, mu: &SVector<T, M>) -> Result<Passed<S, M>, Error> {
+    fn pass(
+        &self,
+        number: usize,
+        t: T,
+        q: &S::Configuration,
+        mu: &SVector<T, M>,
+        u: &S::Input,
+    ) -> Result<Passed<S, M>, Error> {
+        if !u.is_finite() {
+            return Err(Error::NotFinite { name: "the input" });
+        }
         let (system, constants) = (self.system(), self.constants());
-        let increment = match system.drift(constants, number, t, q, mu) {
+        let increment = match system.drift(constants, number, t, q, mu, u) {
             Ok(increment) => increment,
             Err(error) => return Err(error.with_step_size(self.step_size().to_f64())),
         };
         let next = system.advance(q, &increment);
-        let edge = system.edge(constants, number, t, q, &increment, &next);
+        let edge = system.edge(constants, number, t, q, &increment, &next, u);
         let tangent = of_edge(&edge).ok_or(Error::SingularTangent { step_size: self.step_size().to_f64() })?;
         Ok(Passed { increment, next, edge, tangent })
     }
@@ -185,7 +203,8 @@ where
         Ok(State { time, configuration: q, momentum: mu, impulse, h: self.step_size() })
     }
 
-    /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time.
+    /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time,
+    /// input.
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent).
@@ -197,13 +216,29 @@ where
     where
         S: Sensitive<M, P>,
     {
+        self.step_sensitivity_with(state, &S::Input::origin())
+    }
+
+    /// The same while the input of the forces is `u`.
+    ///
+    /// # Errors
+    /// As [`step_tangent_with`](Self::step_tangent_with).
+    #[allow(clippy::type_complexity)]
+    pub fn step_sensitivity_with<const P: usize>(
+        &self,
+        state: &State<S>,
+        u: &S::Input,
+    ) -> Result<(State<S>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+    where
+        S: Sensitive<M, P>,
+    {
         let (mut q, mut mu) = (*state.configuration(), *state.momentum());
         let (mut tangent, mut sensitivity) = (Tangent::identity(), Sensitivity::zero());
         for number in 0..S::EDGES {
             let t = state.time.now();
-            let passed = self.pass(number, t, &q, &mu)?;
+            let passed = self.pass(number, t, &q, &mu, u)?;
             let (before, after) =
-                self.system().edge_slopes(self.constants(), number, t, &q, &passed.increment, &passed.next);
+                self.system().edge_slopes(self.constants(), number, t, &q, &passed.increment, &passed.next, u);
             let motion = -times(&passed.tangent.motion_by_momentum, &before);
             let of_edge = Sensitivity { motion, momentum: after + times(&passed.edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(&passed.tangent, &of_edge);

@@ -37,9 +37,10 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
+        u: &Self::Input,
     ) -> Result<Self::Element, Error>;
 
-    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D.
+    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
     fn edge(
         &self,
         constants: &Self::Constants,
@@ -48,6 +49,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
+        u: &Self::Input,
     ) -> Edge<Self::Scalar, M>;
 
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
@@ -87,7 +89,7 @@ pub struct Edge<T, const M: usize> {
 /// `#[derive(Clebsch)]` with `emit = [tangent]`.
 pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
     /// The quantities as a declaration writes them, without `self.`: the entries of the fields that closures read, in their order and
-    /// row by row, then `h`, then `t` where the time matters. The two entries of a symmetric matrix are one quantity.
+    /// row by row, then `h`, then `t` where the time matters, then those of the input. The two entries of a symmetric matrix are one quantity.
     const QUANTITIES: [&'static str; P];
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
@@ -100,5 +102,6 @@ pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
+        u: &Self::Input,
     ) -> (SMatrix<Self::Scalar, M, P>, SMatrix<Self::Scalar, M, P>);
 }

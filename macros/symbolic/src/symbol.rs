@@ -21,6 +21,8 @@ pub enum Role {
     Covector(usize),
     /// A factor of the group element F.
     Element(usize),
+    /// A leaf of the input u of a step.
+    Input(usize),
     /// The coordinates of log F of a factor.
     Logarithm(usize),
     /// A factor of the increment F − I that a step has found.

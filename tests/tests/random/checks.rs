@@ -66,7 +66,7 @@ fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> R
     let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
     let mut stepper = Stepper::new(program, &fields, H);
     let h = DoubleDouble::of(H);
-    let composed = program.formulas.parts() == 2;
+    let composed = program.formulas.parts == 2;
     let first = start.lift::<DoubleDouble>();
     let oracle = match composed {
         true => composed_trajectory(problem, h, &first, STEPS),

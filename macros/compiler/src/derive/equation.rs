@@ -60,6 +60,8 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) inertia: Expr<'g>,
     /// The number of substeps in a step.
     pub(super) parts: i64,
+    /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
+    pub(super) forced: bool,
 }
 
 /// The momentum equations of a substep.
@@ -79,7 +81,9 @@ pub(super) fn equations<'g>(
             Residual { rows: residual.block(start, 0, Shape::vector(block.dimension())), cleared }
         }));
     }
-    substitute_explicit(sources, &mut residuals);
+    if !sources.forced {
+        substitute_explicit(sources, &mut residuals);
+    }
     for (residual, block) in residuals.iter_mut().zip(&symbols.blocks) {
         if let Some(rows) = clearing::of_rotation(model, symbols, block, residual.rows) {
             *residual = Residual { rows, cleared: true };
@@ -168,9 +172,11 @@ pub(crate) fn is_diagonal(matrix: Expr<'_>) -> bool {
     matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
 }
 
-/// Whether an expression depends on the configuration or on the time.
+/// Whether an expression depends on the configuration, on the time or on the input.
 pub(super) fn is_moving<'g>(model: &Model<'g>, expression: Expr<'g>) -> bool {
-    expression.depends_on(model.time) || model.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))
+    expression.depends_on(model.time)
+        || model.inputs.iter().any(|leaf| expression.depends_on(leaf.symbol))
+        || model.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))
 }
 
 /// ρ_k(x), the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ; freed of denominators by A (…) C where
@@ -282,7 +288,7 @@ fn equation<'g>(
     let mut equation = Equation::new(sources, components, residual, cleared);
     let moves = equation.moves;
     let closed_form = match blocks.as_slice() {
-        [only] if !moves => closed_form(sources, before, residual, *only),
+        [only] if !moves && !sources.forced => closed_form(sources, before, residual, *only),
         _ => None,
     };
     equation.solution = match &closed_form {

@@ -11,6 +11,7 @@ mod closed_form;
 mod discrete_lagrangian;
 mod energy;
 mod equation;
+mod force;
 mod naming;
 mod print;
 mod reference;
@@ -34,6 +35,7 @@ pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 pub use equation::{Equation, Solution};
 pub(crate) use equation::{chart_slope, is_diagonal};
+pub use force::EdgeForce;
 pub use print::Formula;
 pub use reference::Reference;
 pub use structure::Structure;
@@ -79,6 +81,10 @@ pub struct Formulas<'g> {
     /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
     /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
     pub substeps: Vec<Substep<'g>>,
+    /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
+    pub parts: usize,
+    /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
+    pub covector: Option<Vec<Expr<'g>>>,
     /// All of it as text, made when it is first asked for.
     listing: OnceCell<Vec<Formula>>,
 }
@@ -106,6 +112,8 @@ pub struct Substep<'g> {
     /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
     /// changes with the time.
     pub other: Option<Vec<Expr<'g>>>,
+    /// What acts beside the potential; `None` if nothing does.
+    pub force: Option<EdgeForce<'g>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
     pub variation: Option<Variation<'g>>,
 }
@@ -137,21 +145,36 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         momentum_map: &momentum_map,
         quantities: &quantities,
     };
-    let sources =
-        |parts| equation::Sources { model: &model, symbols: &symbols, momentum_map: &momentum_map, inertia, parts };
-    let substeps = discrete_lagrangian::substeps(&model, &lagrangian)
+    let sources = |parts| equation::Sources {
+        model: &model,
+        symbols: &symbols,
+        momentum_map: &momentum_map,
+        inertia,
+        parts,
+        forced: false,
+    };
+    let covector = force::covector(&model, &symbols.covectors, &momentum_map);
+    let mut edges = discrete_lagrangian::substeps(&model, &lagrangian);
+    let stepped = if edges.len() == 1 { 1 } else { 2 };
+    let forces = |parts| covector.as_ref().map(|covector| force::on_edge(&model, covector, parts));
+    if edges.len() == 1 && forces(1).is_some_and(|force| force.start_moving.is_some()) {
+        // the Legendre transform of ℓd, without the force, is to be inverted
+        edges.push((1, lagrangian));
+    }
+    let substeps = edges
         .into_iter()
         .enumerate()
         .map(|(index, (parts, lagrangian))| {
             let part = model.step_size / parts;
             let begins = if index == 1 { part } else { model.graph.integer(0) };
-            substep(&sources(parts), &variations, lagrangian, begins)
+            let force = if index < stepped { forces(parts) } else { None };
+            substep(sources(parts), &variations, lagrangian, begins, force)
         })
         .collect();
     let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
     let legendre_kick = impulse(lagrangian.end);
     let (legendre, legendre_next) = legendre(&sources(1), &lagrangian);
-    let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia);
+    let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, covector.as_deref());
     check_offers(&model, &symmetries)?;
     Ok(Formulas {
         legendre,
@@ -172,6 +195,8 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         lagrangian,
         quantities,
         substeps,
+        parts: stepped,
+        covector,
     })
 }
 
@@ -203,39 +228,48 @@ fn check_offers(model: &Model<'_>, symmetries: &Symmetries<'_>) -> Result<(), Di
 }
 
 fn substep<'g>(
-    sources: &equation::Sources<'_, 'g>,
+    mut sources: equation::Sources<'_, 'g>,
     variations: &variation::Source<'_, 'g>,
     lagrangian: DiscreteLagrangian<'g>,
     begins: Expr<'g>,
+    force: Option<EdgeForce<'g>>,
 ) -> Substep<'g> {
     let (model, momentum_map) = (sources.model, sources.momentum_map);
     let impulse = |potential: Expr<'g>| action::impulse(model, sources.symbols, momentum_map, potential);
     let (before, after) = trivialised(model, &lagrangian);
     let coupling =
         lagrangian.couples.then(|| action::coupling(model, sources.symbols, momentum_map, lagrangian.kinetic));
+    // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
+    let moving = force.as_ref().and_then(|force| force.start_moving.as_ref()).map(|moving| -> Vec<Expr<'g>> {
+        moving.iter().map(|part| -part.substitute(&[(model.time, model.time + begins)])).collect()
+    });
+    sources.forced = moving.is_some();
+    let coupling = total(coupling, moving);
     let rest = at_rest(model, &before, coupling.as_deref());
     // impulses are functions of the time of the configuration, K of the time at which the whole step starts
     let earlier = |rest: &[Expr<'g>]| -> Vec<Expr<'g>> {
         rest.iter().map(|part| part.substitute(&[(model.time, model.time - begins)])).collect()
     };
     let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
-    let unchanged = match lagrangian.couples || changes {
+    let other = lagrangian.couples || changes;
+    let unchanged = match other {
         true => vec![false; model.factors.len()],
         false => trivialisation::agreement(model, &before, &after),
     };
     let ends = begins + model.step_size / sources.parts;
     let varied = model.emit.variations();
     Substep {
-        variation: varied.then(|| variations.variation(&lagrangian, (&before, &after), (begins, ends))),
+        variation: varied.then(|| variations.variation(&lagrangian, (&before, &after), (begins, ends), force.as_ref())),
         begins,
         ends,
         parts: sources.parts,
         start: total(impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest))),
         end: impulse(lagrangian.end),
-        equations: equation::equations(sources, &before, coupling.as_deref()),
-        other: (lagrangian.couples || changes).then(|| components(model, &after)),
+        equations: equation::equations(&sources, &before, coupling.as_deref()),
+        other: other.then(|| components(model, &after)),
         unchanged,
         rest,
+        force,
         lagrangian,
     }
 }
@@ -289,16 +323,13 @@ impl Formulas<'_> {
         let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));
         equation.formula.is_some_and(holds)
     }
-
-    /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
-    pub fn parts(&self) -> usize {
-        if self.substeps.len() == 1 { 1 } else { 2 }
-    }
 }
 
 /// Whether a discrete Lagrangian depends on the time.
 fn is_timed(model: &Model<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
-    [lagrangian.kinetic, lagrangian.start, lagrangian.end].iter().any(|part| part.depends_on(model.time))
+    let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
+    let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
+    energies.iter().chain(forces).any(|part| part.depends_on(model.time))
 }
 
 /// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.

@@ -110,6 +110,7 @@ impl<'g> Formulas<'g> {
             ),
             self.formula_of_potential(),
             self.formula_of_hamiltonian(),
+            Formula::new("force", "f", self.covector.as_deref().unwrap_or_default()),
             Formula::new("discrete Lagrangian", self.kinetic_symbol(), &[self.lagrangian.kinetic]),
             Formula::new("", format!("U₀(h, {q})"), &[self.lagrangian.start]),
             Formula::new("", format!("U₁(h, {q}⁺)"), &[self.lagrangian.end]),
@@ -117,7 +118,7 @@ impl<'g> Formulas<'g> {
             self.formula_of_legendre_next(),
         ];
         formulas.extend(self.formulas_of_conserved());
-        for substep in self.substeps.iter().take(self.parts()) {
+        for substep in self.substeps.iter().take(self.parts) {
             formulas.extend(self.formulas_of_substep(substep));
         }
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));

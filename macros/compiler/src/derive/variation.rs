@@ -4,7 +4,7 @@
 use clebsch_symbolic::{Chart, Expr, Property, Shape};
 
 use super::trivialisation::Covector;
-use super::{DiscreteLagrangian, Symbols, action};
+use super::{DiscreteLagrangian, EdgeForce, Symbols, action};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Factor, Model, Side};
 
@@ -20,6 +20,8 @@ pub struct Variation<'g> {
     pub before_by_start: Vec<Expr<'g>>,
     /// ∂F⁻ℓd/∂η′ for the motion of q⁺.
     pub before_by_end: Vec<Expr<'g>>,
+    /// ∂F⁺ℓd/∂η, where forces act; else −(∂F⁻ℓd/∂η′)ᵀ.
+    pub after_by_start: Option<Vec<Expr<'g>>>,
     /// ∂F⁺ℓd/∂η′.
     pub after_by_end: Vec<Expr<'g>>,
     /// The derivatives of both Legendre transforms with respect to each of the [`Quantity`]s, where they are asked for.
@@ -42,7 +44,7 @@ pub struct Quantity<'g> {
     direction: Expr<'g>,
 }
 
-/// The parameters, entry by entry, the step size, and the time where it matters. Both entries of a symmetric matrix are one.
+/// The parameters, entry by entry, the step size, the time where it matters, and the input. Both entries of a symmetric matrix are one.
 pub(super) fn quantities<'g>(model: &Model<'g>, is_timed: bool) -> Vec<Quantity<'g>> {
     let one = model.graph.integer(1);
     let of_leaf = |name: String, symbol: Expr<'g>, is_scalar: bool| {
@@ -71,6 +73,8 @@ pub(super) fn quantities<'g>(model: &Model<'g>, is_timed: bool) -> Vec<Quantity<
     if is_timed {
         quantities.push(Quantity { name: "t".into(), symbol: model.time, direction: one });
     }
+    let inputs = model.inputs.iter().flat_map(|leaf| of_leaf(leaf.name.clone(), leaf.symbol, false));
+    quantities.extend(inputs);
     quantities
 }
 
@@ -115,6 +119,7 @@ impl<'g> Source<'_, 'g> {
         lagrangian: &DiscreteLagrangian<'g>,
         (before, after): (&[Covector<'g>], &[Covector<'g>]),
         (begins, ends): (Expr<'g>, Expr<'g>),
+        force: Option<&EdgeForce<'g>>,
     ) -> Variation<'g> {
         let model = self.model;
         let (start, end) = (self.later(lagrangian.start, begins), self.at_image(self.later(lagrangian.end, ends)));
@@ -131,10 +136,17 @@ impl<'g> Source<'_, 'g> {
         if let Some(kick) = impulse(self.later(lagrangian.end, ends)) {
             last = last + self.at_image(self.stack(&kick));
         }
+        if let Some(force) = force {
+            if let Some(start) = force.whole_start() {
+                first = first - self.later(self.stack(&start), begins);
+            }
+            last = last + self.at_image(self.later(self.stack(&force.end), ends));
+        }
         Variation {
             lagrangian: lagrangian.kinetic + start + end,
             before_by_start: self.columns(first, &self.at_start()),
             before_by_end: self.columns(first, &self.at_end()),
+            after_by_start: force.map(|_| self.columns(last, &self.at_start())),
             after_by_end: self.columns(last, &self.at_end()),
             slopes: (!self.quantities.is_empty())
                 .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),

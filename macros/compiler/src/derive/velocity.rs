@@ -13,10 +13,7 @@ pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostic
         Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
     };
     let h = model.step_size;
-    let velocity = |k: usize| match discretization {
-        Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
-        _ => discrete_velocity(&model.factors[k], h, discretization),
-    };
+    let velocity = |k: usize| of_element(model, k, h, discretization);
     let discrete: Vec<(Expr<'g>, Expr<'g>)> =
         velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
     let at = |energy: Expr<'g>| match discretization {
@@ -32,6 +29,14 @@ pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostic
             end.push((model.time, model.time + h));
             Ok((at(energy)? + at(energy.substitute(&end))?) / 2)
         }
+    }
+}
+
+/// The velocity ξ(F)/h of a factor.
+pub(super) fn of_element<'g>(model: &Model<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
+    match discretization {
+        Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
+        _ => discrete_velocity(&model.factors[k], h, discretization),
     }
 }
 

@@ -71,6 +71,7 @@ impl Scope<'_, '_> {
             Role::Constant(index) => self.constant_of_crate(index),
             Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
             Role::Image(i) => leaf("next", &self.model.configurations[i].accessor),
+            Role::Input(i) => leaf("u", &self.model.inputs[i].accessor),
             Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
             Role::Element(k) => leaf("f", factor(k)),
             Role::Increment(k) => leaf("d", factor(k)),

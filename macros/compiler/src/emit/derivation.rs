@@ -14,10 +14,11 @@ pub fn derivation(program: &Program<'_>) -> String {
     // by construction: writing to a string does not fail
     let _ = write!(
         text,
-        "{}\n\n{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
+        "{}\n\n{}{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
         program.formulas.model.item.ident,
         frames(&program.formulas.model),
         energy(program),
+        forces(program),
         conserved(program),
         scheme(program),
         left_out(program),
@@ -96,6 +97,34 @@ fn subscript(index: usize) -> String {
     index.to_string().bytes().filter_map(|digit| char::from_u32('₀' as u32 + u32::from(digit - b'0'))).collect()
 }
 
+/// What forces take away.
+fn forces(program: &Program<'_>) -> String {
+    let model = &program.formulas.model;
+    if model.force.is_none() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "Forces act: half of h·f at each end of the step, with the velocity of the step at both (Lagrange–d'Alembert). \
+         The step is not symplectic; the energy changes by the work of f, and the momenta that are conserved are those on which f does not act.\n",
+    );
+    if model.order == Order::First {
+        text = text.replace("half of h·f at each end", "h·f at the end");
+    }
+    let joins = program
+        .formulas
+        .substeps
+        .iter()
+        .any(|substep| substep.force.as_ref().is_some_and(|force| force.start_moving.is_some()));
+    if joins {
+        text += "The part of f that depends on the velocity joins the momentum equation.\n";
+    }
+    if !model.inputs.is_empty() {
+        let names: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
+        let _ = writeln!(text, "Input: {}; `step` takes none for zero, `step_with` takes one.", names.join(", "));
+    }
+    text
+}
+
 /// What is conserved, and what is not known to be.
 fn conserved(program: &Program<'_>) -> String {
     let symmetries = &program.formulas.symmetries;
@@ -134,7 +163,7 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
 /// How a step goes and how accurate it is.
 fn scheme(program: &Program<'_>) -> String {
     let model = &program.formulas.model;
-    let order = match (model.order, program.formulas.parts()) {
+    let order = match (model.order, program.formulas.parts) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
         (Order::Second, 1) if program.formulas.lagrangian.couples => {
             "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
@@ -151,7 +180,7 @@ fn scheme(program: &Program<'_>) -> String {
     };
     let mut text = format!("{order}\n");
     let mut told: Vec<String> = Vec::new();
-    for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts()) {
+    for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts) {
         for equation in &substep.equations {
             let names: Vec<&str> = equation.factors.iter().map(|&k| model.factors[k].name.as_str()).collect();
             told.push(format!(

@@ -26,14 +26,17 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The struct of an equation: the system and the constants, with the equation as its documentation.
-    fn equation_structure(&self, name: &Ident, derived: &Equation<'_>, moves: bool) -> TokenStream {
+    fn equation_structure(&self, name: &Ident, derived: &Equation<'_>, place: Option<&Solve>) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
         let Names { lifetime, constants: constants_name, .. } = &self.names;
         let formula = self.program.formulas.formula_of_equation(derived);
         let documentation = docs::formulas("The momentum equation in the chart.", &[formula], None);
-        let (time, configuration) = (self.time_parameter(), self.configuration_type());
-        let place = moves.then(|| quote!(#time q: &#lifetime #configuration,));
+        let (time, configuration, input) = (self.time_parameter(), self.configuration_type(), self.input_type());
+        let place = place.filter(|solve| solve.moves).map(|solve| {
+            let input = solve.reads_input.then(|| quote!(u: &#lifetime #input,));
+            quote!(#time q: &#lifetime #configuration, #input)
+        });
         quote! {
             #documentation
             struct #name<#lifetime, #parameters> #predicates {
@@ -53,7 +56,7 @@ impl<'g> Emitter<'_, 'g> {
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let derived = &self.program.formulas.substeps[index].equations[number];
-        let structure = self.equation_structure(&name, derived, false);
+        let structure = self.equation_structure(&name, derived, None);
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
             Some(kernel) => {
@@ -116,7 +119,8 @@ impl<'g> Emitter<'_, 'g> {
     fn place(&self, solve: &Solve) -> Option<TokenStream> {
         solve.moves.then(|| {
             let time = self.is_timed().then(|| quote!(let t = self.t;));
-            quote!(#time let q = self.q;)
+            let input = solve.reads_input.then(|| quote!(let u = self.u;));
+            quote!(#time let q = self.q; #input)
         })
     }
 
@@ -145,7 +149,7 @@ impl<'g> Emitter<'_, 'g> {
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
         let derived = &self.program.formulas.substeps[index].equations[number];
-        let structure = self.equation_structure(&name, derived, solve.moves);
+        let structure = self.equation_structure(&name, derived, Some(solve));
         let formula = self.program.formulas.formula_of_jacobian(derived);
         let documentation = docs::formulas("Dρ and −ρ(0).", &[formula], Some(&solve.linearize));
         let (place, locals) = (self.place(solve), code::locals(&scope, &solve.linearize));
@@ -195,7 +199,7 @@ impl<'g> Emitter<'_, 'g> {
         let derived = &self.program.formulas.substeps[index].equations[number];
         let formulas =
             [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
-        let structure = self.equation_structure(&name, derived, solve.moves);
+        let structure = self.equation_structure(&name, derived, Some(solve));
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));

@@ -206,6 +206,21 @@ impl<'a, 'g> Emitter<'a, 'g> {
         if self.is_timed() { quote!(t,) } else { quote!() }
     }
 
+    /// The input as an argument of a part of a step, where forces take one.
+    fn input_parameter(&self) -> TokenStream {
+        let input = self.input_type();
+        if self.model.inputs.is_empty() { quote!() } else { quote!(u: &#input,) }
+    }
+
+    /// The input as it is handed on.
+    fn input_argument(&self) -> TokenStream {
+        if self.model.inputs.is_empty() { quote!() } else { quote!(u,) }
+    }
+
+    fn input_type(&self) -> TokenStream {
+        nested_type(&self.model.input, &|leaf| self.paths.leaf(self.model.inputs[leaf].shape, false))
+    }
+
     /// The number of components of a momentum.
     fn dimension(&self) -> usize {
         self.model.factors.iter().map(|factor| factor.group.dimension()).sum()
@@ -231,10 +246,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
-        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts() - 1]);
+        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts - 1]);
         let (start, end) = (
             &self.program.formulas.substeps[0].start,
-            &self.program.formulas.substeps[self.program.formulas.parts() - 1].end,
+            &self.program.formulas.substeps[self.program.formulas.parts - 1].end,
         );
         start == end && first.start.is_some() && last.end.is_some()
     }

@@ -76,6 +76,24 @@ impl Emitter<'_, '_> {
             .map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, &substep.start));
         let end = step.end.as_ref().filter(|_| !step.end_is_start);
         let end = end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, &substep.end));
+        let input = self.input_parameter();
+        let element = self.element_type();
+        let force = |name: Ident, title: &str, at: TokenStream, kernel: &Kernel| {
+            let formulas = self.program.formulas.titled("force");
+            let signature = quote!(#name(&self, #time q: &#configuration, #at #input) -> #momentum);
+            self.part(title, &formulas, signature, kernel, None)
+        };
+        let start_force = step.start_force.as_ref();
+        let start_force = start_force.map(|kernel| {
+            force(name("start_force"), "The impulse of the force at the start of a step.", quote!(), kernel)
+        });
+        let end_force = step.end_force.as_ref().map(|kernel| {
+            force(name("end_force"), "The impulse of the force at the end of a step.", quote!(x: &#momentum,), kernel)
+        });
+        let moving_force = step.start_moving.as_ref().map(|kernel| {
+            let title = "The part of the impulse at the start of a step that depends on the velocity.";
+            force(name("moving_force"), title, quote!(x: &#momentum,), kernel)
+        });
         let gradient = |name: Ident, title: &str, kernel: &Kernel| {
             let signature = quote!(#name(&self, #time q: &#configuration) -> #configuration);
             self.part(title, &[], signature, kernel, Some(Nesting::Configuration))
@@ -88,7 +106,6 @@ impl Emitter<'_, '_> {
         let end_gradient = end_gradient.map(|kernel| {
             gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel)
         });
-        let element = self.element_type();
         let rest = step.rest.as_ref().map(|kernel| {
             kick(name("rest_kick"), "What the cost gives at F = I, with the other sign.", kernel, &substep.rest)
         });
@@ -105,13 +122,14 @@ impl Emitter<'_, '_> {
             self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
         });
         let solve = self.solve(name("solve"), suffix, step);
-        quote!(#start #rest #end #start_gradient #end_gradient #coupled_gradient #solve #update)
+        quote!(#start #rest #end #start_force #moving_force #end_force #start_gradient #end_gradient #coupled_gradient #solve #update)
     }
 
     /// The chart coordinates of all factors, equation by equation.
     fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
         let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
-        let (place, parameters) = (self.time_argument(), self.place_parameters(step));
+        let (place, input) = (self.time_argument(), self.input_argument());
+        let parameters = self.place_parameters(step);
         let solved = |component: &usize| {
             let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
             let found = step.solves.iter().enumerate().find_map(|(number, solve)| Some((number, position(solve)?)));
@@ -123,7 +141,8 @@ impl Emitter<'_, '_> {
         let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
             let (name, solution) = (self.names.equation(suffix, number), format_ident!("x{}", number + 1));
             let target = self.part_of("mu", &solve.momenta);
-            let place = if solve.moves { quote!(, #place q) } else { quote!() };
+            let input = solve.reads_input.then_some(&input);
+            let place = if solve.moves { quote!(, #place q, #input) } else { quote!() };
             let equation = quote!(#name { system: self.system, constants: self.constants #place });
             let given = solve.given.iter().map(solved);
             let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
@@ -152,13 +171,16 @@ impl Emitter<'_, '_> {
     /// The time and the configuration as parameters of a solve that depends on them.
     fn place_parameters(&self, step: &StepKernels) -> TokenStream {
         let (time, configuration) = (self.time_parameter(), self.configuration_type());
-        if step.solves.iter().any(|solve| solve.moves) { quote!(#time q: &#configuration,) } else { quote!() }
+        let input = step.solves.iter().any(|solve| solve.reads_input).then(|| self.input_parameter());
+        let moves = step.solves.iter().any(|solve| solve.moves);
+        if moves { quote!(#time q: &#configuration, #input) } else { quote!() }
     }
 
     /// The time and the configuration as they are handed to such a solve.
     pub(super) fn place_arguments(&self, step: &StepKernels) -> TokenStream {
         let time = self.time_argument();
-        if step.solves.iter().any(|solve| solve.moves) { quote!(#time &q,) } else { quote!() }
+        let input = step.solves.iter().any(|solve| solve.reads_input).then(|| self.input_argument());
+        if step.solves.iter().any(|solve| solve.moves) { quote!(#time &q, #input) } else { quote!() }
     }
 
     /// Some components of a flat vector; all of them are the vector itself.
@@ -214,6 +236,7 @@ impl Emitter<'_, '_> {
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
         let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
+        let input = self.input_parameter();
         quote! {
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
             #[inline]
@@ -223,6 +246,7 @@ impl Emitter<'_, '_> {
                 q: &#configuration,
                 mu: &#momentum,
                 impulse: &#impulse,
+                #input
             ) -> ::core::result::Result<(#configuration, #momentum, #impulse), #krate::Error> {
                 let (q, mu) = (*q, *mu);
                 #(#euler_poincare)*
@@ -244,7 +268,7 @@ impl Emitter<'_, '_> {
 
     /// The substeps that make a step.
     fn stepped(&self) -> impl Iterator<Item = (usize, &StepKernels)> {
-        self.program.steps.iter().enumerate().take(self.program.formulas.parts())
+        self.program.steps.iter().enumerate().take(self.program.formulas.parts)
     }
 
     /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
@@ -258,6 +282,16 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The impulse of the force at the start of a substep.
+    pub(super) fn pushed(&self, index: usize, step: &StepKernels) -> TokenStream {
+        if step.start_force.is_none() {
+            return TokenStream::new();
+        }
+        let start_force = format_ident!("start_force{}", self.program.suffix(index));
+        let (time, input) = (self.time_argument(), self.input_argument());
+        quote!(let mu = mu + self.#start_force(#time &q, #input);)
+    }
+
     fn euler_poincare(&self, index: usize, step: &StepKernels) -> TokenStream {
         let suffix = self.program.suffix(index);
         let (solve, update) = (format_ident!("solve{suffix}"), format_ident!("update{suffix}"));
@@ -268,7 +302,16 @@ impl Emitter<'_, '_> {
             false => quote!(let mu = self.#update(&mu, &d);),
         });
         let from = step.couples.then(|| quote!(let from = q;));
-        let last = index + 1 == self.program.formulas.parts();
+        let (input, start_force) = (self.input_argument(), self.pushed(index, step));
+        let end_force = step.end_force.as_ref().map(|_| {
+            let end_force = format_ident!("end_force{suffix}");
+            quote!(let mu = mu + self.#end_force(#time &q, &x, #input);)
+        });
+        let moving_force = step.start_moving.as_ref().map(|_| {
+            let moving_force = format_ident!("moving_force{suffix}");
+            quote!(let mu = mu + self.#moving_force(#time &q, &x, #input);)
+        });
+        let last = index + 1 == self.program.formulas.parts;
         let end = match (&step.end, last && self.shares_impulse()) {
             (None, _) | (Some(_), true) => quote!(),
             (Some(_), false) => {
@@ -278,11 +321,14 @@ impl Emitter<'_, '_> {
         };
         quote! {
             #kicked
+            #start_force
             let x = self.#solve(#place &mu)?;
             let d = self.increment(&x);
+            #moving_force
             #from
             let q = self.advance(&q, &d);
             #updated
+            #end_force
             #end
         }
     }
@@ -290,7 +336,7 @@ impl Emitter<'_, '_> {
     /// The last kick, kept for the next step where it is the same.
     fn next_impulse(&self) -> TokenStream {
         // where time matters, the kick at the end of the last substep is the one that knows its time
-        let last = self.program.formulas.parts() - 1;
+        let last = self.program.formulas.parts - 1;
         let kick = match self.is_timed() {
             true => format_ident!("end_kick{}", self.program.suffix(last)),
             false => format_ident!("start_kick{}", self.program.suffix(0)),
@@ -306,6 +352,9 @@ impl Emitter<'_, '_> {
     }
 
     fn symmetric(&self) -> TokenStream {
+        if self.model.force.is_some() {
+            return TokenStream::new();
+        }
         let (krate, configuration, time) = (&self.paths.krate, self.configuration_type(), self.time_parameter());
         let substeps = self.stepped().map(|(index, step)| {
             let suffix = self.program.suffix(index);

@@ -34,6 +34,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             false => matrix(shape.rows, shape.columns),
         }
     });
+    let input = nested_type(&outline.input, &|leaf| matrix(outline.inputs[leaf].rows, outline.inputs[leaf].columns));
     let time = if outline.takes_time { quote!(#krate::__private::Clock<#scalar>) } else { quote!(()) };
     let element = nested_type(&outline.element, &|factor| {
         let shape = outline.groups[factor].element_shape();
@@ -54,6 +55,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             type Momentum = #momentum;
             type MomentumMatrix = #element;
             type Impulse = ();
+            type Input = #input;
             type Time = #time;
             type Constants = ();
             const NAME: &'static ::core::primitive::str = #name;
@@ -80,7 +82,7 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(inverse_legendre(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #element),
         quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration)),
-        quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &()) -> #step),
+        quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &(), u: &Self::Input) -> #step),
         quote!(step_symmetric(&self, constants: &(), t: #scalar, q: &#configuration, p: &#configuration) -> #symmetric),
         quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar),
         quote!(kinetic_energy(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #scalar),

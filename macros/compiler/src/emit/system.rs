@@ -19,7 +19,7 @@ impl Emitter<'_, '_> {
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let (impulse, (_, constants_arguments)) = (self.impulse_type(), self.constants_generics());
-        let constants_name = &self.names.constants;
+        let (constants_name, input) = (&self.names.constants, self.input_type());
         let private = &self.paths.private;
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order: u32 = if self.model.order == Order::First { 1 } else { 2 };
@@ -35,6 +35,7 @@ impl Emitter<'_, '_> {
                 type Momentum = #momentum;
                 type MomentumMatrix = #element;
                 type Impulse = #impulse;
+                type Input = #input;
                 type Time = #time;
                 type Constants = #constants_name #constants_arguments;
 
@@ -250,8 +251,12 @@ impl Emitter<'_, '_> {
     /// Steps, handed to the type `Step`.
     fn dynamics(&self) -> TokenStream {
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
-        let time = self.time_argument();
-        let kick = if self.program.formulas.parts() == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
+        let (time, input) = (self.time_argument(), self.input_argument());
+        let symmetric = match self.model.force.is_some() {
+            true => quote!(::core::result::Result::Err(#krate::Error::NoCovector)),
+            false => quote!(#step::symmetric(&#step { system: self, constants }, #time q, p)),
+        };
+        let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let impulse = match self.shares_impulse() {
             true => quote!(#step::#kick(&#step { system: self, constants }, #time q)),
             false => quote!(()),
@@ -281,8 +286,9 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
                 impulse: &Self::Impulse,
+                u: &Self::Input,
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
-                #step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse)
+                #step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input)
             }
             /// One step of the discrete symmetric representation.
             fn step_symmetric(
@@ -292,7 +298,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 p: &Self::Configuration,
             ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                #step::symmetric(&#step { system: self, constants }, #time q, p)
+                #symmetric
             }
         }
     }

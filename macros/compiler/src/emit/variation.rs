@@ -112,11 +112,11 @@ impl Emitter<'_, '_> {
 
     /// The implicit solve of an edge.
     fn drift(&self) -> TokenStream {
-        let (krate, scalar, step, time) =
-            (&self.paths.krate, &self.paths.scalar, &self.names.step, self.time_argument());
+        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        let (time, input) = (self.time_argument(), self.input_argument());
         let call = self.on_edge(&|suffix| {
             let drift = format_ident!("drift{suffix}");
-            quote!(step.#drift(#time q, mu))
+            quote!(step.#drift(#time q, mu, #input))
         });
         quote! {
             /// The increment of the group element of an edge with the momentum μ.
@@ -128,6 +128,7 @@ impl Emitter<'_, '_> {
                 t: #scalar,
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
+                u: &Self::Input,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
                 let step = #step { system: self, constants };
                 #call
@@ -138,7 +139,7 @@ impl Emitter<'_, '_> {
     /// A call for the edge that is asked for.
     fn on_edge(&self, call: &dyn Fn(&'static str) -> TokenStream) -> TokenStream {
         let first = call(self.program.suffix(0));
-        if self.program.formulas.parts() == 1 {
+        if self.program.formulas.parts == 1 {
             return first;
         }
         let second = call(self.program.suffix(1));
@@ -148,10 +149,11 @@ impl Emitter<'_, '_> {
     /// The edges, handed to the type `Step`.
     fn edge(&self) -> TokenStream {
         let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
-        let (dimension, time) = (Literal::usize_unsuffixed(self.dimension()), self.time_argument());
+        let (time, input) = (self.time_argument(), self.input_argument());
+        let dimension = Literal::usize_unsuffixed(self.dimension());
         let call = self.on_edge(&|suffix| {
             let edge = format_ident!("edge{suffix}");
-            quote!(step.#edge(#time q, d, next))
+            quote!(step.#edge(#time q, d, next, #input))
         });
         quote! {
             /// An edge with its second derivatives.
@@ -164,6 +166,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 d: &Self::Element,
                 next: &Self::Configuration,
+                u: &Self::Input,
             ) -> #krate::Edge<#scalar, #dimension> {
                 let step = #step { system: self, constants };
                 #call
@@ -183,10 +186,10 @@ impl Emitter<'_, '_> {
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let names = self.program.formulas.quantities.iter().map(|quantity| quantity.name.as_str());
         let count = Literal::usize_unsuffixed(self.program.formulas.quantities.len());
-        let (slopes, time) = (self.slopes_type(), self.time_argument());
+        let (slopes, time, input) = (self.slopes_type(), self.time_argument(), self.input_argument());
         let call = self.on_edge(&|suffix| {
             let edge = format_ident!("edge_slopes{suffix}");
-            quote!(step.#edge(#time q, d, next))
+            quote!(step.#edge(#time q, d, next, #input))
         });
         quote! {
             #[automatically_derived]
@@ -203,6 +206,7 @@ impl Emitter<'_, '_> {
                     q: &Self::Configuration,
                     d: &Self::Element,
                     next: &Self::Configuration,
+                    u: &Self::Input,
                 ) -> (#slopes, #slopes) {
                     let step = #step { system: self, constants };
                     #call
@@ -240,14 +244,16 @@ impl Emitter<'_, '_> {
         let (krate, suffix, step) = (&self.paths.krate, self.program.suffix(index), &self.program.steps[index]);
         let (solve, drift) = (format_ident!("solve{suffix}"), format_ident!("drift{suffix}"));
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (time, place, kicked) =
-            (self.time_parameter(), self.place_arguments(step), self.kicked(index, step, false));
+        let (time, place) = (self.time_parameter(), self.place_arguments(step));
+        let (kicked, pushed, input) =
+            (self.kicked(index, step, false), self.pushed(index, step), self.input_parameter());
         quote! {
             /// The increment of the group element whose momentum is μ at q.
             #[inline]
-            fn #drift(&self, #time q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
+            fn #drift(&self, #time q: &#configuration, mu: &#momentum, #input) -> ::core::result::Result<#element, #krate::Error> {
                 let (q, mu) = (*q, *mu);
                 #kicked
+                #pushed
                 let x = self.#solve(#place &mu)?;
                 ::core::result::Result::Ok(self.increment(&x))
             }
@@ -257,7 +263,8 @@ impl Emitter<'_, '_> {
     fn edge_of(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
         let (krate, scalar, suffix) = (&self.paths.krate, &self.paths.scalar, self.program.suffix(index));
         let (configuration, element, time) = (self.configuration_type(), self.element_type(), self.time_parameter());
-        let place = quote!(#time q: &#configuration, d: &#element, next: &#configuration);
+        let input = self.input_parameter();
+        let place = quote!(#time q: &#configuration, d: &#element, next: &#configuration, #input);
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let scope = self.scope_of_step();
         let grid = |kernel: &Kernel, index: usize| {
@@ -274,6 +281,10 @@ impl Emitter<'_, '_> {
             &[],
             Some(kernel),
         );
+        let after_by_start = match kernel.outputs.len() {
+            7 => grid(kernel, 6),
+            _ => quote!(-before_by_end.transpose()),
+        };
         let edge = format_ident!("edge{suffix}");
         let slopes = kernels.slopes.as_ref().map(|kernel| {
             let documentation =
@@ -300,7 +311,7 @@ impl Emitter<'_, '_> {
                     after: #after,
                     before_by_start: #by_start,
                     before_by_end,
-                    after_by_start: -before_by_end.transpose(),
+                    after_by_start: #after_by_start,
                     after_by_end: #after_by_end,
                 }
             }

@@ -83,11 +83,14 @@ impl Program<'_> {
                 kernels.extend(solve.predict.iter().map(|kernel| (of("predict"), kernel)));
                 kernels.push((of("linearize"), &solve.linearize));
             }
+            kernels.extend(step.start_force.iter().map(|kernel| (named("start_force"), kernel)));
             kernels.push((named("increment"), &step.increment));
             kernels.push((named("advance"), &step.advance));
             kernels.extend(step.rest.iter().map(|kernel| (named("rest_kick"), kernel)));
             kernels.extend(step.coupled_gradient.iter().map(|kernel| (named("coupled_gradient"), kernel)));
             kernels.extend(step.update.iter().map(|kernel| (named("update"), kernel)));
+            kernels.extend(step.start_moving.iter().map(|kernel| (named("moving_force"), kernel)));
+            kernels.extend(step.end_force.iter().map(|kernel| (named("end_force"), kernel)));
             if !step.end_is_start {
                 kernels.extend(step.end.iter().map(|kernel| (named("end_kick"), kernel)));
             }
@@ -112,10 +115,10 @@ impl Program<'_> {
 
     /// The suffix of the functions of a substep.
     pub fn suffix(&self, substep: usize) -> &'static str {
-        match (self.steps.len(), substep) {
-            (1, _) => "",
-            (_, 0) => "_first",
-            (_, 1) => "_adjoint",
+        match (self.formulas.parts, substep) {
+            (1, 0) => "",
+            (2, 0) => "_first",
+            (2, 1) => "_adjoint",
             _ => "_whole",
         }
     }

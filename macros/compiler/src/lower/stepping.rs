@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Expr, Group, Role, Shape, Zero, identity};
+use clebsch_symbolic::{Chart, Expr, Group, Role, Shape, Zero, identity};
 
 use super::kernel::kernel;
 use super::{Code, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
@@ -15,6 +15,12 @@ pub struct StepKernels {
     pub start: Option<Kernel>,
     /// J(q, ∂U₁), from q⁺; `None` if there is none.
     pub end: Option<Kernel>,
+    /// The impulse of the force before the solve, from t, q and u; `None` if there is none.
+    pub start_force: Option<Kernel>,
+    /// The rest of that impulse, which depends on the velocity, from t, q, x and u; `None` if there is none or if it is of no use.
+    pub start_moving: Option<Kernel>,
+    /// The impulse of the force after the move, from t, q⁺, x and u; `None` if there is none.
+    pub end_force: Option<Kernel>,
     /// Whether the end kick of a step is the start kick of the next.
     pub end_is_start: bool,
     /// ∂U₀ for each leaf, for the symmetric representation.
@@ -63,8 +69,10 @@ pub struct Solve {
     pub linearize: Kernel,
     /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in.
     pub is_inertial: bool,
-    /// Whether the equation depends on the configuration or on the time.
+    /// Whether the equation depends on the configuration, on the time or on the input.
     pub moves: bool,
+    /// Whether it depends on the input.
+    pub reads_input: bool,
 }
 
 /// The kernels of all substeps.
@@ -72,7 +80,8 @@ pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mu
     let mut steps: Vec<StepKernels> =
         formulas.substeps.iter().map(|substep| step(formulas, substep, scalars, hoisted)).collect();
     // what serves the inverse Legendre transform alone is never stepped
-    for step in steps.iter_mut().skip(formulas.parts()) {
+    for step in steps.iter_mut().skip(formulas.parts) {
+        (step.start_force, step.start_moving, step.end_force) = (None, None, None);
         (step.end, step.start_gradient, step.end_gradient, step.update) = (None, None, None, None);
         (step.rest, step.coupled_gradient) = (None, None);
     }
@@ -99,18 +108,30 @@ fn step<'g>(
         let moved = [(model.time, model.time + later)];
         parts.as_ref().map(|parts| parts.iter().map(|part| part.substitute(&moved)).collect())
     };
+    let force = substep.force.as_ref();
+    let start_force = force.and_then(|force| force.start.clone());
+    let start_force = stacked(&at(substep.begins, &start_force), scalars, hoisted);
+    let in_chart = |parts: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
+        let elements = chart_elements(formulas);
+        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
+    };
+    let start_moving = force.filter(|_| substep.other.is_none()).and_then(|force| force.start_moving.clone());
+    let start_moving = stacked(&at(substep.begins, &start_moving).map(in_chart), scalars, hoisted);
+    let end_force = at(substep.ends, &force.map(|force| force.end.clone())).map(in_chart);
+    let end_force = stacked(&end_force, scalars, hoisted);
     let start = stacked(&at(substep.begins, &substep.start), scalars, hoisted);
     let end = stacked(&at(substep.ends, &substep.end), scalars, hoisted);
     let gradient = |later: Expr<'g>, potential: Expr<'g>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
         let gradients = gradients(potential.substitute(&[(model.time, model.time + later)]));
         let acts = gradients.iter().any(|gradient| !identity::vanishes(*gradient));
-        acts.then(|| separate(scalars, hoisted, &gradients))
+        // forces in 𝔤* have no covectors, so that a forced system has no symmetric representation
+        (acts && model.force.is_none()).then(|| separate(scalars, hoisted, &gradients))
     };
     let start_gradient = gradient(substep.begins, substep.lagrangian.start, scalars, hoisted);
     let end_gradient = gradient(substep.ends, substep.lagrangian.end, scalars, hoisted);
     let couples = substep.other.is_some();
     let rest = stacked(&substep.rest, scalars, hoisted);
-    let coupled_gradient = substep.lagrangian.couples.then(|| {
+    let coupled_gradient = (substep.lagrangian.couples && model.force.is_none()).then(|| {
         let moved = increments(formulas);
         let gradients: Vec<_> =
             gradients(substep.lagrangian.kinetic).iter().map(|gradient| gradient.substitute(&moved)).collect();
@@ -120,6 +141,9 @@ fn step<'g>(
         end_is_start: substep.start == substep.end && !formulas.is_timed(),
         start,
         end,
+        start_force,
+        start_moving,
+        end_force,
         start_gradient,
         end_gradient,
         solves,
@@ -192,6 +216,7 @@ fn solve<'g>(
         linearize,
         is_inertial: equation.is_inertial,
         moves: equation.moves,
+        reads_input: formulas.model.inputs.iter().any(|leaf| equation.residual.depends_on(leaf.symbol)),
     };
     let (momenta, coordinates) = solve.read(formulas);
     solve.momenta.extend(momenta.into_iter().filter(|component| !equation.components.contains(component)));
@@ -280,6 +305,20 @@ fn increment(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     plain(scalars, &increments)
 }
 
+/// The replacement of each group element by that of the chart, and of its logarithm.
+fn chart_elements<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let symbols = &formulas.symbols;
+    let element = |(k, factor): (usize, &Factor<'g>)| {
+        let element = symbols.chart_element(&formulas.model, k);
+        let logarithm = match symbols.charts[k] {
+            Chart::Exponential => symbols.stacked_coordinates(k),
+            _ => factor.group.logarithm(element),
+        };
+        [(factor.symbol, element), (symbols.logarithms[k], logarithm)]
+    };
+    formulas.model.factors.iter().enumerate().flat_map(element).collect()
+}
+
 /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
 pub(super) fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let symbols = &formulas.symbols;
@@ -305,6 +344,13 @@ pub(super) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) 
 
 pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
     if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
+}
+
+/// An expression with I + D put in for F. Products are distributed, so that what cancels does so; but not around an inverse, where that
+/// only makes them many times longer: there F occurs as F − I and F + I.
+pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+    let inserted = expression.substitute(elements);
+    if inserted.has_inverse() { inserted } else { inserted.expand() }
 }
 
 /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation.

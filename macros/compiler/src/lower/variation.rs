@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::kernel::kernel;
-use super::stepping::{from_increment, increments, inverse_by};
+use super::stepping::{from_increment, increments, inserted, inverse_by};
 use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, plain};
 use crate::derive::{Formulas, Variation};
 use crate::model::Side;
@@ -26,7 +26,7 @@ pub struct VariationKernels {
 
 /// The kernels of an edge.
 pub struct EdgeKernels {
-    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
+    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ.
     pub edge: Kernel,
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
     pub slopes: Option<Kernel>,
@@ -41,7 +41,7 @@ pub(super) fn variations(
     if !formulas.model.emit.variations() {
         return None;
     }
-    let edges = formulas.substeps.iter().take(formulas.parts()).filter_map(|substep| substep.variation.as_ref());
+    let edges = formulas.substeps.iter().take(formulas.parts).filter_map(|substep| substep.variation.as_ref());
     Some(VariationKernels {
         retraction: retraction(formulas, scalars),
         slopes: slopes(formulas),
@@ -125,7 +125,8 @@ fn edge<'g>(
     let values = [variation.lagrangian, variation.before, variation.after];
     let values = values.map(|value| inserted(value, &elements));
     let mut outputs = grids(scalars, &values);
-    for block in [&variation.before_by_start, &variation.before_by_end, &variation.after_by_end] {
+    let blocks = [&variation.before_by_start, &variation.before_by_end, &variation.after_by_end];
+    for block in blocks.into_iter().chain(&variation.after_by_start) {
         outputs.push(columns(block, scalars));
     }
     let edge = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
@@ -134,13 +135,6 @@ fn edge<'g>(
         kernel(scalars, &outputs, Hoisting::Constants(hoisted))
     });
     EdgeKernels { edge, slopes }
-}
-
-/// An expression with I + D put in for F. Products are distributed, so that what cancels does so; but not around an inverse, where that
-/// only makes them many times longer: there F occurs as F − I and F + I.
-fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-    let inserted = expression.substitute(elements);
-    if inserted.has_inverse() { inserted } else { inserted.expand() }
 }
 
 /// The replacements of F by I + D, and of inverses of configurations by the formulas of their groups.

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Group};
 use syn::ext::IdentExt;
 
 use super::scope::{Missing, Scope, check_reserved};
-use super::slots::{COST, LAGRANGIAN, POTENTIAL, SYMMETRY, Slot};
+use super::slots::{COST, FORCE, LAGRANGIAN, POTENTIAL, SYMMETRY, Slot};
 use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::{Argument, Closure, Pattern};
@@ -96,13 +96,13 @@ impl<'d, 'g> Arguments<'d, 'g> {
     /// The names in a cost.
     pub fn cost_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
         let taken = self.match_slots(closure, COST, diagnostics);
-        self.scope(closure, COST, &taken, None, diagnostics)
+        self.scope(closure, COST, &taken, &[], diagnostics)
     }
 
     /// The names in a potential.
     pub fn potential_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
         let taken = self.match_slots(closure, POTENTIAL, diagnostics);
-        self.scope(closure, POTENTIAL, &taken, None, diagnostics)
+        self.scope(closure, POTENTIAL, &taken, &[], diagnostics)
     }
 
     /// The pattern of a Lagrangian's velocity, with the meaning of all its arguments.
@@ -120,7 +120,31 @@ impl<'d, 'g> Arguments<'d, 'g> {
         velocity: Option<Value<'g>>,
         diagnostics: &mut Diagnostics,
     ) -> Scope<'g> {
-        self.scope(closure, LAGRANGIAN, taken, velocity, diagnostics)
+        self.scope(closure, LAGRANGIAN, taken, &[(Slot::Velocity, velocity)], diagnostics)
+    }
+
+    /// The patterns of a force's velocity and of its input, with the meaning of all its arguments.
+    pub fn force<'c>(
+        &self,
+        closure: &'c Closure,
+        diagnostics: &mut Diagnostics,
+    ) -> (Taken, Option<&'c Pattern>, Option<&'c Argument>) {
+        let taken = self.match_slots(closure, FORCE, diagnostics);
+        let of = |slot: Slot| taken.iter().position(|other| *other == Some(slot)).map(|i| &closure.arguments[i]);
+        let (velocity, input) = (of(Slot::Velocity).map(|argument| &argument.pattern), of(Slot::Input));
+        (taken, velocity, input)
+    }
+
+    /// The names in a force, whose last two arguments are new.
+    pub fn force_scope(
+        &self,
+        closure: &Closure,
+        taken: &Taken,
+        velocity: Option<Value<'g>>,
+        input: Option<Value<'g>>,
+        diagnostics: &mut Diagnostics,
+    ) -> Scope<'g> {
+        self.scope(closure, FORCE, taken, &[(Slot::Velocity, velocity), (Slot::Input, input)], diagnostics)
     }
 
     /// The arguments of an offered symmetry, all of which it needs.
@@ -152,7 +176,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
         element: Option<Value<'g>>,
         diagnostics: &mut Diagnostics,
     ) -> Scope<'g> {
-        self.scope(closure, SYMMETRY, taken, element, diagnostics)
+        self.scope(closure, SYMMETRY, taken, &[(Slot::Offered, element)], diagnostics)
     }
 
     /// The scope in which arguments have the values of their slots, and what is left out has a reason.
@@ -161,7 +185,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
         closure: &Closure,
         slots: &[Slot],
         taken: &[Option<Slot>],
-        introduced: Option<Value<'g>>,
+        introduced: &[(Slot, Option<Value<'g>>)],
         diagnostics: &mut Diagnostics,
     ) -> Scope<'g> {
         let mut scope = Scope::default();
@@ -172,7 +196,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
                 Some(Slot::Step) => Some(Value::Matrix(self.step_size)),
                 Some(Slot::Configuration) => self.configuration_value.clone(),
                 Some(Slot::Element) => self.element_value.clone(),
-                Some(Slot::Velocity | Slot::Offered) => introduced.clone(),
+                Some(new) => introduced.iter().find(|(slot, _)| slot == new).and_then(|(_, value)| value.clone()),
                 None => None,
             };
             scope.add_argument(&argument.pattern, value, diagnostics);
@@ -199,6 +223,9 @@ impl<'d, 'g> Arguments<'d, 'g> {
         match slots.contains(&Slot::Velocity) {
             _ if slots.contains(&Slot::Offered) => {
                 format!("the {key} depends on its own element, on `{q}` and on `{}` alone", self.element.spell())
+            }
+            true if slots.contains(&Slot::Input) => {
+                format!("the {key} depends on the time `t`, the configuration `{q}`, the velocity and an input alone")
             }
             true => format!("the {key} depends on the time `t`, the configuration `{q}` and the velocity alone"),
             false => format!("the {key} depends on the time `t` and the configuration `{q}` alone"),

@@ -8,6 +8,7 @@ mod closures;
 mod declared;
 mod elaborate;
 mod fields;
+mod forces;
 mod groups;
 mod leaves;
 mod membership;
@@ -40,6 +41,7 @@ use self::action_laws::{Action, Law};
 use self::arguments::Arguments;
 use self::declared::DeclaredGroups;
 use self::elaborate::Context;
+use self::forces::Forces;
 use self::groups::Names;
 use self::symmetries::System;
 use self::typed::Typed;
@@ -95,6 +97,9 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         kinetic: formulas.kinetic,
         potential: formulas.potential,
         opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
+        force: formulas.forces.force,
+        inputs: formulas.forces.inputs,
+        input: formulas.forces.input,
         symmetries: formulas.symmetries,
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
@@ -111,6 +116,7 @@ struct Formulas<'g> {
     kinetic: Kinetic<'g>,
     potential: Option<Expr<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
+    forces: Forces<'g>,
 }
 
 impl<'g> Formulas<'g> {
@@ -135,7 +141,10 @@ impl<'g> Formulas<'g> {
         let (element, configuration) = (&typed.element, &typed.configuration);
         let system = System { arguments, names, element, factors, configuration, configurations, action: &action };
         let symmetries = symmetries::read(context, &system, &declaration.symmetries);
-        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries })
+        forces::check_dials(declaration, &mut context.diagnostics);
+        let forced = forces::System { arguments, names, element, factors, configuration, configurations };
+        let forces = forces::read(context, &forced, declaration);
+        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries, forces: forces? })
     }
 }
 

@@ -21,6 +21,10 @@ pub struct Outline {
     pub shapes: Vec<Shape>,
     /// Which leaves of the configuration are quaternions.
     pub quaternions: Vec<bool>,
+    /// How the leaves of the input nest.
+    pub input: Structure,
+    /// The shapes of the leaves of the input.
+    pub inputs: Vec<Shape>,
     /// Whether a closure takes the time.
     pub takes_time: bool,
     /// The scalar, as far as it can be told.
@@ -35,7 +39,12 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
     let groups = spaces::read_groups(types.group, names, &mut ignored)?;
     let spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
+    let forces = declaration.force.iter().chain(&declaration.force_on);
+    let input = forces.filter_map(|closure| closure.arguments.last()?.ty.as_ref()).next();
+    let input = input.and_then(|ty| spaces::read_spaces(ty, names, &mut ignored));
     Some(Outline {
+        inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
+        input: input.map_or(Structure::Tuple(Vec::new()), |input| input.structure),
         element: groups.structure,
         groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
         configuration: spaces.structure,

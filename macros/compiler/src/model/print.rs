@@ -32,6 +32,11 @@ impl fmt::Display for Model<'_> {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
             None => writeln!(f, "  potential  none")?,
         }
+        if let Some(force) = &self.force {
+            force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;
+            force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
+        }
+        self.inputs.iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
         self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;

@@ -17,6 +17,8 @@ pub(super) enum Slot {
     Velocity,
     /// The element of an offered symmetry, which has a type.
     Offered,
+    /// The input of a force, which has a type.
+    Input,
 }
 
 /// The arguments of a cost, in order.
@@ -25,6 +27,8 @@ pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, 
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 /// The arguments of a potential, in order.
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+/// The arguments of a force, in order.
+pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
 /// The arguments of an offered symmetry, in order.
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
@@ -37,6 +41,7 @@ impl<'d> Arguments<'d, '_> {
             Slot::Configuration => (self.configuration.spell(), "the configuration"),
             Slot::Element => (self.element.spell(), "the group element"),
             Slot::Velocity => ("omega".into(), "the velocity a new name"),
+            Slot::Input => ("u: Vector3".into(), "the input, a new name and its type"),
             Slot::Offered => ("S: SO<3>".into(), "an element of the symmetry, a new name and its group"),
         }
     }
@@ -57,14 +62,17 @@ impl<'d> Arguments<'d, '_> {
         slots: &[Slot],
         diagnostics: &mut Diagnostics,
     ) -> Vec<Option<Slot>> {
-        let last = closure.arguments.len().wrapping_sub(1);
         let mut taken: Vec<Option<Slot>> =
             closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
-        if slots.contains(&Slot::Velocity)
-            && taken.last() == Some(&None)
-            && !self.is_foreign(&closure.arguments[last].pattern)
-        {
-            taken[last] = Some(Slot::Velocity);
+        let mut untyped = closure.arguments.len();
+        if slots.contains(&Slot::Input) && closure.arguments.last().is_some_and(|argument| argument.ty.is_some()) {
+            untyped -= 1;
+            taken[untyped] = Some(Slot::Input);
+        }
+        if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity)) {
+            if taken[last].is_none() && !self.is_foreign(&closure.arguments[last].pattern) {
+                taken[last] = Some(Slot::Velocity);
+            }
         }
         let introduces = |argument: &Argument| argument.ty.is_some() || closure.arguments.len() == slots.len();
         if slots.contains(&Slot::Offered) && closure.arguments.first().is_some_and(introduces) {
@@ -74,7 +82,7 @@ impl<'d> Arguments<'d, '_> {
             self.check_argument(closure, argument, position, &taken, slots, diagnostics);
         }
         self.check_order(closure, &taken, slots, diagnostics);
-        if slots.contains(&Slot::Velocity) && !taken.contains(&Some(Slot::Velocity)) && !taken.contains(&None) {
+        if slots == LAGRANGIAN && !taken.contains(&Some(Slot::Velocity)) && !taken.contains(&None) {
             let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
             diagnostics
                 .push(error.help(format!("write `{} …`", self.head(&taken, slots, Some(Slot::Velocity), closure))));
@@ -105,7 +113,8 @@ impl<'d> Arguments<'d, '_> {
         diagnostics: &mut Diagnostics,
     ) {
         let (name, place) = (argument.pattern.spell(), argument.pattern.place());
-        if let Some(ty) = argument.ty.as_ref().filter(|_| taken[position] != Some(Slot::Offered)) {
+        if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(taken[position], Some(Slot::Offered | Slot::Input)))
+        {
             diagnostics.push(
                 Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
                     .help(format!("write `{name}` without `: {}`", spell_type(ty)))
@@ -119,6 +128,7 @@ impl<'d> Arguments<'d, '_> {
             }
             Some(Slot::Velocity) => self.check_new(argument, "the velocity", diagnostics),
             Some(Slot::Offered) => self.check_new(argument, "the symmetry", diagnostics),
+            Some(Slot::Input) => self.check_new(argument, "the input", diagnostics),
             Some(_) => {}
             None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
         }
@@ -163,6 +173,7 @@ impl<'d> Arguments<'d, '_> {
         let describe = |slot: &Slot| match (slot, self.names(*slot)) {
             (Slot::Time | Slot::Step, (name, _)) => format!("`{name}`"),
             (Slot::Velocity, _) => "a new name (velocity)".to_string(),
+            (Slot::Input, _) => "a new name with its type (input)".to_string(),
             (Slot::Offered, _) => "a new name with its group (symmetry)".to_string(),
             (_, (name, meaning)) => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
         };
@@ -176,7 +187,8 @@ impl<'d> Arguments<'d, '_> {
         let index = |slot: Slot| slots.iter().position(|&other| other == slot);
         let unknown_behind = taken[position + 1..].iter().filter(|slot| slot.is_none()).count();
         let limit = taken[position + 1..].iter().flatten().filter_map(|&slot| index(slot)).min().unwrap_or(slots.len());
-        let free = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) && !taken.contains(&Some(**slot));
+        let free =
+            |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Input) && !taken.contains(&Some(**slot));
         slots[..limit].iter().rev().filter(free).nth(unknown_behind).copied()
     }
 
@@ -192,7 +204,7 @@ impl<'d> Arguments<'d, '_> {
         let names: Vec<String> = wanted
             .map(|&slot| match taken.iter().position(|other| *other == Some(slot)) {
                 Some(position) => match slot {
-                    Slot::Offered => closure.arguments[position].spell(),
+                    Slot::Offered | Slot::Input => closure.arguments[position].spell(),
                     _ => closure.arguments[position].pattern.spell(),
                 },
                 None => self.names(slot).0,

@@ -36,6 +36,12 @@ pub struct Model<'g> {
     pub potential: Option<Expr<'g>>,
     /// The methods behind an opaque potential.
     pub opaque: Option<Opaque>,
+    /// The forces; `None` where nothing but the potential acts.
+    pub force: Option<Force<'g>>,
+    /// The leaves of the input u of a step; empty where forces take none.
+    pub inputs: Vec<Configuration<'g>>,
+    /// How the leaves of the input nest.
+    pub input: Structure,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// What becomes of motions of the group that move no configuration.
@@ -190,6 +196,18 @@ pub enum Kinetic<'g> {
         /// How ξ is made from F and h.
         discretization: Discretization,
     },
+}
+
+/// What acts beside the potential, as functions of t, q, ξ and the input u.
+pub struct Force<'g> {
+    /// The force in 𝔤*, in the components of each factor; `None` if there is none.
+    pub of_group: Option<Vec<Expr<'g>>>,
+    /// The force on each leaf of the configuration, a covector; `None` if there is none.
+    pub on_configuration: Option<Vec<Expr<'g>>>,
+    /// The symbols of ξ, one for each factor.
+    pub velocities: Vec<Expr<'g>>,
+    /// The closures' bodies as written.
+    pub written: Vec<Written>,
 }
 
 /// A symmetry that the user offers: an action of a group on configurations and group elements together, with

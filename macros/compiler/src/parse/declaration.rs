@@ -26,6 +26,10 @@ pub struct Declaration {
     pub kinetic: Kinetic,
     /// The potential energy; a free body has none.
     pub potential: Option<Potential>,
+    /// The force as a covector of the group, in 𝔤*.
+    pub force: Option<Closure>,
+    /// The force as a covector of the configuration.
+    pub force_on: Option<Closure>,
     /// The symmetries that the user offers.
     pub symmetries: Vec<Closure>,
     /// Everything else.
@@ -72,7 +76,9 @@ impl Declaration {
     /// All closures over the arguments of the action, the action first.
     pub fn closures(&self) -> impl Iterator<Item = &Closure> {
         let potential = self.potential.as_ref().and_then(Potential::closure);
-        [Some(&self.action), Some(self.kinetic.closure()), potential].into_iter().flatten().chain(&self.symmetries)
+        let forces = self.force.iter().chain(&self.force_on);
+        let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
+        energies.into_iter().flatten().chain(forces).chain(&self.symmetries)
     }
 }
 
@@ -114,7 +120,7 @@ pub(super) fn assemble(
                 .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
         );
     }
-    let Keys { action, potential, symmetries, groups, dials, .. } = keys;
+    let Keys { action, potential, force, force_on, symmetries, groups, dials, .. } = keys;
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
             ident: input.ident.clone(),
@@ -125,6 +131,8 @@ pub(super) fn assemble(
             action,
             kinetic,
             potential,
+            force,
+            force_on,
             symmetries,
             dials,
         }),

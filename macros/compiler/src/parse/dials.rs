@@ -67,6 +67,12 @@ impl Emit {
     /// Nothing beside the integrator.
     pub(super) const NOTHING: Emit = Emit { generated: false, tangent: false, boundary: false };
 
+    /// The words that ask for it.
+    pub(super) fn words(self) -> Vec<&'static str> {
+        let all = [(self.generated, "generated"), (self.tangent, "tangent"), (self.boundary, "boundary")];
+        all.into_iter().filter(|(asked, _)| *asked).map(|(_, word)| word).collect()
+    }
+
     /// What either of two asks for.
     pub(super) fn and(self, other: Emit) -> Emit {
         Emit {

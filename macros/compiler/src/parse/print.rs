@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::dials::Emit;
 use super::{Declaration, Definition, Kinetic, Potential, spell, spell_type};
 
 impl fmt::Display for Declaration {
@@ -26,6 +27,9 @@ impl fmt::Display for Declaration {
             Some(Potential::Opaque(opaque)) => writeln!(f, "  potential  = {}", opaque.spell())?,
             None => {}
         }
+        for force in self.force.iter().chain(&self.force_on) {
+            writeln!(f, "  {:<10} = {}", force.key.to_string(), force.spell())?;
+        }
         for symmetry in &self.symmetries {
             writeln!(f, "  symmetry   = {}", symmetry.spell())?;
         }
@@ -42,8 +46,8 @@ impl fmt::Display for Declaration {
         if let Some(isotropy) = &dials.isotropy {
             writeln!(f, "  isotropy   = {}", isotropy.value)?;
         }
-        if dials.emit.generated {
-            writeln!(f, "  emit       = [generated]")?;
+        if dials.emit != Emit::default() {
+            writeln!(f, "  emit       = [{}]", dials.emit.words().join(", "))?;
         }
         if let Some(scalar) = &dials.scalar {
             writeln!(f, "  scalar     = {scalar}")?;

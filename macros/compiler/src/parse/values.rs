@@ -47,6 +47,8 @@ pub(super) fn read(
             let place = match key.to_string().as_str() {
                 "action" => &mut keys.action,
                 "cost" => &mut keys.cost,
+                "force" => &mut keys.force,
+                "force_on" => &mut keys.force_on,
                 _ => &mut keys.lagrangian,
             };
             *place = closure;

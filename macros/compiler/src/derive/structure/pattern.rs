@@ -11,7 +11,7 @@ pub(super) struct Pattern {
     here: Matrix<Residue>,
     /// Where the coordinates have other values.
     there: Matrix<Residue>,
-    /// Where the momenta, the configuration and the time have other values.
+    /// Where the momenta, the configuration, the time and the input have other values.
     elsewhere: Matrix<Residue>,
 }
 
@@ -49,7 +49,7 @@ impl Pattern {
         let jacobian = matrix(model.graph, columns);
         let coordinates = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i].coordinates);
         let coordinates: Vec<Expr<'g>> = coordinates.collect();
-        let places = model.configurations.iter().map(|leaf| leaf.symbol).chain([model.time]);
+        let places = model.configurations.iter().chain(&model.inputs).map(|leaf| leaf.symbol).chain([model.time]);
         let others: Vec<Expr<'g>> = symbols.momenta.iter().copied().chain(places).collect();
         let at = |moved: &[Expr<'g>]| {
             let (mut point, mut other) = (Point::new(0), Point::new(1));

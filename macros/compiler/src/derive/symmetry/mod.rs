@@ -69,12 +69,13 @@ pub(super) fn find<'g>(
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,
     inertia: Expr<'g>,
+    force: Option<&[Expr<'g>]>,
 ) -> Symmetries<'g> {
     let (families, directions) = directions(model, symbols, generator);
     if directions.is_empty() {
         return Symmetries::default();
     }
-    let matrix = variations(model, symbols, lagrangian, &directions);
+    let matrix = variations(model, symbols, lagrangian, &directions, force);
     let found = identity::null_space(matrix, &|_| {});
     let finder = Finder { model, symbols, families, directions, matrix, inertia };
     let mut symmetries = Symmetries {
@@ -90,12 +91,14 @@ pub(super) fn find<'g>(
     symmetries
 }
 
-/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry.
+/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, and what the force changes of its
+/// momentum, ⟨f, ξ⟩.
 fn variations<'g>(
     model: &Model<'g>,
     symbols: &Symbols<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
     directions: &[Direction<'g>],
+    force: Option<&[Expr<'g>]>,
 ) -> Expr<'g> {
     let graph = model.graph;
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
@@ -112,8 +115,13 @@ fn variations<'g>(
         let terms = gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion));
         terms.fold(graph.integer(0), |sum, term| sum + term)
     };
-    let shape = Shape::new(parts.len(), directions.len());
+    let impulse: Vec<(Expr<'g>, Expr<'g>)> =
+        symbols.momenta.iter().copied().zip(force.unwrap_or_default().iter().copied()).collect();
+    let shape = Shape::new(parts.len() + usize::from(force.is_some()), directions.len());
     let entry = |(part, column): (usize, usize)| {
+        if part == parts.len() {
+            return directions[column].momentum.substitute(&impulse);
+        }
         let ((leaves, factors), direction) = (&gradients[part], &directions[column]);
         let moved = pairing(leaves, &direction.leaves) + pairing(factors, &direction.factors);
         match &direction.logarithms {

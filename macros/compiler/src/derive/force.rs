@@ -1,0 +1,88 @@
+//! Forces by the discrete Lagrange–d'Alembert principle: half of the impulse h·f at each end of a step.
+//!
+//! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both ends. The part of f at
+//! ξ = 0 is a kick; the rest joins the momentum equation as the coupling of a cost does.
+
+use clebsch_symbolic::{Expr, identity};
+
+use super::velocity;
+use crate::model::{Discretization, Kinetic, Model, Order};
+
+/// The forces on an edge, in the components of each factor.
+#[derive(Clone)]
+pub struct EdgeForce<'g> {
+    /// The impulse at the start that does not depend on the velocity, a function of t, q and u; `None` if there is none.
+    pub start: Option<Vec<Expr<'g>>>,
+    /// The rest of the impulse at the start, a function of t, q, F and u that vanishes at F = I; `None` if there is none.
+    pub start_moving: Option<Vec<Expr<'g>>>,
+    /// The impulse at the end, a function of F and u and of t and q there.
+    pub end: Vec<Expr<'g>>,
+}
+
+impl<'g> EdgeForce<'g> {
+    /// The whole impulse at the start.
+    pub fn whole_start(&self) -> Option<Vec<Expr<'g>>> {
+        super::total(self.start.clone(), self.start_moving.clone())
+    }
+}
+
+/// f in 𝔤*, that on configurations by J(q, f); `None` if nothing acts.
+pub(super) fn covector<'g>(
+    model: &Model<'g>,
+    covectors: &[Expr<'g>],
+    momentum_map: &[Expr<'g>],
+) -> Option<Vec<Expr<'g>>> {
+    let force = model.force.as_ref()?;
+    let on_leaves = force.on_configuration.as_ref().map(|leaves| -> Vec<Expr<'g>> {
+        let covectors: Vec<_> = covectors.iter().copied().zip(leaves.iter().copied()).collect();
+        momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
+    });
+    super::total(force.of_group.clone(), on_leaves)
+}
+
+/// The impulses of a force f on an edge that is one of `parts` in a step.
+pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], parts: i64) -> EdgeForce<'g> {
+    let part = model.step_size / parts;
+    let (first, last) = match model.order {
+        Order::First => (model.graph.integer(0), part),
+        Order::Second => (part / 2, part / 2),
+    };
+    let at_rest = |f: &Expr<'g>| {
+        let rest: Vec<_> = velocities(model).iter().map(|xi| (*xi, xi.graph().zero(xi.shape()))).collect();
+        f.substitute(&rest)
+    };
+    let moving = moving(model, part);
+    let of = |weight: Expr<'g>, f: &dyn Fn(&Expr<'g>) -> Expr<'g>| -> Vec<Expr<'g>> {
+        covector.iter().map(|component| weight * f(component)).collect()
+    };
+    let acts = |impulse: Vec<Expr<'g>>| impulse.iter().any(|part| !identity::vanishes(*part)).then_some(impulse);
+    let depends = velocities(model).iter().any(|xi| covector.iter().any(|component| component.depends_on(*xi)));
+    let start_moving = of(first, &|f| (f.substitute(&moving) - at_rest(f).substitute(&moving)).expand());
+    EdgeForce {
+        start: acts(of(first, &at_rest)),
+        start_moving: if depends { acts(start_moving) } else { None },
+        end: of(last, &|f| f.substitute(&moving)),
+    }
+}
+
+fn velocities<'a, 'g>(model: &'a Model<'g>) -> &'a [Expr<'g>] {
+    model.force.as_ref().map_or(&[], |force| &force.velocities)
+}
+
+/// The replacement of ξ by ξ(F)/h: by the logarithm where the Lagrangian is discretised so or where Cayley's map leaves a factor, by
+/// the projection where that is asked for, else by Cayley's map. Both ends see the same velocity, so it has to be odd: ξ(F⁻¹) = −ξ(F).
+fn moving<'g>(model: &Model<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let chosen = match &model.kinetic {
+        Kinetic::Lagrangian { discretization, .. } => *discretization,
+        Kinetic::Cost(_) => Discretization::Cayley,
+    };
+    let has_cayley =
+        model.factors.iter().all(|factor| factor.group.is_translation() || factor.group.has_cayley_chart(model.graph));
+    let discretization = match chosen {
+        Discretization::Exponential | Discretization::Projection => chosen,
+        _ if has_cayley => Discretization::Cayley,
+        _ => Discretization::Exponential,
+    };
+    let velocity = |(k, xi): (usize, &Expr<'g>)| (*xi, velocity::of_element(model, k, part, discretization));
+    velocities(model).iter().enumerate().map(velocity).collect()
+}
