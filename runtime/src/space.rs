@@ -15,6 +15,9 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// The largest |x| of all scalars x, 0 for `()`. NaN are passed over.
     fn max_abs(&self) -> T;
 
+    /// |self − other|², the sum over all scalars, 0 for `()`.
+    fn distance_squared(&self, other: &Self) -> T;
+
     /// Whether no scalar is NaN or infinite.
     #[inline]
     fn is_finite(&self) -> bool {
@@ -37,6 +40,10 @@ impl<T: Scalar> Space<T> for T {
     fn max_abs(&self) -> T {
         larger(T::zero(), self.abs())
     }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        (*self - *other) * (*self - *other)
+    }
 }
 
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
@@ -47,6 +54,10 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn max_abs(&self) -> T {
         self.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
+    }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.iter().zip(other.iter()).fold(T::zero(), |sum, (x, y)| sum + (*x - *y) * (*x - *y))
     }
 }
 
@@ -59,6 +70,10 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     fn max_abs(&self) -> T {
         self.coords.max_abs()
     }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.coords.distance_squared(&other.coords)
+    }
 }
 
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
@@ -69,6 +84,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     #[inline]
     fn max_abs(&self) -> T {
         self.iter().fold(T::zero(), |max, part| larger(max, part.max_abs()))
+    }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.iter().zip(other).fold(T::zero(), |sum, (part, other)| sum + part.distance_squared(other))
     }
 }
 
@@ -85,6 +104,10 @@ macro_rules! tuple {
                 let max = T::zero();
                 $(let max = larger(max, self.$index.max_abs());)*
                 max
+            }
+            #[inline]
+            fn distance_squared(&self, _other: &Self) -> T {
+                T::zero() $(+ self.$index.distance_squared(&_other.$index))*
             }
         }
     };
@@ -112,6 +135,8 @@ mod tests {
         assert!(nested.is_finite());
         assert_eq!(Space::<f64>::max_abs(&nested), 8.0);
         let mut broken = nested;
+        (broken.0[1].1.y, broken.3.coords.w) = (5.0, -4.0);
+        assert_eq!(Space::<f64>::distance_squared(&nested, &broken), 25.0);
         broken.0[1].1.y = f64::NAN;
         assert!(!broken.is_finite());
         broken.0[1].1.y = f64::NEG_INFINITY;
