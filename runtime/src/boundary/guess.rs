@@ -11,7 +11,8 @@ use num_traits::{One, Zero};
 /// Where the search for an extremal starts. Extremals between two endpoints are not unique: the guess selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess<T, const M: usize> {
-    /// A path that moves by the same group element in every edge, the shortest way to the target. A minimum is found.
+    /// A path that moves by the same group element in every edge, the shortest way to the target. A minimum is looked
+    /// for.
     Geodesic,
     /// The same with this velocity ξ in 𝔤 to start with, for other windings and directions. It need not lead to the target: the
     /// velocity near it that does is taken. An extremal is found that may be no minimum.
@@ -108,7 +109,8 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let (mut q, mut gap) = (end, End::of(system, &end, self.target));
         let mut fraction = S::Scalar::one();
         for _ in 0..PASSES {
-            if gap.is_closed() || gap.is_orthogonal() || gap.distance <= enough * gap.scale {
+            let near = gap.is_closed() || gap.distance <= enough * gap.scale;
+            if near || gap.is_orthogonal() || !gap.distance.is_finite() {
                 break;
             }
             let motion = gap.arc() * fraction;

@@ -12,9 +12,11 @@
 
 use super::Node;
 use super::end::End;
-use super::pivot::{Curvature, solve};
+use super::pivot::{Curvature, Solution, solve};
+use crate::linear::rows;
 use crate::space::larger;
 use crate::{Edge, Scalar, Stepper, Variational};
+use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
@@ -54,8 +56,8 @@ pub(super) struct Summary<T, const M: usize> {
 
 /// What the vertex at the start of the edges that are done needs of them.
 struct Pending<T, const M: usize> {
-    /// −∂F⁻ℓd/∂η − H_{k,k+1} K_{k+1}
-    hessian: SMatrix<T, M, M>,
+    /// −∂F⁻ℓd/∂η − H_{k,k+1} K_{k+1}: the lower triangle of its symmetric part
+    hessian: [[T; M]; M],
     /// −F⁻ℓd − H_{k,k+1} s_{k+1}
     gradient: SVector<T, M>,
     /// F⁻ℓd
@@ -80,12 +82,85 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         self.residual_squared * self.edges <= unit * unit * self.momenta
     }
 
+    fn of_nothing(edges: usize) -> Self {
+        let zero = T::zero();
+        Self {
+            action: zero,
+            decrement: zero,
+            residual_squared: zero,
+            after: SVector::from_element(zero),
+            negative: 0,
+            magnitude: zero,
+            momenta: zero,
+            stiffness: zero,
+            edges: T::from_f64(edges as f64),
+        }
+    }
+
     #[inline]
     fn count(&mut self, edge: &Edge<T, M>) {
         self.action += edge.lagrangian;
         self.magnitude += edge.lagrangian.abs();
         self.momenta += edge.before.dot(&edge.before);
         self.stiffness += edge.after_by_end.trace().abs();
+    }
+
+    #[inline]
+    fn count_vertex(&mut self, residual: &SVector<T, M>, gradient: &SVector<T, M>, solution: &Solution<T, M>) {
+        self.residual_squared = larger(self.residual_squared, residual.dot(residual));
+        self.decrement += solution.shift.dot(gradient);
+        self.negative += solution.negative;
+    }
+
+    /// The interior vertex where `edge` ends.
+    #[inline]
+    fn eliminate(
+        &mut self,
+        edge: &Edge<T, M>,
+        pending: &Pending<T, M>,
+        sign: T,
+        curvature: Curvature,
+    ) -> Solution<T, M> {
+        let mut pivot = lower_half(&edge.after_by_end);
+        for i in 0..M {
+            for j in 0..=i {
+                pivot[i][j] += pending.hessian[i][j];
+            }
+        }
+        let gradient = pending.gradient + edge.after;
+        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature);
+        self.count_vertex(&(edge.after - pending.before), &gradient, &solution);
+        solution
+    }
+
+    /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others.
+    ///
+    /// With the projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
+    #[inline(never)]
+    fn eliminate_end(&mut self, edge: &Edge<T, M>, end: &End<T, M>, sign: T, curvature: Curvature) -> Solution<T, M> {
+        self.after = edge.after;
+        self.decrement += end.closing.dot(&(edge.after_by_end * end.closing)).abs();
+        let Some(kernel) = &end.kernel else {
+            return Solution {
+                gain: SMatrix::from_element(T::zero()),
+                shift: -end.closing,
+                hessian: [[T::zero(); M]; M],
+                gradient: edge.before_by_end * end.closing,
+                negative: 0,
+            };
+        };
+        let gradient = kernel * (edge.after + edge.after_by_end * end.closing);
+        let size = edge.after_by_end.trace().abs() * sign;
+        let pivot = kernel * edge.after_by_end * kernel + (SMatrix::identity() - kernel) * size;
+        let coupling = -kernel * edge.before_by_end.transpose();
+        let solution = solve(&lower_half(&pivot), &rows(&coupling), &gradient, sign, curvature);
+        self.count_vertex(&(kernel * edge.after), &gradient, &solution);
+        Solution {
+            gain: kernel * solution.gain,
+            shift: kernel * solution.shift - end.closing,
+            gradient: solution.gradient + edge.before_by_end * end.closing,
+            ..solution
+        }
     }
 }
 
@@ -98,72 +173,21 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         end: &End<S::Scalar, M>,
         curvature: Curvature,
     ) -> Summary<S::Scalar, M> {
-        let zero = S::Scalar::zero();
-        let mut summary = Summary {
-            action: zero,
-            decrement: zero,
-            residual_squared: zero,
-            after: SVector::from_element(zero),
-            negative: 0,
-            magnitude: zero,
-            momenta: zero,
-            stiffness: zero,
-            edges: S::Scalar::from_f64(path.len() as f64),
-        };
+        let mut summary = Summary::of_nothing(path.len());
         let Some((last, rest)) = path.split_last_mut() else { return summary };
-        let mut pending = self.eliminate_end(rest.len(), last, end, curvature, &mut summary);
+        let edge = self.edge(rest.len(), &last.configuration, &last.increment);
+        summary.count(&edge);
+        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
+        let mut pending = Pending::behind(&edge, &solution);
+        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
         for (index, node) in rest.iter_mut().enumerate().rev() {
-            let edge = self.edge(index, node);
+            let edge = self.edge(index, &node.configuration, &node.increment);
             summary.count(&edge);
-            let residual = edge.after - pending.before;
-            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
-            let pivot = lower_half(&pending.hessian, &edge.after_by_end);
-            let gradient = pending.gradient + edge.after;
-            let coupling = coupling(&edge);
-            let solution = solve(&pivot, &coupling, &gradient, self.sign, curvature);
-            summary.decrement += solution.shift.dot(&gradient);
-            summary.negative += solution.negative;
-            pending = Pending::behind(&edge, &coupling, &solution.gain, &solution.shift);
+            let solution = summary.eliminate(&edge, &pending, self.sign, curvature);
+            pending = Pending::behind(&edge, &solution);
             (node.momentum, node.gain, node.shift) = (edge.before, solution.gain, solution.shift);
         }
         summary
-    }
-
-    /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others.
-    ///
-    /// With the projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
-    #[inline]
-    fn eliminate_end(
-        &self,
-        index: usize,
-        node: &mut Node<S, M>,
-        end: &End<S::Scalar, M>,
-        curvature: Curvature,
-        summary: &mut Summary<S::Scalar, M>,
-    ) -> Pending<S::Scalar, M> {
-        let edge = self.edge(index, node);
-        summary.count(&edge);
-        summary.after = edge.after;
-        let coupling = coupling(&edge);
-        node.momentum = edge.before;
-        node.gain = SMatrix::from_element(S::Scalar::zero());
-        node.shift = -end.closing;
-        let closing = lower_half(&SMatrix::from_element(S::Scalar::zero()), &edge.after_by_end);
-        summary.decrement += quadratic(&closing, &end.closing).abs();
-        if let Some(kernel) = &end.kernel {
-            let free = kernel * (edge.after + edge.after_by_end * end.closing);
-            let size = edge.after_by_end.trace().abs() * self.sign;
-            let pivot = kernel * edge.after_by_end * kernel + (SMatrix::identity() - kernel) * size;
-            let pivot = lower_half(&SMatrix::from_element(S::Scalar::zero()), &pivot);
-            let solution = solve(&pivot, &(kernel * coupling), &free, self.sign, curvature);
-            let residual = kernel * edge.after;
-            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
-            summary.decrement += solution.shift.dot(&free);
-            summary.negative += solution.negative;
-            node.gain = kernel * solution.gain;
-            node.shift += kernel * solution.shift;
-        }
-        Pending::behind(&edge, &coupling, &node.gain, &node.shift)
     }
 
     /// Moves the vertices by `fraction` of Newton's correction. Returns q_N.
@@ -214,7 +238,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             let behind = system.compose(&system.retraction(&(motion * -fraction)), &node.increment);
             motion = -node.shift - node.gain * motion;
             let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
-            action += self.edge(index, &Node { configuration: q, increment, ..*node }).lagrangian;
+            action += self.edge(index, &q, &increment).lagrangian;
             q = system.advance(&q, &increment);
         }
         action
@@ -228,11 +252,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         })
     }
 
-    #[inline]
-    fn edge(&self, index: usize, node: &Node<S, M>) -> Edge<S::Scalar, M> {
+    /// Not inlined: the elimination beside it needs the registers.
+    #[inline(never)]
+    fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element) -> Edge<S::Scalar, M> {
         let per_step = S::EDGES.max(1);
         let t = time_after::<S, M>(self.time, self.stepper.h, index / per_step);
-        self.stepper.system.edge(&self.stepper.constants, index % per_step, t, &node.configuration, &node.increment)
+        self.stepper.system.edge(&self.stepper.constants, index % per_step, t, q, d)
     }
 }
 
@@ -245,31 +270,33 @@ pub(super) fn time_after<S: Variational<M>, const M: usize>(start: S::Scalar, h:
 impl<T: Scalar, const M: usize> Pending<T, M> {
     /// After the elimination of the vertex where `edge` ends.
     #[inline]
-    fn behind(edge: &Edge<T, M>, coupling: &SMatrix<T, M, M>, gain: &SMatrix<T, M, M>, shift: &SVector<T, M>) -> Self {
-        let hessian = |i: usize, j: usize| {
-            (0..M).fold(-edge.before_by_start[(i, j)], |sum, k| sum - coupling[(k, i)] * gain[(k, j)])
-        };
-        let gradient = |i: usize, _| (0..M).fold(-edge.before[i], |sum, k| sum - coupling[(k, i)] * shift[k]);
-        Self { hessian: SMatrix::from_fn(hessian), gradient: SVector::from_fn(gradient), before: edge.before }
+    fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
+        let mut hessian = lower_half(&edge.before_by_start);
+        for i in 0..M {
+            for j in 0..=i {
+                hessian[i][j] = -(hessian[i][j] + solution.hessian[i][j]);
+            }
+        }
+        let gradient = -(edge.before + solution.gradient);
+        Self { hessian, gradient, before: edge.before }
     }
 }
 
-/// H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ
+/// H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ by rows
 #[inline]
-fn coupling<T: Scalar, const M: usize>(edge: &Edge<T, M>) -> SMatrix<T, M, M> {
-    SMatrix::from_fn(|i, j| -edge.before_by_end[(j, i)])
+fn coupling<T: Scalar, const M: usize>(edge: &Edge<T, M>) -> [[T; M]; M] {
+    from_fn(|i| from_fn(|j| -edge.before_by_end[(j, i)]))
 }
 
-/// The lower triangle of the symmetric part of A + B, with 0 above.
+/// The lower triangle of the symmetric part of A by rows, with 0 above.
 #[inline]
-fn lower_half<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
+fn lower_half<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
     let half = T::from_ratio(1, 2);
-    SMatrix::from_fn(|i, j| if i >= j { (a[(i, j)] + b[(i, j)] + a[(j, i)] + b[(j, i)]) * half } else { T::zero() })
-}
-
-/// x·Ax of a symmetric matrix given by its lower triangle.
-#[inline]
-fn quadratic<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, x: &SVector<T, M>) -> T {
-    let entry = |i: usize, j: usize| if i >= j { a[(i, j)] } else { a[(j, i)] };
-    (0..M).fold(T::zero(), |sum, i| sum + x[i] * (0..M).fold(T::zero(), |sum, j| sum + entry(i, j) * x[j]))
+    let mut lower = [[T::zero(); M]; M];
+    for (i, row) in lower.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().take(i + 1).enumerate() {
+            *entry = (a[(i, j)] + a[(j, i)]) * half;
+        }
+    }
+    lower
 }
