@@ -4,13 +4,16 @@ use super::Node;
 use super::end::End;
 use super::pivot::Curvature;
 use super::sweep::{Problem, Summary};
+use crate::space::larger;
 use crate::{Error, Scalar, Variational};
 use num_traits::{One, Zero};
 
 /// Backward sweeps of which one solution may make use.
 const SWEEPS: u32 = 200;
 /// Halvings of a step that makes the action larger.
-const HALVINGS: usize = 40;
+const HALVINGS: usize = 6;
+/// Damping beyond which no step goes downhill but for round-off.
+const DAMPING_LIMIT: f64 = 1e9;
 
 /// A path on which the action is critical.
 pub(super) struct Solved<S: Variational<M>, const M: usize> {
@@ -30,7 +33,8 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
-    /// taken back and the action is made smaller from there, with its Hessian made definite and steps halved as needed (Armijo's rule).
+    /// taken back and the action is made smaller from there, with its Hessian made definite, steps halved (Armijo's rule)
+    /// and, where that happens often, the Hessian damped.
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
     ///
     /// # Errors
@@ -50,14 +54,24 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             let gap = End::of(&self.stepper.system, &end, self.target);
             let summary = self.eliminate(path, &gap, curvature);
             size = summary.size();
-            if !summary.action.is_finite() && (sweeps == 1 || curvature == Curvature::Mirrored) {
+            if !summary.action.is_finite() && (sweeps == 1 || curvature != Curvature::Kept) {
                 return Err(Error::NotFinite { name: "the action of the path" });
             }
-            if has_converged(&summary, before.as_ref(), gap.is_closed()) {
+            let damped = matches!(curvature, Curvature::Mirrored { damping } if damping > S::Scalar::zero());
+            if !damped && has_converged(&summary, before.as_ref(), gap.is_closed()) {
                 return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
             }
-            if curvature == Curvature::Mirrored {
-                end = self.descend(path, &summary, sweeps)?;
+            if let Curvature::Mirrored { damping } = &mut curvature {
+                match self.descend(path, &summary) {
+                    Some((q, fraction)) => {
+                        end = q;
+                        *damping = adapted(*damping, fraction);
+                    }
+                    None if *damping > S::Scalar::from_f64(DAMPING_LIMIT) => {
+                        return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
+                    }
+                    None => *damping = adapted(*damping, S::Scalar::zero()),
+                }
             } else if self.is_progress(&summary, before.as_ref(), any_index) {
                 end = self.correct(path, S::Scalar::one());
             } else {
@@ -65,7 +79,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
                     end = self.take_back(path);
                 }
                 end = self.close(path, end, S::Scalar::zero());
-                (before, curvature) = (None, Curvature::Mirrored);
+                (before, curvature) = (None, Curvature::Mirrored { damping: S::Scalar::zero() });
                 continue;
             }
             before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
@@ -100,27 +114,39 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         (action - before.action) * self.sign <= -(promised * self.sign)
     }
 
-    /// A step that makes the action smaller, or a full one where the action has no digits left to tell. Returns q_N.
+    /// A step that makes the action smaller, or a full one where the action has no digits left to tell. Returns q_N and the fraction of
+    /// Newton's correction that was made; `None` where that would be too small.
     #[cold]
     fn descend(
         &self,
         path: &mut [Node<S, M>],
         summary: &Summary<S::Scalar, M>,
-        sweeps: u32,
-    ) -> Result<S::Configuration, Error> {
+    ) -> Option<(S::Configuration, S::Scalar)> {
         let size = summary.size();
         let before = Progress { size, action: summary.action, decrement: summary.decrement };
         let mut fraction = S::Scalar::one();
         if size * size <= S::Scalar::EPSILON.sqrt() && summary.negative == 0 {
-            return Ok(self.correct(path, fraction));
+            return Some((self.correct(path, fraction), fraction));
         }
         for _ in 0..HALVINGS {
             if self.is_lower(self.action_after(path, fraction), &before, fraction) {
-                return Ok(self.correct(path, fraction));
+                return Some((self.correct(path, fraction), fraction));
             }
             fraction *= S::Scalar::from_ratio(1, 2);
         }
-        Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps })
+        None
+    }
+}
+
+/// The damping after a step: eight times less after a full one, eight times more after one of less than a quarter.
+fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
+    let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
+    if fraction >= T::one() {
+        if damping > least { damping / factor } else { T::zero() }
+    } else if fraction < T::from_ratio(1, 4) {
+        larger(damping, least) * factor
+    } else {
+        damping
     }
 }
 

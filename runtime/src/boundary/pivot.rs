@@ -22,13 +22,14 @@ pub(super) struct Solution<T, const M: usize> {
     pub negative: usize,
 }
 
-/// How to solve where D is not definite.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Curvature {
+/// What is made of a Hessian that is not definite.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Curvature<T> {
     /// As it is: the critical point of the quadratic model.
     Kept,
-    /// With the eigenvalues of the wrong sign turned over, so that the action goes down.
-    Mirrored,
+    /// With the eigenvalues of pivots of the wrong sign turned over, so that the action goes down, and with this multiple of its
+    /// own diagonal added to each diagonal block.
+    Mirrored { damping: T },
 }
 
 /// D⁻¹C and D⁻¹g of a symmetric D, both by rows, of which only the lower triangle is read; `sign` is that of a minimum.
@@ -40,7 +41,7 @@ pub(super) fn solve<T: Scalar, const M: usize>(
     c: &[[T; M]; M],
     g: &SVector<T, M>,
     sign: T,
-    curvature: Curvature,
+    curvature: Curvature<T>,
 ) -> Solution<T, M> {
     match definite(d, c, g, sign) {
         Some(solution) => solution,
@@ -119,7 +120,7 @@ fn indefinite<T: Scalar, const M: usize>(
     c: &[[T; M]; M],
     g: &SVector<T, M>,
     sign: T,
-    curvature: Curvature,
+    curvature: Curvature<T>,
 ) -> Solution<T, M> {
     let (d, c) = (matrix(d), matrix(c));
     let spectrum = Spectrum::of(&d);
@@ -127,8 +128,8 @@ fn indefinite<T: Scalar, const M: usize>(
     let inverse = spectrum.map(|value| match curvature {
         Curvature::Kept if is_wrong(value) => -sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
         Curvature::Kept => sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
-        Curvature::Mirrored if value * sign > T::zero() => value.recip(),
-        Curvature::Mirrored => sign / larger(value.abs(), T::from_f64(MIRRORED) * spectrum.largest()),
+        Curvature::Mirrored { .. } if value * sign > T::zero() => value.recip(),
+        Curvature::Mirrored { .. } => sign / larger(value.abs(), T::from_f64(MIRRORED) * spectrum.largest()),
     });
     let negative = spectrum.values.iter().filter(|&&value| is_wrong(value)).count();
     let (gain, shift) = (inverse * c, inverse * g);
@@ -160,7 +161,7 @@ mod tests {
             let backward = solve(&rows(&-d), &rows(&C), &g, -1.0, Curvature::Kept);
             assert_eq!((solution.negative, backward.negative), (negative, negative), "{diagonal:?}");
             assert!((backward.shift + solution.shift).amax() < 1e-13);
-            let downhill = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Mirrored);
+            let downhill = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Mirrored { damping: 0.0 });
             assert!(downhill.shift.dot(&g) > 0.0);
             assert_eq!(downhill.negative, negative);
         }
@@ -173,7 +174,7 @@ mod tests {
             &rows(&C),
             &Vector3::x(),
             1.0,
-            Curvature::Mirrored,
+            Curvature::Mirrored { damping: 0.0 },
         );
         assert!(solution.gain.amax() < 1e5 && solution.negative == 0);
     }

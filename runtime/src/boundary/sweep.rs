@@ -119,13 +119,14 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         edge: &Edge<T, M>,
         pending: &Pending<T, M>,
         sign: T,
-        curvature: Curvature,
+        curvature: Curvature<T>,
     ) -> Solution<T, M> {
         let mut pivot = lower_half(&edge.after_by_end);
-        for i in 0..M {
-            for j in 0..=i {
-                pivot[i][j] += pending.hessian[i][j];
-            }
+        for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
+            row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
+        }
+        if let Curvature::Mirrored { damping } = curvature {
+            damp(&mut pivot, edge, damping * sign);
         }
         let gradient = pending.gradient + edge.after;
         let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature);
@@ -137,7 +138,13 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
     ///
     /// With the projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
     #[inline(never)]
-    fn eliminate_end(&mut self, edge: &Edge<T, M>, end: &End<T, M>, sign: T, curvature: Curvature) -> Solution<T, M> {
+    fn eliminate_end(
+        &mut self,
+        edge: &Edge<T, M>,
+        end: &End<T, M>,
+        sign: T,
+        curvature: Curvature<T>,
+    ) -> Solution<T, M> {
         self.after = edge.after;
         self.decrement += end.closing.dot(&(edge.after_by_end * end.closing)).abs();
         let Some(kernel) = &end.kernel else {
@@ -153,7 +160,11 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         let size = edge.after_by_end.trace().abs() * sign;
         let pivot = kernel * edge.after_by_end * kernel + (SMatrix::identity() - kernel) * size;
         let coupling = -kernel * edge.before_by_end.transpose();
-        let solution = solve(&lower_half(&pivot), &rows(&coupling), &gradient, sign, curvature);
+        let mut pivot = lower_half(&pivot);
+        if let Curvature::Mirrored { damping } = curvature {
+            damp(&mut pivot, edge, damping * sign);
+        }
+        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature);
         self.count_vertex(&(kernel * edge.after), &gradient, &solution);
         Solution {
             gain: kernel * solution.gain,
@@ -171,7 +182,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         &self,
         path: &mut [Node<S, M>],
         end: &End<S::Scalar, M>,
-        curvature: Curvature,
+        curvature: Curvature<S::Scalar>,
     ) -> Summary<S::Scalar, M> {
         let mut summary = Summary::of_nothing(path.len());
         let Some((last, rest)) = path.split_last_mut() else { return summary };
@@ -272,13 +283,20 @@ impl<T: Scalar, const M: usize> Pending<T, M> {
     #[inline]
     fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
         let mut hessian = lower_half(&edge.before_by_start);
-        for i in 0..M {
-            for j in 0..=i {
-                hessian[i][j] = -(hessian[i][j] + solution.hessian[i][j]);
-            }
+        for (row, eliminated) in hessian.iter_mut().zip(&solution.hessian) {
+            row.iter_mut().zip(eliminated).for_each(|(entry, eliminated)| *entry = -(*entry + *eliminated));
         }
         let gradient = -(edge.before + solution.gradient);
         Self { hessian, gradient, before: edge.before }
+    }
+}
+
+/// Adds a multiple of the mean of the diagonal of ∂F⁺ℓd/∂η′ to that of a pivot.
+#[cold]
+fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, damping: T) {
+    let mean = edge.after_by_end.trace().abs() / T::from_f64(M as f64);
+    for (i, row) in pivot.iter_mut().enumerate() {
+        row[i] += damping * mean;
     }
 }
 

@@ -124,6 +124,27 @@ fn paths_go_downhill_to_a_minimum() -> Result<(), Error> {
     Ok(())
 }
 
+/// Several periods of the pendulum, where full Newton steps lead nowhere: a minimum is found for all pairs of points.
+#[test]
+fn minima_over_long_times() -> Result<(), Error> {
+    let pendulum = DrivenPendulum { mass: 2.0, length: 0.5, gravity: 9.81, shake: 5.0, rate: 7.0 };
+    let stepper = pendulum.stepper(0.03)?;
+    let boundary = stepper.boundary();
+    let mut path = [boundary.rest(&start()); 200];
+    for trial in 0..50 {
+        // points spread over the sphere by the golden angle
+        let point = |k: f64| {
+            let (z, turn) = (1.0 - (2.0 * k + 1.0) / 50.0, 2.399_963 * k);
+            Vector3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z)
+        };
+        let (from, to) = (point(f64::from(trial)), point(f64::from((trial * 17 + 5) % 50)));
+        let extremal = boundary.solve(&from, &to, Guess::Geodesic, &mut path)?;
+        assert!(extremal.negative() == 0 && extremal.gap() < 1e-12, "{trial}: {extremal:?}");
+        assert!(extremal.residual() < 1e-11 && extremal.iterations() < 100, "{trial}: {extremal:?}");
+    }
+    Ok(())
+}
+
 #[test]
 fn points_out_of_reach_are_told() -> Result<(), Error> {
     let stepper = free().stepper(0.1)?;
