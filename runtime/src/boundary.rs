@@ -7,6 +7,7 @@
 //! | `guess` | the path to start from |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
+//! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
 //! | `end` | the gap to the target and the motions that fix it |
 
@@ -17,6 +18,7 @@ mod newton;
 mod node;
 mod pivot;
 mod sweep;
+mod vertex;
 
 pub use extremal::{Extremal, States};
 pub use guess::Guess;

@@ -3,7 +3,8 @@
 use super::Node;
 use super::end::End;
 use super::pivot::Curvature;
-use super::sweep::{Problem, Summary};
+use super::sweep::Problem;
+use super::vertex::Summary;
 use crate::space::larger;
 use crate::{Error, Scalar, Variational};
 use num_traits::{One, Zero};
@@ -46,7 +47,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         end: S::Configuration,
         any_index: bool,
     ) -> Result<Solved<S, M>, Error> {
-        let mut end = end;
+        let (mut end, mut any_index) = (end, any_index);
         let mut before: Option<Progress<S::Scalar>> = None;
         let mut curvature = Curvature::Kept;
         let mut size = S::Scalar::zero();
@@ -61,7 +62,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             if !damped && has_converged(&summary, before.as_ref(), gap.is_closed()) {
                 return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
             }
-            if let Curvature::Mirrored { damping } = &mut curvature {
+            let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
+            if curvature != Curvature::Kept && at_saddle {
+                // By symmetry no gradient leads away from here, and the action has no digits left to go by.
+                (curvature, any_index, before) = (Curvature::Kept, true, None);
+                continue;
+            } else if let Curvature::Mirrored { damping } = &mut curvature {
                 match self.descend(path, &summary) {
                     Some((q, fraction)) => {
                         end = q;

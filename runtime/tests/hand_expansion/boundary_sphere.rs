@@ -124,6 +124,22 @@ fn paths_go_downhill_to_a_minimum() -> Result<(), Error> {
     Ok(())
 }
 
+/// In the plane of symmetry no gradient leads out of it: what is least there is critical, and its index tells whether least at all.
+#[test]
+fn symmetric_problems_end_in_symmetric_extremals() -> Result<(), Error> {
+    let pendulum = DrivenPendulum { mass: 2.0, length: 0.5, gravity: 9.81, shake: 0.0, rate: 0.0 };
+    for time in [0.6, 1.0, 1.7] {
+        let stepper = pendulum.stepper(time / 50.0)?;
+        let boundary = stepper.boundary();
+        let mut path = [boundary.rest(&start()); 50];
+        let (from, to) = (Vector3::new(0.6, 0.0, -0.8), Vector3::new(-0.6, 0.0, -0.8));
+        let extremal = boundary.solve(&from, &to, Guess::Geodesic, &mut path)?;
+        assert!(extremal.residual() < 1e-11 && extremal.gap() < 1e-13, "{time}: {extremal:?}");
+        assert!(extremal.states().all(|state| state.configuration().y.abs() < 1e-9), "{time}");
+    }
+    Ok(())
+}
+
 /// Several periods of the pendulum, where full Newton steps lead nowhere: a minimum is found for all pairs of points.
 #[test]
 fn minima_over_long_times() -> Result<(), Error> {
