@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Display, Formatter};
 
-/// Why a stepper could not be made, a state not be taken or a step not be done. The state that was passed in is unchanged.
+/// Why a stepper could not be made, a state not be taken, a step not be done or an extremal not be found. The state that was passed in is unchanged.
 ///
 /// Numbers are given as `f64` whatever the scalar of the system is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,31 @@ pub enum Error {
         gradient: f64,
         /// What differences of the value method give.
         difference: f64,
+    },
+    /// The nodes that were given for a path do not make up whole steps.
+    PathLength {
+        /// Their number.
+        nodes: usize,
+        /// The number of nodes of one step.
+        per_step: usize,
+    },
+    /// No small motion of the start comes nearer to the target: its direction is not determined, as between opposite points of a
+    /// sphere, or the target is off the orbit.
+    UndeterminedDirection {
+        /// The distance from start to target, as the root of the sum of squares of all entries.
+        distance: f64,
+    },
+    /// No motion moves the start to the target.
+    Unreachable {
+        /// The least distance that was left, as the root of the sum of squares of all entries.
+        distance: f64,
+    },
+    /// The work allowed for one path with fixed endpoints was used up without a decision.
+    NoExtremal {
+        /// Size of the correction that would come next, relative to the path: the root of the ratio of what it takes from the action.
+        correction: f64,
+        /// Number of linearisations that were made.
+        iterations: u32,
     },
     /// The work allowed for one implicit equation was used up without a decision.
     NotConverged {
@@ -168,6 +193,24 @@ impl Display for Error {
                 f,
                 "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
                  check the sign, the factor and the order of entries of the gradient method"
+            ),
+            Self::PathLength { nodes, per_step } => {
+                write!(f, "a path of {nodes} nodes was given: give {per_step} for each step, and at least one step")
+            }
+            Self::UndeterminedDirection { distance } => write!(
+                f,
+                "no small motion brings the start nearer to the target, {distance:.3e} away: where they are opposite, give a velocity as \
+                 the guess; else check that some motion moves one to the other"
+            ),
+            Self::Unreachable { distance } => write!(
+                f,
+                "no motion was found from the start to the target: {distance:.3e} were left; check that the target is on the orbit of the \
+                 start, such as a vector of the same length, or give a velocity as the guess"
+            ),
+            Self::NoExtremal { correction, iterations } => write!(
+                f,
+                "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): \
+                 give a better guess, or go there by targets between"
             ),
             Self::NotConverged { residual, iterations } => write!(
                 f,

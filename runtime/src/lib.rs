@@ -43,6 +43,7 @@
 //! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
+//! | go from here to there in a given time | [`Stepper::boundary`], where second derivatives were asked for; [`Extremal`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
 //!
@@ -61,7 +62,9 @@ extern crate std;
 
 #[doc(hidden)]
 pub mod __private;
+mod boundary;
 mod conserved;
+mod eigen;
 mod element;
 mod energy;
 mod error;
@@ -84,6 +87,7 @@ mod time;
 mod trajectory;
 mod variational;
 
+pub use boundary::{Boundary, Extremal, Guess, Node, States};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
 pub use error::Error;

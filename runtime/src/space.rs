@@ -18,6 +18,9 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// Where all scalars are 0.
     fn origin() -> Self;
 
+    /// |self − other|², the sum over all scalars, 0 for `()`.
+    fn distance_squared(&self, other: &Self) -> T;
+
     /// Whether no scalar is NaN or infinite.
     #[inline]
     fn is_finite(&self) -> bool {
@@ -44,6 +47,10 @@ impl<T: Scalar> Space<T> for T {
     fn origin() -> Self {
         T::zero()
     }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        (*self - *other) * (*self - *other)
+    }
 }
 
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
@@ -58,6 +65,10 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn origin() -> Self {
         SMatrix::from_element(T::zero())
+    }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.iter().zip(other.iter()).fold(T::zero(), |sum, (x, y)| sum + (*x - *y) * (*x - *y))
     }
 }
 
@@ -74,6 +85,10 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     fn origin() -> Self {
         Quaternion { coords: SMatrix::origin() }
     }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.coords.distance_squared(&other.coords)
+    }
 }
 
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
@@ -88,6 +103,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     #[inline]
     fn origin() -> Self {
         [S::origin(); N]
+    }
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.iter().zip(other).fold(T::zero(), |sum, (part, other)| sum + part.distance_squared(other))
     }
 }
 
@@ -108,6 +127,10 @@ macro_rules! tuple {
             #[inline]
             fn origin() -> Self {
                 ($($name::origin(),)*)
+            }
+            #[inline]
+            fn distance_squared(&self, _other: &Self) -> T {
+                T::zero() $(+ self.$index.distance_squared(&_other.$index))*
             }
         }
     };
@@ -135,6 +158,8 @@ mod tests {
         assert!(nested.is_finite());
         assert_eq!(Space::<f64>::max_abs(&nested), 8.0);
         let mut broken = nested;
+        (broken.0[1].1.y, broken.3.coords.w) = (5.0, -4.0);
+        assert_eq!(Space::<f64>::distance_squared(&nested, &broken), 25.0);
         broken.0[1].1.y = f64::NAN;
         assert!(!broken.is_finite());
         broken.0[1].1.y = f64::NEG_INFINITY;

@@ -10,9 +10,9 @@ use num_traits::Zero;
 /// Made by [`Clebsch::stepper`]. Nothing in it changes from step to step: one stepper can serve any number of states.
 #[derive(Clone, Debug)]
 pub struct Stepper<S: Clebsch> {
-    system: S,
-    h: S::Scalar,
-    constants: S::Constants,
+    pub(crate) system: S,
+    pub(crate) h: S::Scalar,
+    pub(crate) constants: S::Constants,
 }
 
 impl<S: Clebsch> Stepper<S> {
@@ -192,7 +192,7 @@ impl<S: Clebsch> Stepper<S> {
     }
 
     /// q is finite and on its orbit, up to √ε.
-    fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
+    pub(crate) fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
         if !q.is_finite() {
             return Err(Error::NotFinite { name: "the configuration" });
         }
@@ -231,7 +231,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
     }
 }
 
-fn check_time<T: Scalar>(t: T) -> Result<(), Error> {
+pub(crate) fn check_time<T: Scalar>(t: T) -> Result<(), Error> {
     if t.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the time" }) }
 }
 

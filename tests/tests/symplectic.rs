@@ -225,7 +225,7 @@ fn steps_on_the_sphere_are_poisson_in_configuration_and_momentum() {
         let (at, momentum) = (variables::<6, 3, 1>(&q, 0), variables(&n, 3));
         let impulse = pendulum.impulse(&constants, Dual::constant(0.0), &at);
         let (next, next_momentum, _) =
-            pendulum.step(&constants, Dual::constant(0.0), &at, &momentum, &impulse).expect("a solvable step");
+            pendulum.step(&constants, Dual::constant(0.0), &at, &momentum, &impulse, &()).expect("a solvable step");
         let d = jacobian(next.iter().chain(next_momentum.iter()));
         let bracket = |q: Vector3<f64>, n: Vector3<f64>| {
             let mut b = SMatrix::<f64, 6, 6>::zeros();

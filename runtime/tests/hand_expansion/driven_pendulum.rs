@@ -36,6 +36,7 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
+        type Input = ();
         type Impulse = SVector<f64, 3>;
         type Constants = Constants;
         type Time = ::clebsch::Clock<f64>;
@@ -90,7 +91,7 @@ const _: () = {
             q: &SVector<f64, 3>,
             mu: &SVector<f64, 3>,
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let d = increment(constants, &(mu + self.impulse(constants, t, q)))?;
+            let d = increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q)))?;
             Ok(::clebsch::__private::from_increment(&d))
         }
 
@@ -109,6 +110,7 @@ const _: () = {
             q: &SVector<f64, 3>,
             mu: &SVector<f64, 3>,
             impulse: &SVector<f64, 3>,
+            _u: &(),
         ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
             let kicked = mu + impulse;
             let next = q + increment(constants, &kicked)? * q;
@@ -178,6 +180,92 @@ const _: () = {
         #[inline]
         fn conserved(&self, _q: &SVector<f64, 3>, mu: &SVector<f64, 3>) -> ::clebsch::Conserved<f64, 1> {
             ::clebsch::Conserved::new(["about e3"], [mu.z])
+        }
+    }
+
+    #[automatically_derived]
+    impl ::clebsch::Variational<3> for DrivenPendulum {
+        const EDGES: usize = 1;
+
+        /// cay(η) − I = (η^ + ½ η^²)/(1 + ¼|η|²)
+        #[inline]
+        fn retraction(&self, eta: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            let a = eta.cross_matrix();
+            (a + a * a * 0.5) / (1.0 + 0.25 * eta.norm_squared())
+        }
+
+        /// F₂F₁ − I
+        #[inline]
+        fn compose(&self, first: &SMatrix<f64, 3, 3>, second: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            first + second + second * first
+        }
+
+        /// q + Dq
+        #[inline]
+        fn advance(&self, q: &SVector<f64, 3>, d: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            q + d * q
+        }
+
+        /// The increment of the solve after the kick.
+        fn drift(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            t: f64,
+            q: &SVector<f64, 3>,
+            mu: &SVector<f64, 3>,
+            _u: &(),
+        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
+            increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q)))
+        }
+
+        /// ξ_Q
+        fn infinitesimal_motion(&self, q: &SVector<f64, 3>, xi: &SVector<f64, 3>) -> SVector<f64, 3> {
+            xi.cross(q)
+        }
+
+        /// ℓd = c|D|²/2 − (h/2)(V(t, q) + V(t + h, q⁺)), c = mass·length²/(2h), g = (h/2)∇V(t), g⁺ = (h/2)∇V(t + h):
+        ///
+        /// ∂N/∂η = −c(tr(F)I − Fᵀ) + qgᵀ − (q·g)I, ∂N/∂η′ = c(tr(F)I − F)
+        ///
+        /// ∂N⁺/∂η′ = c(tr(F)I − F) − q⁺g⁺ᵀ + (q⁺·g⁺)I
+        #[inline]
+        fn edge(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            t: f64,
+            q: &SVector<f64, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SVector<f64, 3>,
+            _u: &(),
+        ) -> ::clebsch::Edge<f64, 3> {
+            let c = 0.5 / constants.h_by_inertia;
+            let (g, g_next) =
+                (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
+            let identity = SMatrix::<f64, 3, 3>::identity();
+            let turning = (identity * (2.0 + d.trace()) - d) * c;
+            ::clebsch::Edge {
+                lagrangian: d.norm_squared() * (0.5 * c) - g.dot(q) - g_next.dot(&next),
+                before: components(d) * c + q.cross(&g),
+                after: components(d) * c - next.cross(&g_next),
+                before_by_start: q * g.transpose() - turning.transpose() - identity * q.dot(&g),
+                before_by_end: turning,
+                after_by_start: -turning.transpose(),
+                after_by_end: turning - next * g_next.transpose() + identity * next.dot(&g_next),
+            }
+        }
+
+        /// (e_i × q)·(e_j × q) = |q|²I − qqᵀ
+        #[inline]
+        fn orbit_metric(&self, q: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            SMatrix::<f64, 3, 3>::identity() * q.norm_squared() - q * q.transpose()
+        }
+
+        /// q × (target − q)
+        #[inline]
+        fn approach(&self, q: &SVector<f64, 3>, target: &SVector<f64, 3>) -> SVector<f64, 3> {
+            q.cross(&(target - q))
         }
     }
 

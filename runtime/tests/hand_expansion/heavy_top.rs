@@ -40,6 +40,7 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
+        type Input = ();
         type Impulse = SVector<f64, 3>;
         type Constants = Constants;
         type Time = ();
@@ -127,6 +128,7 @@ const _: () = {
             r: &SMatrix<f64, 3, 3>,
             mu: &SVector<f64, 3>,
             impulse: &SVector<f64, 3>,
+            _u: &(),
         ) -> ::core::result::Result<(SMatrix<f64, 3, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
             let kicked = mu + impulse;
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
@@ -202,6 +204,96 @@ const _: () = {
         #[inline]
         fn conserved(&self, r: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> ::clebsch::Conserved<f64, 1> {
             ::clebsch::Conserved::new(["about e3, spatial"], [(r * mu).z])
+        }
+    }
+
+    #[automatically_derived]
+    impl ::clebsch::Variational<3> for HeavyTop {
+        const EDGES: usize = 1;
+
+        /// cay(η) − I
+        #[inline]
+        fn retraction(&self, eta: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            increment(&(eta * 0.5))
+        }
+
+        /// F₁F₂ − I
+        #[inline]
+        fn compose(&self, first: &SMatrix<f64, 3, 3>, second: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            first + second + first * second
+        }
+
+        /// R + RD
+        #[inline]
+        fn advance(&self, r: &SMatrix<f64, 3, 3>, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            r + r * d
+        }
+
+        /// The increment of the solve after the kick.
+        fn drift(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            t: f64,
+            r: &SMatrix<f64, 3, 3>,
+            mu: &SVector<f64, 3>,
+            _u: &(),
+        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
+            let kicked = mu + ::clebsch::Clebsch::impulse(self, constants, t, r);
+            Ok(increment(&::clebsch::__private::solve(&Equation { constants }, &kicked)?))
+        }
+
+        /// ξ_Q
+        fn infinitesimal_motion(&self, r: &SMatrix<f64, 3, 3>, xi: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            r * hat(xi)
+        }
+
+        /// ℓd = tr(D𝒥Dᵀ)/(2h) − (h/2)(V(R) + V(R⁺)), A = F𝒥, m = (h/2)·weight·center:
+        ///
+        /// ∂N/∂η = (A − tr(A)I)/h − (Γ·m)I + Γmᵀ, ∂N/∂η′ = (tr(A)I − A)F/h
+        ///
+        /// ∂N⁺/∂η′ = (tr(A)I − Fᵀ𝒥)/h + (Γ⁺·m)I − Γ⁺mᵀ
+        #[inline]
+        fn edge(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            _t: f64,
+            r: &SMatrix<f64, 3, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SMatrix<f64, 3, 3>,
+            _u: &(),
+        ) -> ::clebsch::Edge<f64, 3> {
+            let (by_h, m) = (1.0 / constants.h, &constants.moment);
+            let (turned, turning) = (d * self.mass_matrix, self.mass_matrix * d);
+            let gamma = vector([r[(2, 0)], r[(2, 1)], r[(2, 2)]]);
+            let gamma_next = gamma + d.tr_mul(&gamma);
+            let identity = SMatrix::<f64, 3, 3>::identity();
+            let trace = identity * (self.mass_matrix.trace() + turned.trace());
+            let inertia = (trace - self.mass_matrix - turned) * by_h;
+            let before_by_end = inertia + inertia * d;
+            ::clebsch::Edge {
+                lagrangian: d.dot(&turned) * (0.5 * by_h) - gamma.dot(m) - gamma_next.dot(m),
+                before: components(&turned) * by_h - gamma.cross(m),
+                after: components(&turning) * by_h + gamma_next.cross(m),
+                before_by_start: gamma * m.transpose() - inertia - identity * gamma.dot(m),
+                before_by_end,
+                after_by_start: -before_by_end.transpose(),
+                after_by_end: (trace - self.mass_matrix - turning.transpose()) * by_h + identity * gamma_next.dot(m)
+                    - gamma_next * m.transpose(),
+            }
+        }
+
+        /// ⟨R E_i, R E_j⟩
+        #[inline]
+        fn orbit_metric(&self, _r: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            SMatrix::<f64, 3, 3>::identity() * 2.0
+        }
+
+        /// ⟨target − R, R E_i⟩
+        #[inline]
+        fn approach(&self, r: &SMatrix<f64, 3, 3>, target: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            components(&r.tr_mul(&(target - r)))
         }
     }
 

@@ -1,7 +1,10 @@
 //! Two systems expanded by hand in the shape of the derive macro's output, and what every stepper promises, tested on them:
 //! a heavy top (implicit, on a group) and a driven pendulum (in closed form, with time, on a sphere).
 
+mod boundary;
+mod boundary_sphere;
 mod driven_pendulum;
+mod edges;
 mod heavy_top;
 mod time;
 

@@ -113,7 +113,7 @@ where
     let mu = SVector::from_fn(|i, _| variable(M + i, case.mu[i]));
     let constants = system.constants(h).expect("a regular system");
     let impulse = system.impulse(&constants, t, &q);
-    let (q, mu, _) = system.step(&constants, t, &q, &mu, &impulse).expect("a solvable step");
+    let (q, mu, _) = system.step(&constants, t, &q, &mu, &impulse, &input).expect("a solvable step");
     (q, mu)
 }
 

@@ -1,0 +1,145 @@
+//! Fixed endpoints: the extremal of the action from one configuration to another in a given number of steps.
+//!
+//! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `guess` | the path to start from |
+//! | `newton` | iterates, and goes downhill where iterations do not contract |
+//! | `sweep` | linearises and eliminates backward, moves the vertices forward |
+//! | `vertex` | eliminates one vertex in the backward sweep |
+//! | `pivot` | the M×M linear algebra of one vertex |
+//! | `end` | the gap to the target and the motions that fix it |
+
+mod end;
+mod extremal;
+mod guess;
+mod newton;
+mod node;
+mod pivot;
+mod sweep;
+mod vertex;
+
+pub use extremal::{Extremal, States};
+pub use guess::Guess;
+pub use node::Node;
+
+use crate::stepper::check_time;
+use crate::{Clebsch, Clock, Error, Scalar, Space, Stepper, Variational};
+use num_traits::{One, Zero};
+use sweep::Problem;
+
+/// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
+#[derive(Debug)]
+pub struct Boundary<'a, S: Variational<M>, const M: usize> {
+    stepper: &'a Stepper<S>,
+    time: S::Scalar,
+}
+
+impl<S: Clebsch> Stepper<S> {
+    /// Problems with fixed endpoints: given q_0 and q_N instead of q_0 and N_0.
+    ///
+    /// ```text
+    /// let boundary = stepper.boundary();
+    /// let mut path = [boundary.rest(&q0); 50];
+    /// let extremal = boundary.solve(&q0, &target, Guess::Geodesic, &mut path)?;
+    /// ```
+    #[inline]
+    pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M>
+    where
+        S: Variational<M>,
+    {
+        Boundary { stepper: self, time: S::Scalar::zero() }
+    }
+}
+
+/// Where the cost or the potential depends on the time.
+impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>>, const M: usize> Boundary<'_, S, M> {
+    /// The same with paths that start at the time `t` instead of 0.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn starting_at(self, t: S::Scalar) -> Result<Self, Error> {
+        check_time(t)?;
+        Ok(Self { time: t, ..self })
+    }
+}
+
+impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
+    /// The stepper.
+    #[inline]
+    pub fn stepper(&self) -> &'a Stepper<S> {
+        self.stepper
+    }
+
+    /// The edge that stays at `q`, as storage: a path of N steps has N of them, and 2N where a step has two edges (order 2 of a cost that
+    /// is composed with its adjoint).
+    pub fn rest(&self, q: &S::Configuration) -> Node<S, M> {
+        Node::rest(&self.stepper.system, q)
+    }
+
+    /// The path from `start` to `target` on which the action Σ ℓd is critical, as near to the guess as Newton's method finds it.
+    ///
+    /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each edge is F⁻ℓd of the
+    /// next and q_N is the target, both up to round-off; where motions fix the target, the last momentum vanishes on them.
+    ///
+    /// Work: four to six linearisations from a good guess, each linear in the number of nodes; at most 200.
+    ///
+    /// # Errors
+    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for what was given;
+    /// * [`Error::UndeterminedDirection`] and [`Error::Unreachable`] where the target is opposite to the start or on another orbit;
+    /// * [`Error::NoExtremal`] where the work was not enough.
+    ///
+    /// After an error the nodes hold some path from `start`.
+    pub fn solve<'p>(
+        &self,
+        start: &S::Configuration,
+        target: &S::Configuration,
+        guess: Guess<S::Scalar, M>,
+        path: &'p mut [Node<S, M>],
+    ) -> Result<Extremal<'p, S, M>, Error>
+    where
+        'a: 'p,
+    {
+        self.check(start, target, &guess, path.len())?;
+        let zero = S::Scalar::zero();
+        let sign = if self.stepper.h < zero { -S::Scalar::one() } else { S::Scalar::one() };
+        let problem = Problem { stepper: self.stepper, time: self.time, start, target, sign };
+        let end = problem.prepare(path, &guess)?;
+        let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
+        Ok(Extremal {
+            stepper: self.stepper,
+            path,
+            time: self.time,
+            action: solved.summary.action,
+            residual: solved.summary.residual_squared.sqrt(),
+            gap: solved.end.distance_squared(target).sqrt(),
+            negative: solved.summary.negative,
+            iterations: solved.sweeps,
+            end: solved.end,
+            after: solved.summary.after,
+        })
+    }
+
+    /// Endpoints and guess are finite, endpoints on the declared space, nodes those of whole steps.
+    fn check(
+        &self,
+        start: &S::Configuration,
+        target: &S::Configuration,
+        guess: &Guess<S::Scalar, M>,
+        nodes: usize,
+    ) -> Result<(), Error> {
+        let per_step = S::EDGES.max(1);
+        if nodes == 0 || !nodes.is_multiple_of(per_step) {
+            return Err(Error::PathLength { nodes, per_step });
+        }
+        self.stepper.check_configuration(start)?;
+        self.stepper.check_configuration(target)?;
+        match guess {
+            Guess::Velocity(velocity) if !velocity.is_finite() => {
+                Err(Error::NotFinite { name: "the guessed velocity" })
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The last vertex: what separates it from the target and which of its motions are free.
+
+use crate::eigen::Spectrum;
+use crate::space::larger;
+use crate::{Scalar, Space, Variational};
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
+
+/// What is known where a path ends.
+#[derive(Clone, Copy)]
+pub(super) struct End<T, const M: usize> {
+    /// The smallest η that solves GᵀG η = Gᵀ(target − q_N); 0 where that is round-off.
+    pub closing: SVector<T, M>,
+    /// The orthogonal projector to the kernel of GᵀG, the motions that fix q_N; `None` where there are none.
+    pub kernel: Option<SMatrix<T, M, M>>,
+    /// |target − q_N|
+    pub distance: T,
+    /// |Gη|: the part of the gap along the orbit.
+    pub along: T,
+    /// The numbers that the gap is compared with: the largest entry of both configurations.
+    pub scale: T,
+}
+
+impl<T: Scalar, const M: usize> End<T, M> {
+    /// The end of a path at `q`.
+    ///
+    /// The kernel is of eigenvalues below √ε of the largest.
+    #[inline]
+    pub fn of<S: Variational<M, Scalar = T>>(system: &S, q: &S::Configuration, target: &S::Configuration) -> Self {
+        let metric = system.orbit_metric(q);
+        let approach = system.approach(q, target);
+        let (closing, kernel) = match regular(&metric, &approach) {
+            Some(closing) => (closing, None),
+            None => singular(&metric, &approach),
+        };
+        // Rounding makes the square of 0 negative.
+        let along = larger(T::zero(), closing.dot(&approach)).sqrt();
+        let scale = larger(target.max_abs(), q.max_abs());
+        let mut end = Self { closing, kernel, distance: q.distance_squared(target).sqrt(), along, scale };
+        if along <= T::from_f64(4.0) * T::EPSILON * scale {
+            end.closing = SVector::from_element(T::zero());
+        }
+        end
+    }
+
+    /// Whether nothing is left that motions along the orbit can close.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.closing.iter().all(|x| *x == T::zero())
+    }
+
+    /// Whether the gap is none to a person: below √ε.
+    pub fn is_reached(&self) -> bool {
+        self.distance <= T::EPSILON.sqrt() * (self.scale + self.distance)
+    }
+
+    /// Whether the gap stands at a right angle to the orbit, so that no small motion of q_N closes it.
+    pub fn is_orthogonal(&self) -> bool {
+        !self.is_reached() && self.along <= T::EPSILON.sqrt() * self.distance
+    }
+
+    /// The closing motion with the length of the arc over the gap: on a circle of any radius the chord makes the angle θ/2 with the
+    /// tangent, and the arc is θ/sin θ times as long as the tangential part of the chord.
+    pub fn arc(&self) -> SVector<T, M> {
+        let square = self.distance * self.distance - self.along * self.along;
+        let across = larger(T::zero(), square).sqrt();
+        let two = T::from_f64(2.0);
+        let angle = two * (across / self.along).atan();
+        let factor = angle / angle.sin();
+        if factor > T::one() { self.closing * factor } else { self.closing }
+    }
+}
+
+/// A⁻¹b by L Δ Lᵀ; `None` where a pivot is below √ε of its diagonal.
+#[inline]
+#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
+fn regular<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
+    let mut l: [[T; M]; M] = from_fn(|i| from_fn(|j| a[(i, j)]));
+    let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));
+    let mut x: [T; M] = from_fn(|i| b[i]);
+    for k in 0..M {
+        // NaN goes on and is found in the result.
+        if l[k][k] <= T::EPSILON.sqrt() * largest {
+            return None;
+        }
+        for i in k + 1..M {
+            let factor = l[i][k] / l[k][k];
+            for j in k + 1..=i {
+                l[i][j] -= factor * l[j][k];
+            }
+            x[i] -= factor * x[k];
+        }
+    }
+    for k in (0..M).rev() {
+        for i in k + 1..M {
+            x[k] -= l[i][k] * x[i];
+        }
+        x[k] /= l[k][k];
+    }
+    Some(SVector::from_fn(|i, _| x[i]))
+}
+
+/// A⁺b and the projector to the kernel of A.
+#[cold]
+fn singular<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
+    let spectrum = Spectrum::of(a);
+    let tolerance = T::EPSILON.sqrt() * spectrum.largest();
+    let inverse = spectrum.map(|value| if value > tolerance { value.recip() } else { T::zero() });
+    let kernel = spectrum.map(|value| if value > tolerance { T::zero() } else { T::one() });
+    (inverse * b, Some(kernel))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{End, regular, singular};
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn kernels_are_found() {
+        let q = Vector3::new(0.6, 0.0, 0.8);
+        let metric = Matrix3::identity() - q * q.transpose();
+        let b = Vector3::new(0.8, 2.0, -0.6);
+        assert_eq!(regular(&metric, &b), None);
+        let (closing, kernel) = singular(&metric, &b);
+        assert!((closing - b).amax() < 1e-15);
+        assert!((kernel.unwrap() - q * q.transpose()).amax() < 1e-15);
+        assert_eq!(regular(&(Matrix3::identity() * 2.0), &b), Some(b / 2.0));
+    }
+
+    #[test]
+    fn chords_become_arcs() {
+        for angle in [1e-9_f64, 0.5, 3.1] {
+            let radius = 3.0;
+            let end = End {
+                closing: Vector3::x(),
+                kernel: None,
+                distance: 2.0 * radius * (angle / 2.0).sin(),
+                along: radius * angle.sin(),
+                scale: radius,
+            };
+            assert!((end.arc().x * angle.sin() - angle).abs() < 1e-12, "{angle}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Newton's method on a path, and what is done where it does not contract.
+
+use super::Node;
+use super::end::End;
+use super::pivot::Curvature;
+use super::sweep::Problem;
+use super::vertex::Summary;
+use crate::space::larger;
+use crate::{Error, Scalar, Variational};
+use num_traits::{One, Zero};
+
+/// Backward sweeps of which one solution may make use.
+const SWEEPS: u32 = 200;
+/// Halvings of a step that makes the action larger.
+const HALVINGS: usize = 6;
+/// Damping beyond which no step goes downhill but for round-off.
+const DAMPING_LIMIT: f64 = 1e9;
+
+/// A path on which the action is critical.
+pub(super) struct Solved<S: Variational<M>, const M: usize> {
+    pub summary: Summary<S::Scalar, M>,
+    pub end: S::Configuration,
+    pub sweeps: u32,
+}
+
+/// What the sweep before told.
+struct Progress<T> {
+    size: T,
+    action: T,
+    decrement: T,
+}
+
+impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+    /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
+    ///
+    /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
+    /// taken back and the action is made smaller from there, with its Hessian made definite, steps halved (Armijo's rule)
+    /// and, where that happens often, the Hessian damped.
+    /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::Unreachable`], [`Error::NoExtremal`].
+    #[inline]
+    pub fn newton(
+        &self,
+        path: &mut [Node<S, M>],
+        end: S::Configuration,
+        any_index: bool,
+    ) -> Result<Solved<S, M>, Error> {
+        let (mut end, mut any_index) = (end, any_index);
+        let mut before: Option<Progress<S::Scalar>> = None;
+        let mut curvature = Curvature::Kept;
+        let mut size = S::Scalar::zero();
+        for sweeps in 1..=SWEEPS {
+            let gap = End::of(&self.stepper.system, &end, self.target);
+            let summary = self.eliminate(path, &end, &gap, curvature);
+            size = summary.size();
+            if !summary.action.is_finite() && (sweeps == 1 || curvature != Curvature::Kept) {
+                return Err(Error::NotFinite { name: "the action of the path" });
+            }
+            let damped = matches!(curvature, Curvature::Mirrored { damping } if damping > S::Scalar::zero());
+            if !damped && has_converged(&summary, before.as_ref(), gap.is_closed()) {
+                return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
+            }
+            let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
+            if curvature != Curvature::Kept && at_saddle {
+                // By symmetry no gradient leads away from here, and the action has no digits left to go by.
+                (curvature, any_index, before) = (Curvature::Kept, true, None);
+                continue;
+            } else if let Curvature::Mirrored { damping } = &mut curvature {
+                match self.descend(path, &summary) {
+                    Some((q, fraction)) => {
+                        end = q;
+                        *damping = adapted(*damping, fraction);
+                    }
+                    None if *damping > S::Scalar::from_f64(DAMPING_LIMIT) => {
+                        return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
+                    }
+                    None => *damping = adapted(*damping, S::Scalar::zero()),
+                }
+            } else if self.is_progress(&summary, before.as_ref(), any_index) {
+                end = self.correct(path, S::Scalar::one());
+            } else {
+                if before.is_some() {
+                    end = self.take_back(path);
+                }
+                end = self.close(path, end, S::Scalar::zero());
+                (before, curvature) = (None, Curvature::Mirrored { damping: S::Scalar::zero() });
+                continue;
+            }
+            before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
+        }
+        Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
+    }
+
+    /// Whether a full step is made next. Comparisons are written so that NaN is none.
+    #[inline]
+    fn is_progress(
+        &self,
+        summary: &Summary<S::Scalar, M>,
+        before: Option<&Progress<S::Scalar>>,
+        any_index: bool,
+    ) -> bool {
+        if summary.negative > 0 && !any_index {
+            return false;
+        }
+        let size = summary.size();
+        match before {
+            None => size.is_finite(),
+            Some(before) => {
+                size <= S::Scalar::from_ratio(1, 2) * before.size
+                    || (summary.negative == 0 && self.is_lower(summary.action, before, S::Scalar::one()))
+            }
+        }
+    }
+
+    /// Armijo's rule: a step of this fraction took at least a hundredth of what the slope promises.
+    fn is_lower(&self, action: S::Scalar, before: &Progress<S::Scalar>, fraction: S::Scalar) -> bool {
+        let promised = before.decrement * fraction * S::Scalar::from_ratio(1, 100);
+        (action - before.action) * self.sign <= -(promised * self.sign)
+    }
+
+    /// A step that makes the action smaller, or a full one where the action has no digits left to tell. Returns q_N and the fraction of
+    /// Newton's correction that was made; `None` where that would be too small.
+    #[cold]
+    fn descend(
+        &self,
+        path: &mut [Node<S, M>],
+        summary: &Summary<S::Scalar, M>,
+    ) -> Option<(S::Configuration, S::Scalar)> {
+        let size = summary.size();
+        let before = Progress { size, action: summary.action, decrement: summary.decrement };
+        let mut fraction = S::Scalar::one();
+        if size * size <= S::Scalar::EPSILON.sqrt() && summary.negative == 0 {
+            return Some((self.correct(path, fraction), fraction));
+        }
+        for _ in 0..HALVINGS {
+            if self.is_lower(self.action_after(path, fraction), &before, fraction) {
+                return Some((self.correct(path, fraction), fraction));
+            }
+            fraction *= S::Scalar::from_ratio(1, 2);
+        }
+        None
+    }
+}
+
+/// The damping after a step: eight times less after a full one, eight times more after one of less than a quarter.
+fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
+    let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
+    if fraction >= T::one() {
+        if damping > least { damping / factor } else { T::zero() }
+    } else if fraction < T::from_ratio(1, 4) {
+        larger(damping, least) * factor
+    } else {
+        damping
+    }
+}
+
+/// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off or it shrinks no more.
+///
+/// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray.
+#[inline]
+fn has_converged<T: Scalar, const M: usize>(
+    summary: &Summary<T, M>,
+    before: Option<&Progress<T>>,
+    closed: bool,
+) -> bool {
+    let size = summary.size();
+    if size <= T::from_f64(4.0) * T::EPSILON * summary.edges.sqrt() {
+        return true;
+    }
+    let seen = T::EPSILON.sqrt();
+    size <= seen
+        && match before {
+            Some(before) if before.size <= seen && closed && summary.is_stationary(T::from_f64(1024.0)) => true,
+            Some(before) if size > before.size * T::from_ratio(1, 8) => true,
+            _ => closed && summary.is_stationary(T::from_f64(16.0)),
+        }
+}
+
+/// The gap that is left where none of it can be closed.
+pub(super) fn unreachable<T: Scalar, const M: usize>(end: &End<T, M>) -> Error {
+    Error::Unreachable { distance: end.distance.to_f64() }
+}

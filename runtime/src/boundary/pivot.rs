@@ -1,0 +1,181 @@
+//! The symmetric M×M pivot of a vertex, and what is made of it: gain and shift.
+
+use crate::Scalar;
+use crate::eigen::Spectrum;
+use crate::linear::rows;
+use crate::space::larger;
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
+
+/// D⁻¹C and D⁻¹g, and what is known of D.
+#[derive(Clone, Copy)]
+pub(super) struct Solution<T, const M: usize> {
+    /// K = D⁻¹C
+    pub gain: SMatrix<T, M, M>,
+    /// s = D⁻¹g
+    pub shift: SVector<T, M>,
+    /// CᵀD⁻¹C: the lower triangle by rows. What is above counts for nothing.
+    pub hessian: [[T; M]; M],
+    /// CᵀD⁻¹g
+    pub gradient: SVector<T, M>,
+    /// The number of eigenvalues of the wrong sign: those of directions in which the action is no minimum.
+    pub negative: usize,
+}
+
+/// What is made of a Hessian that is not definite.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Curvature<T> {
+    /// As it is: the critical point of the quadratic model.
+    Kept,
+    /// With the eigenvalues of pivots of the wrong sign turned over, so that the action goes down, and with this multiple of its
+    /// own diagonal added to each diagonal block.
+    Mirrored { damping: T },
+}
+
+/// D⁻¹C and D⁻¹g of a symmetric D, both by rows, of which only the lower triangle is read; `sign` is that of a minimum.
+///
+/// D = L Δ Lᵀ without pivoting where D is definite: M³/6 + M²(M + 1) multiplications, M divisions. Else from eigenvalues.
+#[inline]
+pub(super) fn solve<T: Scalar, const M: usize>(
+    d: &[[T; M]; M],
+    c: &[[T; M]; M],
+    g: &SVector<T, M>,
+    sign: T,
+    curvature: Curvature<T>,
+) -> Solution<T, M> {
+    match definite(d, c, g, sign) {
+        Some(solution) => solution,
+        None => indefinite(d, c, g, sign, curvature),
+    }
+}
+
+/// [`solve`] where all pivots have the sign of `sign`.
+///
+/// With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W is: the next vertex, which waits for it, can be begun.
+#[inline]
+#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
+fn definite<T: Scalar, const M: usize>(
+    d: &[[T; M]; M],
+    c: &[[T; M]; M],
+    g: &SVector<T, M>,
+    sign: T,
+) -> Option<Solution<T, M>> {
+    let (mut l, mut w) = (*d, *c);
+    let mut v: [T; M] = from_fn(|i| g[i]);
+    let mut hessian = [[T::zero(); M]; M];
+    let mut gradient = [T::zero(); M];
+    let (mut gain, mut shift) = (w, v);
+    for k in 0..M {
+        let pivot = l[k][k];
+        if pivot * sign <= T::zero() || !pivot.is_finite() {
+            return None;
+        }
+        let reciprocal = pivot.recip();
+        let column: [T; M] = from_fn(|i| l[i][k]);
+        for i in k + 1..M {
+            l[i][k] = column[i] * reciprocal;
+            for j in k + 1..=i {
+                l[i][j] -= l[i][k] * column[j];
+            }
+            for j in 0..M {
+                w[i][j] -= l[i][k] * w[k][j];
+            }
+            v[i] -= l[i][k] * v[k];
+        }
+        for j in 0..M {
+            gain[k][j] = w[k][j] * reciprocal;
+        }
+        shift[k] = v[k] * reciprocal;
+        for i in 0..M {
+            for j in 0..=i {
+                hessian[i][j] += w[k][i] * gain[k][j];
+            }
+            gradient[i] += gain[k][i] * v[k];
+        }
+    }
+    for k in (0..M).rev() {
+        for i in k + 1..M {
+            for j in 0..M {
+                gain[k][j] -= l[i][k] * gain[i][j];
+            }
+            shift[k] -= l[i][k] * shift[i];
+        }
+    }
+    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: gradient.into(), negative: 0 })
+}
+
+/// The matrix of these rows.
+#[inline]
+fn matrix<T: Scalar, const M: usize>(rows: &[[T; M]; M]) -> SMatrix<T, M, M> {
+    SMatrix::from_fn(|i, j| rows[i][j])
+}
+
+/// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
+const MIRRORED: f64 = 1e-4;
+
+/// [`solve`] from eigenvalues. Those that are nothing beside the largest are treated as that round-off, not as zero.
+#[cold]
+fn indefinite<T: Scalar, const M: usize>(
+    d: &[[T; M]; M],
+    c: &[[T; M]; M],
+    g: &SVector<T, M>,
+    sign: T,
+    curvature: Curvature<T>,
+) -> Solution<T, M> {
+    let (d, c) = (matrix(d), matrix(c));
+    let spectrum = Spectrum::of(&d);
+    let is_wrong = |value: T| value * sign < T::zero();
+    let inverse = spectrum.map(|value| match curvature {
+        Curvature::Kept if is_wrong(value) => -sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
+        Curvature::Kept => sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
+        Curvature::Mirrored { .. } if value * sign > T::zero() => value.recip(),
+        Curvature::Mirrored { .. } => sign / larger(value.abs(), T::from_f64(MIRRORED) * spectrum.largest()),
+    });
+    let negative = spectrum.values.iter().filter(|&&value| is_wrong(value)).count();
+    let (gain, shift) = (inverse * c, inverse * g);
+    Solution { gain, shift, hessian: rows(&c.tr_mul(&gain)), gradient: c.tr_mul(&shift), negative }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Curvature, solve};
+    use crate::linear::rows;
+    use nalgebra::{Matrix3, Vector3};
+
+    const C: Matrix3<f64> = Matrix3::new(1.0, 2.0, 0.5, -1.0, 0.3, 0.2, 0.7, 0.1, -2.0);
+
+    #[test]
+    fn definite_and_indefinite_pivots_are_solved_and_counted() {
+        let g = Vector3::new(0.3, -0.2, 0.9);
+        for (diagonal, negative) in
+            [([4.0, 5.0, 6.0], 0), ([4.0, -5.0, 6.0], 1), ([-4.0, -5.0, -6.0], 3), ([0.0, 5.0, 0.0], 1)]
+        {
+            let d =
+                Matrix3::from_diagonal(&diagonal.into()) + Matrix3::new(0.0, 1.0, 0.2, 1.0, 0.0, -0.5, 0.2, -0.5, 0.0);
+            let solution = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Kept);
+            assert!((d * solution.gain - C).amax() < 1e-13, "{diagonal:?}");
+            assert!((d * solution.shift - g).amax() < 1e-13, "{diagonal:?}");
+            assert!((C.tr_mul(&solution.shift) - solution.gradient).amax() < 1e-13, "{diagonal:?}");
+            let hessian = C.tr_mul(&solution.gain);
+            assert!((0..3).all(|i| (0..=i).all(|j| (hessian[(i, j)] - solution.hessian[i][j]).abs() < 1e-13)));
+            let backward = solve(&rows(&-d), &rows(&C), &g, -1.0, Curvature::Kept);
+            assert_eq!((solution.negative, backward.negative), (negative, negative), "{diagonal:?}");
+            assert!((backward.shift + solution.shift).amax() < 1e-13);
+            let downhill = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Mirrored { damping: 0.0 });
+            assert!(downhill.shift.dot(&g) > 0.0);
+            assert_eq!(downhill.negative, negative);
+        }
+    }
+
+    #[test]
+    fn a_singular_pivot_gives_finite_directions() {
+        let solution = solve(
+            &rows(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0))),
+            &rows(&C),
+            &Vector3::x(),
+            1.0,
+            Curvature::Mirrored { damping: 0.0 },
+        );
+        assert!(solution.gain.amax() < 1e5 && solution.negative == 0);
+    }
+}

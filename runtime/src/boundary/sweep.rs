@@ -1,0 +1,138 @@
+//! The two sweeps of Newton's method on a path: backward to linearise and eliminate, forward to move the vertices.
+//!
+//! With the motions η_k of the vertices, η_0 = 0, the action has the gradient E_k = F⁺ℓd(edge k−1) − F⁻ℓd(edge k) and a symmetric block
+//! tridiagonal Hessian: H_kk of ∂F⁺ℓd/∂η′ of the edge before less ∂F⁻ℓd/∂η of the edge after, H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ. Diagonal blocks are
+//! made symmetric: their antisymmetric part, ½ ad*E, vanishes on an extremal. Elimination from the end,
+//! ```text
+//! D_k = H_kk − H_{k,k+1} D_{k+1}⁻¹ H_{k+1,k},    K_k = D_k⁻¹ H_{k,k−1},    s_k = D_k⁻¹ (E_k − H_{k,k+1} s_{k+1}),    η_k = −s_k − K_k η_{k−1}
+//! ```
+//! is Riccati's recursion. The numbers of negative eigenvalues of all D_k add up to the Morse index (Sylvester's law of inertia).
+//!
+//! Source: Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998), for the elimination; Marsden,
+//! Pekarsky and Shkoller, *Discrete Euler–Poincaré and Lie–Poisson equations* (1999), for actions on groups.
+
+use super::Node;
+use super::end::End;
+use super::pivot::Curvature;
+use super::vertex::{Pending, Summary};
+use crate::{Edge, Scalar, Space, Stepper, Variational};
+use nalgebra::SVector;
+use num_traits::Zero;
+
+/// Fixed endpoints for a stepper.
+pub(super) struct Problem<'a, S: Variational<M>, const M: usize> {
+    pub stepper: &'a Stepper<S>,
+    /// The time of the start.
+    pub time: S::Scalar,
+    pub start: &'a S::Configuration,
+    pub target: &'a S::Configuration,
+    /// The sign of the step size: that of the Hessian at a minimum.
+    pub sign: S::Scalar,
+}
+
+impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+    /// Linearises and eliminates a path that ends at `last_vertex`: fills momenta, gains and shifts of the nodes.
+    #[inline]
+    pub fn eliminate(
+        &self,
+        path: &mut [Node<S, M>],
+        last_vertex: &S::Configuration,
+        end: &End<S::Scalar, M>,
+        curvature: Curvature<S::Scalar>,
+    ) -> Summary<S::Scalar, M> {
+        let mut summary = Summary::of_nothing(path.len());
+        let Some((last, rest)) = path.split_last_mut() else { return summary };
+        let edge = self.edge(rest.len(), &last.configuration, &last.increment, last_vertex);
+        summary.count(&edge);
+        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
+        let mut pending = Pending::behind(&edge, &solution);
+        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
+        let mut next = &last.configuration;
+        for (index, node) in rest.iter_mut().enumerate().rev() {
+            let edge = self.edge(index, &node.configuration, &node.increment, next);
+            summary.count(&edge);
+            let solution = summary.eliminate(&edge, &pending, self.sign, curvature);
+            pending = Pending::behind(&edge, &solution);
+            (node.momentum, node.gain, node.shift) = (edge.before, solution.gain, solution.shift);
+            next = &node.configuration;
+        }
+        summary
+    }
+
+    /// Moves the vertices by `fraction` of Newton's correction. Returns q_N.
+    #[inline]
+    pub fn correct(&self, path: &mut [Node<S, M>], fraction: S::Scalar) -> S::Configuration {
+        let mut motion = SVector::from_element(S::Scalar::zero());
+        self.displace(path, |_, node| {
+            motion = -node.shift - node.gain * motion;
+            motion * fraction
+        })
+    }
+
+    /// Takes the last displacement back, up to round-off. Returns q_N.
+    #[cold]
+    pub fn take_back(&self, path: &mut [Node<S, M>]) -> S::Configuration {
+        self.displace(path, |_, node| -node.motion)
+    }
+
+    /// Moves the vertex where the edge number `index` ends by `motion(index, node)`, for all edges in order: F_k ↦ τ(η_k)⁻¹ F_k τ(η_{k+1}).
+    /// Returns q_N.
+    #[inline]
+    pub fn displace(
+        &self,
+        path: &mut [Node<S, M>],
+        mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<S::Scalar, M>,
+    ) -> S::Configuration {
+        let system = &self.stepper.system;
+        let (mut q, mut back) = (*self.start, SVector::from_element(S::Scalar::zero()));
+        for (index, node) in path.iter_mut().enumerate() {
+            let next = motion(index, node);
+            let behind = system.compose(&system.retraction(&back), &node.increment);
+            node.increment = system.compose(&behind, &system.retraction(&next));
+            node.configuration = q;
+            node.motion = next;
+            q = system.advance(&q, &node.increment);
+            back = -next;
+        }
+        q
+    }
+
+    /// The action after `fraction` of Newton's correction.
+    #[cold]
+    pub fn action_after(&self, path: &[Node<S, M>], fraction: S::Scalar) -> S::Scalar {
+        let system = &self.stepper.system;
+        let zero = SVector::<S::Scalar, M>::from_element(S::Scalar::zero());
+        let (mut q, mut motion, mut action) = (*self.start, zero, S::Scalar::zero());
+        for (index, node) in path.iter().enumerate() {
+            let behind = system.compose(&system.retraction(&(motion * -fraction)), &node.increment);
+            motion = -node.shift - node.gain * motion;
+            let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
+            let next = system.advance(&q, &increment);
+            action += self.edge(index, &q, &increment, &next).lagrangian;
+            q = next;
+        }
+        action
+    }
+
+    /// The configurations that the increments lead to. Returns q_N.
+    pub fn roll_out(&self, path: &mut [Node<S, M>]) -> S::Configuration {
+        path.iter_mut().fold(*self.start, |q, node| {
+            node.configuration = q;
+            self.stepper.system.advance(&q, &node.increment)
+        })
+    }
+
+    /// Not inlined: the elimination beside it needs the registers.
+    #[inline(never)]
+    fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
+        let per_step = S::EDGES.max(1);
+        let t = time_after::<S, M>(self.time, self.stepper.h, index / per_step);
+        self.stepper.system.edge(&self.stepper.constants, index % per_step, t, q, d, next, &S::Input::origin())
+    }
+}
+
+/// t₀ + kh; t₀ where the time does not matter.
+#[inline]
+pub(super) fn time_after<S: Variational<M>, const M: usize>(start: S::Scalar, h: S::Scalar, steps: usize) -> S::Scalar {
+    if size_of::<S::Time>() == 0 { start } else { start + S::Scalar::from_f64(steps as f64) * h }
+}
