@@ -36,7 +36,7 @@ impl Noise {
 mod tests {
     use super::*;
 
-    /// The first output for the seed 0 as the authors of the generator give it; mean and variance within 4 standard deviations.
+    /// The first output of the published code for the seed 0; mean and variance within 4 standard deviations.
     #[test]
     fn numbers_are_normal() {
         assert_eq!(Noise::new(0).bits(), 0xe220_a839_7b1d_cdaf);

@@ -19,7 +19,7 @@ pub fn logarithm(rotation: &Matrix3<f64>) -> Vector3<f64> {
 
 /// J(v) with exp((v + δ)^) = exp(v̂) exp((J δ)^) to first order: I − (1 − cos θ)/θ² v̂ + (θ − sin θ)/θ³ v̂², θ = |v|.
 ///
-/// Source: Chirikjian, *Stochastic Models, Information Theory, and Lie Groups* 2 (2012), §10.8.
+/// Source: Chirikjian, *Stochastic Models, Information Theory, and Lie Groups* 2 (2012), chapter 10.
 pub fn right_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
     let (angle, hat) = (v.norm(), v.cross_matrix());
     let (first, second) = if angle < SMALL {
