@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 11] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -26,6 +26,7 @@ const SCENES: [(&str, &str); 10] = [
         "relativistic_spin",
         "step,time,q00,q01,q02,q03,q10,q11,q12,q13,q20,q21,q22,q23,q30,q31,q32,q33,E1,E2,E3,B1,B2,B3",
     ),
+    ("sphere_bvp", "step,time,q1,q2,q3,N1,N2,N3"),
     ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
 
@@ -86,6 +87,9 @@ fn other_flags_hold_all_their_claims() {
         ("relativistic_spin", &["--anomaly", "-2", "--steps", "1000"]),
         ("relativistic_spin", &["--step-size", "0.1", "--steps", "1000"]),
         ("relativistic_spin", &["--electric", "0,0,0", "--magnetic", "0,0,0", "--steps", "10"]),
+        ("sphere_bvp", &["--order", "1"]),
+        ("sphere_bvp", &["--steps", "80"]),
+        ("sphere_bvp", &["--gravity", "0", "--from", "0.6,0.8,0", "--to", "0,0,-1"]),
     ] {
         let figure = file(&format!("{scene}-other.svg"));
         let output = run(scene, &[arguments, &["--figure", text(&figure)]].concat());
@@ -140,6 +144,9 @@ fn mistakes_are_explained() {
         ("relativistic_spin", &["--mass", "0"], "`0` is not above zero"),
         ("relativistic_spin", &["--step-size", "1"], "step 1 was not reached"),
         ("relativistic_spin", &["--momentum", "1e200,0,0"], "the configuration is not finite"),
+        ("sphere_bvp", &["--from", "0,2,0"], "normalise"),
+        ("sphere_bvp", &["--to", "0,-0.6,0.8"], "where they are opposite, give a velocity"),
+        ("sphere_bvp", &["--to", "0,0.6,-0.8"], "two different points are needed"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
