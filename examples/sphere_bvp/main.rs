@@ -42,17 +42,18 @@ pub struct Sphere2;
 pub struct Sphere3;
 
 /// Declares the pendulum at one order, so that both orders are the same pendulum.
+#[rustfmt::skip]
 macro_rules! spherical_pendulum {
     ($name:ident, order = $order:tt) => {
         /// A spherical pendulum of unit mass and length.
         #[derive(Clebsch, Clone, Debug)]
         #[clebsch(
-                                                            action    = |F: SO<3>, q: Unit<Vector3>| F * q,
-                                                            cost      = |h, F| (F - I).norm_squared() / (4 * h),
-                                                            potential = |q| self.gravity * q.z,
-                                                            order     = $order,
-                                                            emit      = [boundary],
-                                                        )]
+            action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+            cost      = |h, F| (F - I).norm_squared() / (4 * h),
+            potential = |q| self.gravity * q.z,
+            order     = $order,
+            emit      = [boundary],
+        )]
         pub struct $name {
             /// g, m/s².
             pub gravity: f64,

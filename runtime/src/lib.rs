@@ -43,7 +43,8 @@
 //! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
-//! | go from here to there in a given time | [`Stepper::boundary`], where second derivatives were asked for; [`Extremal`] |
+//! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
+//! | give each step an input of its forces | [`Stepper::step_with`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
 //!

@@ -41,6 +41,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     ) -> Result<Self::Element, Error>;
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
+    #[allow(clippy::too_many_arguments)]
     fn edge(
         &self,
         constants: &Self::Constants,
@@ -93,7 +94,7 @@ pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
     const QUANTITIES: [&'static str; P];
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
     fn edge_slopes(
         &self,
         constants: &Self::Constants,
