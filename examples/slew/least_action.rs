@@ -59,9 +59,9 @@ pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     if let Some(least) = slews.rows.first() {
         order::compare(&problem, &least.shot, &mut claims)?;
     }
-    slews.claim(&mut claims);
+    slews.claim(&mut claims)?;
     slews.write(flags, &problem)?;
-    figure::draw(flags, &problem, &slews.ways)?;
+    figure::draw(flags, &problem, &slews.ways, slews.least()?)?;
     Ok(claims)
 }
 
@@ -92,22 +92,39 @@ fn find<S: FreeBody>(problem: &Problem, claims: &mut Claims) -> Result<Slews, Fa
 }
 
 impl Slews {
-    /// Claims what is least.
-    fn claim(&self, claims: &mut Claims) {
-        let (Some(least), Some(first)) = (self.rows.first(), self.ways.first()) else { return };
-        let name = "the short way is a minimum, the least of all slews";
-        let is_least = least.guesses.contains(&first.name) && first.slew.index == 0;
-        claims.holds(name, is_least, &format!("index {}, the first of {}", first.slew.index, self.rows.len()));
-        let reason = "J s, the turn about the fixed axis";
-        claims.at_most("it costs no more than that about a fixed axis", first.slew.action, first.steady, reason);
+    /// The least of those that guesses lead to.
+    ///
+    /// # Errors
+    /// Where there is none.
+    fn least(&self) -> Result<&Way, Failure> {
+        let least = self.ways.iter().min_by(|a, b| a.slew.action.total_cmp(&b.slew.action));
+        least.ok_or_else(|| Failure::Flags("no guess leads to a slew".to_owned()))
     }
 
-    /// The slew the short way, as a file.
+    /// Claims what is least.
+    fn claim(&self, claims: &mut Claims) -> Result<(), Failure> {
+        let (least, slew) = (self.least()?, &self.least()?.slew);
+        let name = "no slew costs less than the least from a guess";
+        let first = self.rows.iter().find(|row| row.guesses.contains(&least.name));
+        match first {
+            Some(row) => {
+                let reason = format!("J s, the least of {} slews by shooting", self.rows.len());
+                claims.at_most(name, row.shot.action, self.rows[0].shot.action * (1.0 + 1e-9), &reason);
+            }
+            None => claims.skip(name, "no continuous slew is near: too long a step"),
+        }
+        claims.holds("it is a minimum", slew.index == 0, &format!("index {}", slew.index));
+        let steady = self.ways.iter().fold(f64::INFINITY, |least, way| way.steady.min(least));
+        let reason = "J s, the least of a turn about the fixed axis";
+        claims.at_most("no turn about the fixed axis costs less", slew.action, steady * (1.0 + 1e-9), reason);
+        Ok(())
+    }
+
+    /// The least slew, as a file.
     fn write(&self, flags: &Flags, problem: &Problem) -> Result<(), Failure> {
         let columns = "R11 R12 R13 R21 R22 R23 R31 R32 R33 pi1 pi2 pi3 omega1 omega2 omega3";
         let mut csv = Csv::create(&flags.run, &columns.split(' ').collect::<Vec<_>>())?;
-        let path = self.ways.first().map_or(&[][..], |way| &way.slew.path);
-        for (step, (attitude, momentum)) in (0..).zip(path) {
+        for (step, (attitude, momentum)) in (0..).zip(&self.least()?.slew.path) {
             let omega = problem.body.spin(momentum);
             let state = by_rows(attitude).chain(by_rows(momentum)).chain(by_rows(&omega));
             csv.row(step, flags.run.time(step), state)?;

@@ -1,4 +1,10 @@
-//! A spacecraft turned from one attitude to another in a given time.
+//! A spacecraft turned from one attitude to another in a given time: which motion costs least?
+//!
+//! Here the cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at the
+//! end is not asked, orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
+//! sources are in `body`. Geodesics of rotation groups and their conjugate points: Arnold, *Mathematical Methods of Classical Mechanics*
+//! (1989), appendix 2; Milnor, *Morse Theory* (1963), §15. Fixed endpoints of a free body by discrete Clebsch optimal control: Nordkvist,
+//! Crouch and Bloch, *Discrete Clebsch Optimal Control*.
 
 mod attitude;
 mod body;

@@ -12,15 +12,15 @@ use nalgebra::{Matrix3, Vector3};
 /// Colours of the ways.
 const COLOURS: [RGBColor; 4] = [BLUE, ORANGE, GREEN, PURPLE];
 
-/// Left the paths of the first axis in space; right the angle from the start for all ways, and the angular velocity the short way.
-pub fn draw(flags: &Flags, problem: &Problem, ways: &[Way]) -> Result<(), Failure> {
+/// Left the paths of the first axis in space; right the angle from the start for all ways, and the angular velocity of the least.
+pub fn draw(flags: &Flags, problem: &Problem, ways: &[Way], least: &Way) -> Result<(), Failure> {
     figure::draw(&flags.run, SCENE.name, (1000, 560), |area| {
         let (left, right) = figure::columns(area, 470.0);
         let title = format!("Slews in {} s, the first axis of the body", problem.duration);
         globe(&figure::caption(&left, &title)?, problem, ways)?;
         let (above, below) = figure::rows(&right, 270.0);
         angles(flags, problem, ways).draw(&above)?;
-        spin(flags, problem, ways).draw(&below)
+        spin(flags, problem, least).draw(&below)
     })
 }
 
@@ -47,14 +47,13 @@ fn angles(flags: &Flags, problem: &Problem, ways: &[Way]) -> Panel<'static> {
         Series { label: way.name, colour, points: points.collect() }
     };
     let series = ways.iter().zip(COLOURS).map(curve).collect();
-    Panel { title: "Angle from the start", unit: "degrees", x_label: "", series }
+    Panel { title: "Turned by", unit: "degrees", x_label: "", series }
 }
 
-fn spin(flags: &Flags, problem: &Problem, ways: &[Way]) -> Panel<'static> {
-    let path = ways.first().map_or(&[][..], |way| &way.slew.path);
+fn spin(flags: &Flags, problem: &Problem, least: &Way) -> Panel<'static> {
     let curve = |label, colour, entry: fn(&Vector3<f64>) -> f64| {
         let value = |momentum: &Vector3<f64>| entry(&problem.body.spin(momentum)).to_degrees();
-        let points = (0..).zip(path).map(|(step, (_, momentum))| (flags.run.time(step), value(momentum)));
+        let points = (0..).zip(&least.slew.path).map(|(step, (_, momentum))| (flags.run.time(step), value(momentum)));
         Series { label, colour, points: points.collect() }
     };
     let series = vec![
@@ -62,5 +61,5 @@ fn spin(flags: &Flags, problem: &Problem, ways: &[Way]) -> Panel<'static> {
         curve("Ω₂", ORANGE, |omega| omega.y),
         curve("Ω₃", GREEN, |omega| omega.z),
     ];
-    Panel { title: "Angular velocity, the short way", unit: "degrees/s", x_label: "time (s)", series }
+    Panel { title: "Angular velocity of the least", unit: "degrees/s", x_label: "time (s)", series }
 }

@@ -13,6 +13,9 @@ use clebsch_examples::flags::Order;
 use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 
+/// Attitudes that are further apart, as the norm of their difference, are not of the same slew.
+const FAR: f64 = 0.5;
+
 /// Both, and how they agree.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -52,6 +55,7 @@ impl Row {
         };
         convergence.claim(Order::Second, &order, claims);
         match self.conjugate {
+            _ if convergence.errors[0] > FAR => claims.skip(&index, "the steps have gone another way: too long a step"),
             Some(points) => claims.holds(&index, points == slew.index, &format!("{points}")),
             None => claims.skip(&index, "two of them are too near one another to be counted, or one is at the end"),
         }

@@ -8,8 +8,7 @@ use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 
 /// Guesses: names, and turns more than the shortest about the fixed axis.
-pub const WAYS: [(&str, i32); 4] =
-    [("the short way", 0), ("the other way", -1), ("short and a turn", 1), ("other and a turn", -2)];
+pub const WAYS: [(&str, i32); 4] = [("short", 0), ("other", -1), ("short + turn", 1), ("other + turn", -2)];
 
 /// A slew that was found from the turn about the fixed axis.
 #[derive(Clone, Debug)]
@@ -43,7 +42,7 @@ pub fn follow<S: FreeBody>(problem: &Problem) -> Result<Vec<Way>, Failure> {
     Ok(ways)
 }
 
-/// What the guesses lead to.
+/// What all guesses lead to.
 pub fn table(ways: &[Way]) -> Table<7> {
     let mut table = Table::new([
         "guess",
@@ -54,12 +53,16 @@ pub fn table(ways: &[Way]) -> Table<7> {
         "arrives to",
         "space momentum moves",
     ]);
-    for Way { name, steady, slew } in ways {
+    for (name, _) in WAYS {
+        let Some(Way { steady, slew, .. }) = ways.iter().find(|way| way.name == name) else {
+            table.row([name, "", "none found", "", "", "", ""].map(str::to_owned));
+            continue;
+        };
         table.row([
-            (*name).to_owned(),
+            name.to_owned(),
             format!("{steady:.3}"),
             format!("{:.3}", slew.action),
-            format!("{:.2}", slew.angle().to_degrees()),
+            format!("{:.2}", slew.angle.to_degrees()),
             slew.iterations.to_string(),
             format!("{:.1e}", slew.gap),
             format!("{:.1e}", slew.space_momentum),
