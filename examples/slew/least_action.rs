@@ -59,6 +59,8 @@ pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     if let Some(least) = slews.rows.first() {
         order::compare(&problem, &least.shot, &mut claims)?;
     }
+    let [x, y, z] = slews.least()?.slew.momentum().into();
+    say(format_args!("the least starts with the momentum {x:.6e}, {y:.6e}, {z:.6e} N m s in the body frame\n"));
     slews.claim(&mut claims)?;
     slews.write(flags, &problem)?;
     figure::draw(flags, &problem, &slews.ways, slews.least()?)?;
@@ -105,8 +107,7 @@ impl Slews {
     fn claim(&self, claims: &mut Claims) -> Result<(), Failure> {
         let (least, slew) = (self.least()?, &self.least()?.slew);
         let name = "no slew costs less than the least from a guess";
-        let first = self.rows.iter().find(|row| row.guesses.contains(&least.name));
-        match first {
+        match self.rows.iter().find(|row| row.guesses.contains(&least.name)) {
             Some(row) => {
                 let reason = format!("J s, the least of {} slews by shooting", self.rows.len());
                 claims.at_most(name, row.shot.action, self.rows[0].shot.action * (1.0 + 1e-9), &reason);

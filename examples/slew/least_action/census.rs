@@ -2,6 +2,7 @@
 
 use super::euler::Euler;
 use super::shooting::Shot;
+use clebsch_examples::progress::Progress;
 use nalgebra::{Matrix3, Vector3};
 
 /// Directions to shoot in, evenly spread.
@@ -16,17 +17,22 @@ const SAME: f64 = 1e-6;
 /// The action of a free motion is its energy times the duration, so that all of them start within an ellipsoid of momenta. Nothing
 /// proves that none has been missed.
 pub fn take(euler: &Euler, to: &Matrix3<f64>, known: impl Iterator<Item = Shot>, largest: f64) -> (Vec<Shot>, usize) {
-    let mut shots: Vec<Shot> = known.collect();
-    let starts = || LEVELS.iter().flat_map(|level| (0..DIRECTIONS).map(move |k| (spiral(k), level * largest)));
-    for (direction, action) in starts() {
-        let guess = euler.momentum(&direction, action);
-        let new = Shot::aim(euler, to, &guess).filter(|shot| shot.action <= largest * (1.0 + 1e-9));
-        if let Some(new) = new.filter(|new| shots.iter().all(|known| !is_same(known, new))) {
+    let starts: Vec<_> =
+        LEVELS.iter().flat_map(|level| (0..DIRECTIONS).map(move |k| (spiral(k), level * largest))).collect();
+    let mut progress = Progress::of(starts.len() as u64, "shots");
+    let aimed = (1..).zip(&starts).filter_map(|(number, (direction, action))| {
+        let shot = Shot::aim(euler, to, &euler.momentum(direction, *action));
+        progress.reached(number);
+        shot.filter(|shot| shot.action <= largest * (1.0 + 1e-9))
+    });
+    let mut shots: Vec<Shot> = Vec::new();
+    for new in known.chain(aimed) {
+        if shots.iter().all(|known| !is_same(known, &new)) {
             shots.push(new);
         }
     }
     shots.sort_by(|a, b| a.action.total_cmp(&b.action));
-    (shots, starts().count())
+    (shots, starts.len())
 }
 
 /// Whether both are the same motion.
