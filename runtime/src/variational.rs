@@ -53,6 +53,20 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         u: &Self::Input,
     ) -> Edge<Self::Scalar, M>;
 
+    /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
+    /// Together they say everything, and nothing of the size of inertia/h cancels.
+    #[allow(clippy::too_many_arguments)]
+    fn carried(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Carried<Self::Scalar, M>;
+
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
     fn infinitesimal_motion(&self, q: &Self::Configuration, xi: &Self::Momentum) -> Self::Configuration;
 
@@ -82,6 +96,23 @@ pub struct Edge<T, const M: usize> {
     pub before_by_end: SMatrix<T, M, M>,
     /// ∂F⁺ℓd/∂η = −(∂F⁻ℓd/∂η′)ᵀ, for motions of different vertices commute.
     pub after_by_start: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η′
+    pub after_by_end: SMatrix<T, M, M>,
+}
+
+/// An edge with the derivatives of its momenta along the motions of its start that carry its end along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried<T, const M: usize> {
+    /// F⁺ℓd, the momentum at the end.
+    pub momentum: SVector<T, M>,
+    /// η ↦ η′: Ad_F for a left action, Ad_{F⁻¹} for a right one.
+    pub adjoint: SMatrix<T, M, M>,
+    /// ∂F⁻ℓd/∂η at fixed F: of potentials, forces and costs that couple; else 0.
+    pub before: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η at fixed F.
+    pub after: SMatrix<T, M, M>,
+    /// ∂F⁻ℓd/∂η′
+    pub before_by_end: SMatrix<T, M, M>,
     /// ∂F⁺ℓd/∂η′
     pub after_by_end: SMatrix<T, M, M>,
 }

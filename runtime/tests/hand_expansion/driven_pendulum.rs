@@ -246,13 +246,40 @@ const _: () = {
             let identity = SMatrix::<f64, 3, 3>::identity();
             let turning = (identity * (2.0 + d.trace()) - d) * c;
             ::clebsch::Edge {
-                lagrangian: d.norm_squared() * (0.5 * c) - g.dot(q) - g_next.dot(&next),
+                lagrangian: d.norm_squared() * (0.5 * c) - g.dot(q) - g_next.dot(next),
                 before: components(d) * c + q.cross(&g),
                 after: components(d) * c - next.cross(&g_next),
                 before_by_start: q * g.transpose() - turning.transpose() - identity * q.dot(&g),
                 before_by_end: turning,
                 after_by_start: -turning.transpose(),
                 after_by_end: turning - next * g_next.transpose() + identity * next.dot(&g_next),
+            }
+        }
+
+        /// η′ = Fη, ∂N/∂η = qgᵀ − (q·g)I, ∂N⁺/∂η = ((q⁺·g⁺)I − q⁺g⁺ᵀ)F
+        #[inline]
+        fn carried(
+            &self,
+            constants: &Constants,
+            number: usize,
+            t: f64,
+            q: &SVector<f64, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SVector<f64, 3>,
+            u: &(),
+        ) -> ::clebsch::Carried<f64, 3> {
+            let (g, g_next) =
+                (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
+            let edge = ::clebsch::Variational::edge(self, constants, number, t, q, d, next, u);
+            let identity = SMatrix::<f64, 3, 3>::identity();
+            let adjoint = identity + d;
+            ::clebsch::Carried {
+                momentum: edge.after,
+                adjoint,
+                before: q * g.transpose() - identity * q.dot(&g),
+                after: (identity * next.dot(&g_next) - next * g_next.transpose()) * adjoint,
+                before_by_end: edge.before_by_end,
+                after_by_end: edge.after_by_end,
             }
         }
 

@@ -406,3 +406,23 @@ fn long_runs_against_differences() {
         assert_near(&by_momentum, &whole.momentum_by_momentum.column(k).into_owned(), 1e-7, "∂π/∂π after 50 steps");
     }
 }
+
+/// Where nothing acts, turning the start turns the run and changes no body momentum: nothing of the size of inertia/h is cancelled, so
+/// products of many tangent maps do not drift.
+#[test]
+fn a_free_body_does_not_care_where_it_starts() {
+    let random = &mut Random::new(91);
+    let stepper = systems::top::<f64>(&numbers::<3>(random, &[0.0, 0.4, -0.2, 0.7])).into_stepper(1e-3);
+    let stepper = stepper.expect("a regular top");
+    let start = random.attitude::<3>();
+    let mut state = stepper.state(start, random.vector()).expect("a state");
+    let mut whole = Tangent::identity();
+    for _ in 0..10_000 {
+        let (next, tangent) = stepper.step_tangent(&state).expect("a solvable step");
+        (state, whole) = (next, whole.then(&tangent));
+    }
+    assert_eq!(whole.momentum_by_motion, Matrix3::zeros());
+    // R → exp(ζ)R, ζ spatial, is η = Rᵀζ at the start and at the end
+    let expected = state.configuration().transpose() * start;
+    assert_near(&whole.motion_by_motion, &expected, 1e-12, "η′ = (R₀ᵀR)ᵀη");
+}

@@ -17,6 +17,7 @@ impl Emitter<'_, '_> {
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let edges = Literal::usize_unsuffixed(variations.edges.len());
         let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
+        let carried = self.carried();
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Variational<#dimension> for #ident<#arguments> #predicates {
@@ -25,6 +26,7 @@ impl Emitter<'_, '_> {
                 #motions
                 #drift
                 #edge
+                #carried
             }
         }
     }
@@ -174,6 +176,34 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// What is carried along, handed to the type `Step`.
+    fn carried(&self) -> TokenStream {
+        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        let (time, input) = (self.time_argument(), self.input_argument());
+        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let call = self.on_edge(&|suffix| {
+            let carried = format_ident!("carried{suffix}");
+            quote!(step.#carried(#time q, d, next, #input))
+        });
+        quote! {
+            /// The derivatives of an edge along motions that leave F as it is.
+            #[inline]
+            fn carried(
+                &self,
+                constants: &Self::Constants,
+                edge: ::core::primitive::usize,
+                t: #scalar,
+                q: &Self::Configuration,
+                d: &Self::Element,
+                next: &Self::Configuration,
+                u: &Self::Input,
+            ) -> #krate::Carried<#scalar, #dimension> {
+                let step = #step { system: self, constants };
+                #call
+            }
+        }
+    }
+
     /// The implementation of `Sensitive`, where it is asked for.
     pub(super) fn sensitive(&self) -> TokenStream {
         let asked = self.program.variations.iter().flat_map(|variations| &variations.edges);
@@ -285,6 +315,32 @@ impl Emitter<'_, '_> {
             7 => grid(kernel, 6),
             _ => quote!(-before_by_end.transpose()),
         };
+        let carried = {
+            let kernel = &kernels.carried;
+            let documentation = docs::formulas(
+                "F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.",
+                &[],
+                Some(kernel),
+            );
+            let (name, locals) = (format_ident!("carried{suffix}"), code::locals(&scope, kernel));
+            let [momentum, adjoint, before, after, before_by_end, after_by_end] =
+                [0, 1, 2, 3, 4, 5].map(|index| grid(kernel, index));
+            quote! {
+                #documentation
+                #[inline]
+                fn #name(&self, #place) -> #krate::Carried<#scalar, #dimension> {
+                    #locals
+                    #krate::Carried {
+                        momentum: #momentum,
+                        adjoint: #adjoint,
+                        before: #before,
+                        after: #after,
+                        before_by_end: #before_by_end,
+                        after_by_end: #after_by_end,
+                    }
+                }
+            }
+        };
         let edge = format_ident!("edge{suffix}");
         let slopes = kernels.slopes.as_ref().map(|kernel| {
             let documentation =
@@ -315,6 +371,7 @@ impl Emitter<'_, '_> {
                     after_by_end: #after_by_end,
                 }
             }
+            #carried
             #slopes
         }
     }

@@ -108,6 +108,7 @@ impl Program<'_> {
         for (index, edge) in variations.edges.iter().enumerate() {
             let suffix = self.suffix(index);
             kernels.push((format!("edge{suffix}"), &edge.edge));
+            kernels.push((format!("carried{suffix}"), &edge.carried));
             kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }
         kernels
