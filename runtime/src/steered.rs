@@ -147,8 +147,11 @@ pub struct Price<T, const M: usize, const U: usize> {
 pub struct Link<T, const M: usize, const U: usize> {
     /// β
     pub costate: SVector<T, M>,
+    /// α
+    pub driving: SVector<T, M>,
     /// κ = −(∂F⁻ℓd/∂η′)⁻ᵀ (α + (∂F⁺ℓd/∂η′)ᵀ β)
     pub multiplier: SVector<T, M>,
+    adjoint: SMatrix<T, M, M>,
     tangent: Tangent<T, M>,
     motion_by_input: SMatrix<T, M, U>,
     momentum_by_input: SMatrix<T, M, U>,
@@ -166,22 +169,32 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         let motion_by_input = -times(&tangent.motion_by_momentum, before);
         let momentum_by_input = after + times(&edge.after_by_end, &motion_by_input);
         let beta = SVector::from_fn(|i, _| costate[M + i]);
-        let driving = SVector::<T, M>::from_fn(|i, _| costate[i]) + times(&edge.after_by_end.transpose(), &beta);
-        let mut multiplier: [[T; 1]; M] = from_fn(|i| [driving[i]]);
+        let alpha = SVector::<T, M>::from_fn(|i, _| costate[i]);
+        let wanted = alpha + times(&edge.after_by_end.transpose(), &beta);
+        let mut multiplier: [[T; 1]; M] = from_fn(|i| [wanted[i]]);
         eliminate(rows(&edge.before_by_end.transpose()), &mut multiplier)?;
         let multiplier = SVector::from_fn(|i, _| -multiplier[i][0]);
-        Some(Self { costate: beta, multiplier, tangent, motion_by_input, momentum_by_input })
+        let adjoint = edge.adjoint;
+        Some(Self { costate: beta, driving: alpha, multiplier, adjoint, tangent, motion_by_input, momentum_by_input })
     }
 
-    /// The step with its derivatives. `curvature` holds the second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions of q, those of q⁺, and
-    /// the inputs, W = 2M + U of them.
+    /// The step with its derivatives. `curvature` holds the second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions η of q that leave F as
+    /// it is, the motions ζ of q⁺ alone, and the inputs, W = 2M + U of them; `bracket` is ± ½ α·[E_i, E_j].
     pub fn expansion<X, const W: usize, const D: usize>(
         &self,
         next: X,
         curvature: &SMatrix<T, W, W>,
+        bracket: &SMatrix<T, M, M>,
         price: &Price<T, M, U>,
     ) -> Expansion<X, T, D, U> {
-        // how the motions of both ends and the inputs change with (η, ν) and with u
+        // ± ½ α·[Ad η, ζ]
+        let turned = times(&self.adjoint.transpose(), bracket);
+        let curvature = &SMatrix::<T, W, W>::from_fn(|i, j| match (i < M, j < M) {
+            (true, false) if j < 2 * M => curvature[(i, j)] + turned[(i, j - M)],
+            (false, true) if i < 2 * M => curvature[(i, j)] + turned[(j, i - M)],
+            _ => curvature[(i, j)],
+        });
+        // how η, ζ and the inputs change with (η, ν) and with u
         let by_place = SMatrix::<T, W, D>::from_fn(|i, j| self.of_place(i, j));
         let by_input = SMatrix::<T, W, U>::from_fn(|i, j| self.of_input(i, j));
         let (bent_places, bent_inputs) = (times(curvature, &by_place), times(curvature, &by_input));
@@ -202,16 +215,17 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         }
     }
 
-    /// ∂(η, η′, u)_i/∂(η, ν)_j
+    /// ∂(η, ζ, u)_i/∂(η, ν)_j
     fn of_place(&self, i: usize, j: usize) -> T {
         match (i < M, i < 2 * M) {
             (true, _) if i == j => T::one(),
-            (false, true) => self.tangent_entry(i - M, j),
+            (false, true) if j < M => self.tangent.motion_by_motion[(i - M, j)] - self.adjoint[(i - M, j)],
+            (false, true) => self.tangent.motion_by_momentum[(i - M, j - M)],
             _ => T::zero(),
         }
     }
 
-    /// ∂(η, η′, u)_i/∂u_j
+    /// ∂(η, ζ, u)_i/∂u_j
     fn of_input(&self, i: usize, j: usize) -> T {
         match (i < M, i < 2 * M) {
             (false, true) => self.motion_by_input[(i - M, j)],

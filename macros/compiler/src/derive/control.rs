@@ -272,10 +272,15 @@ impl<'g> Factored<'_, 'g> {
     }
 }
 
-/// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd with both ends of an edge and the input, and what the input does to both.
+/// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along an edge and the input, and what the input does to both ends.
+///
+/// An edge changes by the motions η of q that leave F as it is, and by the motions ζ of q⁺ alone: exp η′ = exp(Ad η) exp ζ for a right action
+/// and exp ζ exp(Ad η) for a left one, so that ± ½ [Ad η, ζ] joins η′ to second order.
 pub struct Bend<'g> {
-    /// Along the motions of q, those of q⁺ and the inputs.
+    /// Along η, ζ and the inputs.
     pub curvature: Vec<Vec<Expr<'g>>>,
+    /// ± ½ μ·[E_i, E_j], with the sign of the side of each factor.
+    pub bracket: Vec<Vec<Expr<'g>>>,
     /// ∂F⁻ℓd along each input.
     pub before_by_input: Vec<Expr<'g>>,
     /// ∂F⁺ℓd along each input.
@@ -296,9 +301,27 @@ pub(super) fn bend<'g>(
     let one = model.graph.integer(1);
     let columns = |momentum: Expr<'g>| inputs(model).iter().map(|input| momentum.differential(input)).collect();
     Bend {
+        bracket: bracket(model, costate),
         curvature: Jet::of(function, &directions).curvature,
         before_by_input: columns(variation.before),
         after_by_input: columns(variation.after),
         by_time: [model.step_size, model.time].map(|symbol| function.differential(&[(symbol, one)])),
     }
+}
+
+/// ½ μ·[E_i, E_j] for a right action, −½ μ·[E_i, E_j] for a left one.
+fn bracket<'g>(model: &Model<'g>, mu: Expr<'g>) -> Vec<Vec<Expr<'g>>> {
+    let (whole, zero) = (model.dimension(), model.graph.integer(0));
+    let mut entries = vec![vec![zero; whole]; whole];
+    for (k, factor) in model.factors.iter().enumerate() {
+        let (offset, dimension) = (model.offset(k), factor.group.dimension());
+        let part = mu.block(offset, 0, Shape::vector(dimension));
+        for i in 0..dimension {
+            let ad = factor.group.ad(model.graph.unit(Shape::vector(dimension), i, 0));
+            let row = ad.transpose() * part / 2;
+            let row = if factor.side == Side::Right { row } else { -row };
+            (0..dimension).for_each(|j| entries[offset + i][offset + j] = row.entry(j, 0));
+        }
+    }
+    entries
 }

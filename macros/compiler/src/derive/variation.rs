@@ -186,25 +186,36 @@ impl<'g> Source<'_, 'g> {
             };
             self.symbols.basis().iter().map(motion).collect()
         };
-        let ends = [along(&self.at_start()), along(&self.at_end())].concat();
+        let ends = [along(&self.carried_motions()), along(&self.at_end())].concat();
         let costate = self.stack(&self.symbols.momenta);
         control::bend(self.model, variation, (costate, self.symbols.multiplier), &ends)
     }
 
     fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {
-        let symbols = self.symbols;
-        let moved = |(k, factor): (usize, &Factor<'g>)| action::adjoint_of(factor, symbols.algebra[k]);
-        let moved: Vec<Expr<'g>> = self.model.factors.iter().enumerate().map(moved).collect();
+        let motions = self.carried_motions();
+        let moved = self.stack(&self.moved_along());
+        Carried {
+            adjoint: self.symbols.basis().iter().map(|element| moved.substitute(element)).collect(),
+            before: self.columns(before, &motions),
+            after: self.columns(after, &motions),
+        }
+    }
+
+    /// Ad η for each factor, what q⁺ moves by when F stays as it is.
+    fn moved_along(&self) -> Vec<Expr<'g>> {
+        let moved = |(k, factor): (usize, &Factor<'g>)| action::adjoint_of(factor, self.symbols.algebra[k]);
+        self.model.factors.iter().enumerate().map(moved).collect()
+    }
+
+    /// How q and q⁺ move with η at q while F stays as it is.
+    fn carried_motions(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let (symbols, moved) = (self.symbols, self.moved_along());
         let along: Vec<_> = symbols.algebra.iter().copied().zip(moved.iter().copied()).collect();
         let leaves = self.model.configurations.iter().map(|leaf| leaf.symbol);
         let images = self.generator.iter().map(|part| self.at_image(*part).substitute(&along));
         let mut motions: Vec<_> = leaves.zip(self.generator.iter().copied()).collect();
         motions.extend(symbols.images.iter().copied().zip(images));
-        Carried {
-            adjoint: symbols.basis().iter().map(|element| self.stack(&moved).substitute(element)).collect(),
-            before: self.columns(before, &motions),
-            after: self.columns(after, &motions),
-        }
+        motions
     }
 
     fn slopes(&self, momentum: Expr<'g>) -> Vec<Expr<'g>> {

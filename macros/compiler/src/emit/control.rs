@@ -207,7 +207,7 @@ impl Emitter<'_, '_> {
             let link = #private::Link::new(&edge, &before, &after, costate).ok_or(#krate::Error::SingularTangent { step_size: #private::Scalar::to_f64(h) })?;
             let (mu, kappa) = (&link.costate, &link.multiplier);
         };
-        let curvature = self.matrix(&bend.curvature);
+        let (curvature, bracket) = (self.matrix(&bend.curvature), self.matrix(&bend.bracket));
         let of_time = self.matrix(&kernels.price_of_time);
         let price = kernels.price_expanded.as_ref().map(|kernel| self.tuple(kernel, &[0]));
         quote! {
@@ -226,7 +226,7 @@ impl Emitter<'_, '_> {
                 #private::forced_step(self, &constants.0, t, x, u)
             }
             /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺): with the multipliers κ of the momentum
-            /// equation those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N), to which η′ contributes to first order alone.
+            /// equation those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N), to which η′ contributes ± ½ α·[Ad η, ζ].
             fn expand(
                 &self,
                 constants: &#constants,
@@ -237,10 +237,12 @@ impl Emitter<'_, '_> {
             ) -> ::core::result::Result<#krate::Expansion<#place, #scalar, #d, #u>, #krate::Error> {
                 #passed
                 let curvature: #private::SMatrix<#scalar, #w, #w> = #curvature;
+                let mu = &link.driving;
+                let bracket: #private::SMatrix<#scalar, #m, #m> = #bracket;
                 let (price, by_motion, by_input, motions, mixed, inputs) = #price;
                 let price = #private::Price { price, by_motion, by_input, motions, mixed, inputs };
                 let next = #private::check_reached((*next, edge.momentum))?;
-                ::core::result::Result::Ok(link.expansion(next, &curvature, &price))
+                ::core::result::Result::Ok(link.expansion(next, &curvature, &bracket, &price))
             }
             /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
             fn price_of_time(

@@ -48,8 +48,10 @@ pub struct StepOfInputs {
 pub struct BendKernels {
     /// ∂F⁻ℓd/∂u and ∂F⁺ℓd/∂u.
     pub by_input: Kernel,
-    /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions of both ends and the inputs.
+    /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions that leave F as it is, those of q⁺ alone, and the inputs.
     pub curvature: Kernel,
+    /// ± ½ μ·[E_i, E_j].
+    pub bracket: Kernel,
 }
 
 /// The kernels of a choice, where there is one.
@@ -154,7 +156,9 @@ impl<'g> Lowered<'_, 'g> {
         let by_input = [&bend.before_by_input, &bend.after_by_input];
         let by_input = by_input.map(|block| columns(block, &self.elements, self.scalars));
         let curvature = self.block(Shape::square(whole), |i, j| symmetric(&bend.curvature, i, j));
+        let bracket = self.block(Shape::square(self.motions()), |i, j| bend.bracket[i][j]);
         BendKernels {
+            bracket: kernel(self.scalars, &[bracket], Hoisting::Nothing),
             by_input: kernel(self.scalars, &by_input, Hoisting::Nothing),
             curvature: kernel(self.scalars, &[curvature], Hoisting::Nothing),
         }

@@ -114,6 +114,7 @@ impl Program<'_> {
             ("expand", step.map(|step| &step.expand)),
             ("by_input", bend.map(|bend| &bend.by_input)),
             ("bend", bend.map(|bend| &bend.curvature)),
+            ("bracket", bend.map(|bend| &bend.bracket)),
             ("price", Some(&control.price)),
             ("price_expanded", control.price_expanded.as_ref()),
             ("price_of_time", Some(&control.price_of_time)),
