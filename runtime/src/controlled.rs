@@ -1,6 +1,6 @@
 //! What `#[derive(Clebsch)]` implements for systems whose inputs are chosen: one step, its price, its bounds, and their derivatives.
 
-use crate::{Error, Scalar, Space};
+use crate::{Control, Error, Scalar, Space};
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
@@ -40,6 +40,20 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`].
     fn check_place(&self, x: &Self::Place) -> Result<(), Error>;
+
+    /// The system with the step size `h`, checked, to solve problems of optimal control with.
+    ///
+    /// ```text
+    /// let control = system.control(0.1)?;
+    /// let mut plan = [control.stage(&start); 50];
+    /// let optimum = control.solve(&start, Target::Place(goal), &mut plan)?;
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], and those of [`prepare`](Self::prepare).
+    fn control(self, h: Self::Scalar) -> Result<Control<Self, D, U, C>, Error> {
+        Control::new(self, h)
+    }
 
     /// x⁺ = f(t, h, x, u)
     ///

@@ -101,6 +101,27 @@ pub enum Error {
         /// Number of linearisations that were made.
         iterations: u32,
     },
+    /// To first order no input moves the end of the plan towards the target.
+    Uncontrollable {
+        /// The distance that is left, as the root of the sum of squares of all entries.
+        distance: f64,
+    },
+    /// No inputs were found that keep the bounds.
+    Infeasible {
+        /// The bound that is violated most, as it was written.
+        bound: &'static str,
+        /// The step in which it is, counted from 0.
+        stage: usize,
+        /// By how much it is violated, at most.
+        violation: f64,
+    },
+    /// No inputs were found that lead to the target.
+    TargetMissed {
+        /// The distance that is left, as the root of the sum of squares of all entries.
+        distance: f64,
+        /// Number of linearisations that were made.
+        iterations: u32,
+    },
     /// The work allowed for one implicit equation was used up without a decision.
     NotConverged {
         /// Size of the residual that was left, relative to the terms of the equation.
@@ -211,6 +232,21 @@ impl Display for Error {
                 f,
                 "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): \
                  give a better guess, or go there by targets between"
+            ),
+            Self::Uncontrollable { distance } => write!(
+                f,
+                "no small change of the inputs brings the end nearer to the target, {distance:.3e} away: check that the inputs control all \
+                 that the target fixes, and that there are enough steps; else guess inputs that lead near it"
+            ),
+            Self::Infeasible { bound, stage, violation } => write!(
+                f,
+                "no inputs were found that keep the bounds: `{bound}` is violated by {violation:.3e} in step {stage}; relax it, \
+                 or guess inputs that keep it"
+            ),
+            Self::TargetMissed { distance, iterations } => write!(
+                f,
+                "no inputs were found that lead to the target: {distance:.3e} were left after {iterations} linearisations; \
+                 give more steps or wider bounds, or guess inputs that lead near it"
             ),
             Self::NotConverged { residual, iterations } => write!(
                 f,

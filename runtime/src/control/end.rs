@@ -1,0 +1,111 @@
+//! The end of a plan: what separates it from the target, and which of its changes the target fixes.
+
+use super::Target;
+use crate::eigen::Spectrum;
+use crate::space::larger;
+use crate::{Arrival, Controlled, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
+
+/// A target with the units of its changes.
+pub(super) struct Goal<'a, X, T, const D: usize> {
+    pub target: &'a Target<X>,
+    /// The lengths |∂x/∂δ_i| of small changes at the target.
+    lengths: SVector<T, D>,
+}
+
+/// What is known where a plan ends. A change δ arrives where E δ = e.
+#[derive(Clone, Copy)]
+pub(super) struct End<T, const D: usize> {
+    /// e, as lengths
+    pub lack: SVector<T, D>,
+    /// E: the lengths of δ, projected to those that the target fixes.
+    pub slope: SMatrix<T, D, D>,
+    /// The distance to what is asked of the end.
+    pub distance: T,
+    /// The numbers that the distance is compared with: the largest entry of end and target.
+    pub scale: T,
+}
+
+impl<'a, X: Space<T>, T: Scalar, const D: usize> Goal<'a, X, T, D> {
+    pub fn of<S, const U: usize, const C: usize>(system: &S, target: &'a Target<X>) -> Self
+    where
+        S: Controlled<D, U, C, Scalar = T, Place = X>,
+    {
+        let lengths = match target.place() {
+            Some(goal) => {
+                let slope = system.arrival(goal, goal).slope;
+                let length = |i: usize| slope[(i, i)].abs().sqrt();
+                // Written so that NaN gives 1.
+                SVector::from_fn(|i, _| if length(i) > T::zero() { length(i) } else { T::one() })
+            }
+            None => SVector::from_element(T::one()),
+        };
+        Self { target, lengths }
+    }
+
+    /// The end of a plan at `x`.
+    ///
+    /// What small motions close of a gap is taken for the tangential part of the chord of a circle and lengthened to its arc: exact in
+    /// flat spaces and for the rotations about one axis.
+    pub fn end<S, const U: usize, const C: usize>(&self, system: &S, x: &X) -> End<T, D>
+    where
+        S: Controlled<D, U, C, Scalar = T, Place = X>,
+    {
+        let zero = T::zero();
+        let Some(goal) = self.target.place() else {
+            return End { lack: SVector::zero(), slope: SMatrix::zero(), distance: zero, scale: x.max_abs() };
+        };
+        let arrival = system.arrival(x, goal);
+        let asked = if matches!(self.target, Target::Configuration(_)) { S::MOTIONS } else { D };
+        let (projector, mut lack) = self.closing(&arrival, asked);
+        let square =
+            |from: usize, to: usize| (from..to).fold(zero, |sum, i| sum + arrival.residual[i] * arrival.residual[i]);
+        let along =
+            (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * arrival.residual[i] / self.lengths[i]);
+        let momentum = square(S::MOTIONS, asked);
+        let chord = larger(zero, goal.distance_squared(x) - square(S::MOTIONS, D));
+        let (along, across) = (larger(zero, along).sqrt(), larger(zero, chord - along).sqrt());
+        let angle = T::from_f64(2.0) * (across / along).atan();
+        let factor = angle / angle.sin();
+        if factor > T::one() && factor.is_finite() {
+            (0..S::MOTIONS).for_each(|i| lack[i] *= factor);
+        }
+        let slope = SMatrix::from_fn(|i, j| projector[(i, j)] * self.lengths[j]);
+        End { lack, slope, distance: (chord + momentum).sqrt(), scale: larger(goal.max_abs(), x.max_abs()) }
+    }
+
+    /// The projector to the changes that the target fixes, and the smallest that closes the gap, both as lengths.
+    fn closing(&self, arrival: &Arrival<T, D>, asked: usize) -> (SMatrix<T, D, D>, SVector<T, D>) {
+        let is_asked = |i: usize| if i < asked { T::one() } else { T::zero() };
+        let lengths = &self.lengths;
+        let metric =
+            SMatrix::from_fn(|i, j| arrival.slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j));
+        let residual = SVector::<T, D>::from_fn(|i, _| arrival.residual[i] / lengths[i] * is_asked(i));
+        let spectrum = Spectrum::of(&metric);
+        let least = T::EPSILON.sqrt() * spectrum.largest();
+        let select = |value: T, chosen: T| if value <= least { T::zero() } else { chosen };
+        let lack = spectrum.map(|value| select(value, value.recip())) * residual;
+        (spectrum.map(|value| select(value, T::one())), lack)
+    }
+
+    /// The multipliers ν with the covector Eᵀν nearest to this one, for an end where E is given.
+    pub fn multipliers(&self, end: &End<T, D>, covector: &SVector<T, D>) -> SVector<T, D> {
+        let lengths = &self.lengths;
+        let scaled = SVector::<T, D>::from_fn(|i, _| covector[i] / lengths[i]);
+        let projector = SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]);
+        projector * scaled
+    }
+}
+
+impl<T: Scalar, const D: usize> End<T, D> {
+    /// Whether the gap is round-off.
+    pub fn is_closed(&self) -> bool {
+        self.distance <= T::from_f64(256.0) * T::EPSILON * self.scale
+    }
+
+    /// Whether the gap is none to a person: below √ε.
+    pub fn is_reached(&self) -> bool {
+        self.distance <= T::EPSILON.sqrt() * (self.scale + self.distance)
+    }
+}

@@ -1,0 +1,137 @@
+//! The symmetric U×U Hessian of one input, and what is done where it is not positive.
+
+use crate::Scalar;
+use crate::eigen::Spectrum;
+use crate::space::larger;
+use nalgebra::{SMatrix, SVector};
+
+/// What is made of a Hessian that is not positive.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Curvature<T> {
+    /// As it is: the critical point of the quadratic model.
+    Kept,
+    /// With negative eigenvalues turned over, so that the price goes down, and with this multiple of its own diagonal added.
+    Mirrored { damping: T },
+}
+
+/// The inverse of a Hessian.
+pub(super) struct Pivot<T, const U: usize> {
+    factors: Factors<T, U>,
+    /// The number of negative eigenvalues.
+    pub negative: usize,
+}
+
+enum Factors<T, const U: usize> {
+    /// L without its diagonal of ones, and Δ⁻¹, of L Δ Lᵀ.
+    Triangular(SMatrix<T, U, U>, SVector<T, U>),
+    /// The inverse itself.
+    Spectral(SMatrix<T, U, U>),
+}
+
+/// Pivots below so many units in the last place of their diagonal are not trusted.
+const UNITS: f64 = 16.0;
+/// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
+const MIRRORED: f64 = 1e-4;
+
+impl<T: Scalar, const U: usize> Pivot<T, U> {
+    /// Of a symmetric matrix, of which only the lower triangle is read.
+    #[inline]
+    pub fn of(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Self {
+        let mut h = *h;
+        if let Curvature::Mirrored { damping } = curvature {
+            for i in 0..U {
+                let entry = h[(i, i)];
+                h[(i, i)] = entry + damping * entry.abs();
+            }
+        }
+        match triangular(&h) {
+            Some(factors) => Self { factors, negative: 0 },
+            None => spectral(&h, curvature),
+        }
+    }
+
+    /// −H⁻¹B
+    #[inline]
+    pub fn against<const K: usize>(&self, b: &SMatrix<T, U, K>) -> SMatrix<T, U, K> {
+        match &self.factors {
+            Factors::Triangular(l, reciprocals) => {
+                let mut x = -*b;
+                for j in 0..K {
+                    for i in 0..U {
+                        for k in 0..i {
+                            let known = l[(i, k)] * x[(k, j)];
+                            x[(i, j)] -= known;
+                        }
+                    }
+                    for i in (0..U).rev() {
+                        x[(i, j)] *= reciprocals[i];
+                        for k in i + 1..U {
+                            let known = l[(k, i)] * x[(k, j)];
+                            x[(i, j)] -= known;
+                        }
+                    }
+                }
+                x
+            }
+            Factors::Spectral(inverse) => -(inverse * b),
+        }
+    }
+}
+
+/// L Δ Lᵀ where all pivots are positive.
+#[inline]
+fn triangular<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>) -> Option<Factors<T, U>> {
+    let mut l = *h;
+    let mut reciprocals = SVector::<T, U>::from_element(T::zero());
+    for k in 0..U {
+        let pivot = l[(k, k)];
+        let least = T::from_f64(UNITS) * T::EPSILON * h[(k, k)];
+        // Written so that NaN is refused.
+        if !(pivot > least && pivot > T::zero() && pivot.is_finite()) {
+            return None;
+        }
+        reciprocals[k] = pivot.recip();
+        for i in k + 1..U {
+            let factor = l[(i, k)] * reciprocals[k];
+            for j in k + 1..=i {
+                // column k still holds L Δ below row i, and L above
+                let known = if j == i { factor * l[(i, k)] } else { l[(i, k)] * l[(j, k)] };
+                l[(i, j)] -= known;
+            }
+            l[(i, k)] = factor;
+        }
+    }
+    Some(Factors::Triangular(l, reciprocals))
+}
+
+/// From the eigenvalues of the matrix with its diagonal scaled to ±1. Directions without any curvature are left alone.
+#[cold]
+fn spectral<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Pivot<T, U> {
+    let (spectrum, scale) = equilibrated(h);
+    let largest = spectrum.largest();
+    let noise = T::from_f64(UNITS) * T::EPSILON * largest;
+    let inverse = spectrum.map(|value| match curvature {
+        // Written so that NaN stays NaN.
+        _ if value.abs() <= noise && curvature == Curvature::Kept || largest == T::zero() => T::zero(),
+        Curvature::Kept => value.recip(),
+        Curvature::Mirrored { .. } if value > noise => value.recip(),
+        Curvature::Mirrored { .. } => larger(value.abs(), T::from_f64(MIRRORED) * largest).recip(),
+    });
+    let inverse = SMatrix::from_fn(|i, j| scale[i] * inverse[(i, j)] * scale[j]);
+    let wrong = -T::EPSILON.sqrt() * largest;
+    let negative = spectrum.values.iter().filter(|&&value| value < wrong).count();
+    Pivot { factors: Factors::Spectral(inverse), negative }
+}
+
+/// The eigenvalues of S A S with S = diag |A|^(−1/2), and the diagonal of S; rows that are nothing beside the others count as 0.
+///
+/// The choice of units of the rows changes neither.
+pub(super) fn equilibrated<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> (Spectrum<T, M>, SVector<T, M>) {
+    let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)].abs()));
+    let nothing = T::EPSILON * T::EPSILON.sqrt() * largest;
+    let scale = SVector::<T, M>::from_fn(|i, _| {
+        let entry = a[(i, i)].abs();
+        if entry <= nothing { T::zero() } else { entry.sqrt().recip() }
+    });
+    (Spectrum::of(&SMatrix::from_fn(|i, j| scale[i] * a[(i, j)] * scale[j])), scale)
+}

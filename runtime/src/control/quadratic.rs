@@ -1,0 +1,117 @@
+//! The quadratic model of one step in the backward sweep, and its elimination.
+
+use super::pivot::{Curvature, Pivot};
+use crate::{BoundsExpansion, EndpointExpansion, Expansion, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+/// The price of a step and of all that follow, to second order in δ and δu: gradient and Hessian.
+pub(super) struct Quadratic<T, const D: usize, const U: usize> {
+    pub by_place: SVector<T, D>,
+    pub by_input: SVector<T, U>,
+    place: SMatrix<T, D, D>,
+    mixed: SMatrix<T, U, D>,
+    input: SMatrix<T, U, U>,
+    /// Q_xν, Q_uν
+    place_multiplier: SMatrix<T, D, D>,
+    pub input_multiplier: SMatrix<T, U, D>,
+}
+
+/// The least price from a place on, to second order in δ and δν.
+pub(super) struct Value<T, const D: usize> {
+    /// p = ∂V/∂x
+    pub costate: SVector<T, D>,
+    /// P = ∂²V/∂x²
+    pub hessian: SMatrix<T, D, D>,
+    /// Ψ = ∂²V/∂x∂ν
+    pub by_multiplier: SMatrix<T, D, D>,
+}
+
+/// δu = k + K δ + G δν
+pub(super) struct Policy<T, const D: usize, const U: usize> {
+    pub shift: SVector<T, U>,
+    pub gain: SMatrix<T, U, D>,
+    pub by_multiplier: SMatrix<T, U, D>,
+    /// The number of negative eigenvalues of Q_uu.
+    pub negative: usize,
+}
+
+impl<T: Scalar, const D: usize> Value<T, D> {
+    /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e)
+    pub fn of_end(
+        endpoint: &EndpointExpansion<T, D>,
+        end: &super::end::End<T, D>,
+        multipliers: &SVector<T, D>,
+        weight: &SMatrix<T, D, D>,
+    ) -> Self {
+        let force = multipliers - weight * end.lack;
+        Self {
+            costate: endpoint.slope + end.slope.tr_mul(&force),
+            hessian: endpoint.curvature + end.slope.tr_mul(&(weight * end.slope)),
+            by_multiplier: end.slope.transpose(),
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
+    /// Of one step, before the value of what follows.
+    #[inline]
+    pub fn of_step<X>(step: &Expansion<X, T, D, U>) -> Self {
+        Self {
+            by_place: step.price_by_place,
+            by_input: step.price_by_input,
+            place: step.place_curvature,
+            mixed: step.mixed_curvature,
+            input: step.input_curvature,
+            place_multiplier: SMatrix::from_element(T::zero()),
+            input_multiplier: SMatrix::from_element(T::zero()),
+        }
+    }
+
+    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a: `force` is ζ and `stiffness` the diagonal Σ.
+    #[inline]
+    pub fn add_bounds<const C: usize>(
+        &mut self,
+        bounds: &BoundsExpansion<T, D, U, C>,
+        force: &SVector<T, C>,
+        stiffness: &SVector<T, C>,
+    ) {
+        let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
+        let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
+        self.by_place += bounds.by_place.tr_mul(force);
+        self.by_input += bounds.by_input.tr_mul(force);
+        self.place += bounds.place_curvature + bounds.by_place.tr_mul(&by_place);
+        self.mixed += bounds.mixed_curvature + bounds.by_input.tr_mul(&by_place);
+        self.input += bounds.input_curvature + bounds.by_input.tr_mul(&by_input);
+    }
+
+    /// Adds the value of what follows at A δ + B δu.
+    #[inline]
+    pub fn add_value<X>(&mut self, step: &Expansion<X, T, D, U>, next: &Value<T, D>) {
+        let (a, b) = (&step.by_place, &step.by_input);
+        self.by_place += a.tr_mul(&next.costate);
+        self.by_input += b.tr_mul(&next.costate);
+        let (along, across) = (next.hessian * a, next.hessian * b);
+        self.place += a.tr_mul(&along);
+        self.mixed += b.tr_mul(&along);
+        self.input += b.tr_mul(&across);
+        self.place_multiplier = a.tr_mul(&next.by_multiplier);
+        self.input_multiplier = b.tr_mul(&next.by_multiplier);
+    }
+
+    /// The input that makes the model least, and the value that is left.
+    #[inline]
+    pub fn eliminate(&self, curvature: Curvature<T>) -> (Policy<T, D, U>, Value<T, D>) {
+        let pivot = Pivot::of(&self.input, curvature);
+        let shift = pivot.against(&self.by_input);
+        let gain = pivot.against(&self.mixed);
+        let by_multiplier = pivot.against(&self.input_multiplier);
+        let half = T::from_ratio(1, 2);
+        let hessian = self.place + self.mixed.tr_mul(&gain);
+        let value = Value {
+            costate: self.by_place + self.mixed.tr_mul(&shift),
+            hessian: SMatrix::from_fn(|i, j| (hessian[(i, j)] + hessian[(j, i)]) * half),
+            by_multiplier: self.place_multiplier + gain.tr_mul(&self.input_multiplier),
+        };
+        (Policy { shift, gain, by_multiplier, negative: pivot.negative }, value)
+    }
+}

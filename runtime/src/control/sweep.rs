@@ -1,0 +1,150 @@
+//! The backward sweep: the exact second derivatives of the price of a plan, eliminated from the end.
+//!
+//! With the least price V(δ, δν) of what follows, ν the multipliers of the target, a step has the model
+//! ```text
+//! Q(δ, δu) = ℓ + z·a + V(Aδ + Bδu) + ½ (δ, δu)·∂²(ℓ + z·a + p·f)(δ, δu),    δu = k + Kδ + Gδν = −Q_uu⁻¹ (Q_u + Q_ux δ + Q_uν δν)
+//! P = Q_xx + Q_xu K,    p = Q_x + Q_xu k,    Ψ = Q_xν + Kᵀ Q_uν,    Γ = Σ Q_uνᵀ Q_uu⁻¹ Q_uν
+//! ```
+//! and δν is what closes the gap: Γ δν = V_ν. The inertia of the whole problem is that of all Q_uu less that of Γ.
+//!
+//! Sources: Jacobson and Mayne, *Differential Dynamic Programming* (1970); Bryson and Ho, *Applied Optimal Control* (1975), section 6.3,
+//! for the multipliers of the target; Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998),
+//! for the bounds.
+
+use super::Stage;
+use super::barrier::Barrier;
+use super::end::{End, Goal};
+use super::gramian::Gramian;
+use super::pivot::Curvature;
+use super::quadratic::{Policy, Quadratic, Value};
+use crate::space::larger;
+use crate::{Controlled, Error, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
+
+/// A problem of optimal control.
+pub(super) struct Problem<'a, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+    pub system: &'a S,
+    pub constants: S::Constants,
+    pub h: S::Scalar,
+    /// The time of the start.
+    pub time: S::Scalar,
+    pub start: &'a S::Place,
+    pub goal: Goal<'a, S::Place, S::Scalar, D>,
+}
+
+/// What a backward sweep is made with.
+pub(super) struct Settings<'a, T, const D: usize> {
+    /// ν and R of the target.
+    pub multipliers: &'a SVector<T, D>,
+    pub weight: &'a SMatrix<T, D, D>,
+    pub barrier: Barrier<T>,
+    pub curvature: Curvature<T>,
+    /// The part of the curvature of steps and bounds that is counted: 1 for all, 0 for none, which leaves that of the price.
+    pub bend: T,
+    /// Whether gains are those of plans that reach the target, for the caller, in place of those that the roll-out needs.
+    pub is_last: bool,
+}
+
+/// What a backward sweep tells of a plan.
+pub(super) struct Summary<T, const D: usize, const U: usize> {
+    /// Σℓ + φ
+    pub price: T,
+    /// Σ|ℓ| + |φ|
+    pub magnitude: T,
+    /// −Σ Q_u·k
+    decrement: T,
+    /// The largest entry of Q_u.
+    pub residual: T,
+    /// V_ν, what inputs have still to close.
+    pub lack: SVector<T, D>,
+    /// Γ
+    pub gramian: SMatrix<T, D, D>,
+    /// The number of negative eigenvalues of all Q_uu.
+    pub negative: usize,
+    /// By how far each input moves the end where it is 1 throughout, at most.
+    pub reach: SVector<T, U>,
+    /// The costate at the end.
+    pub costate: SVector<T, D>,
+}
+
+impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
+    fn of_end(price: T, end: &End<T, D>, costate: SVector<T, D>) -> Self {
+        Self {
+            price,
+            magnitude: price.abs(),
+            decrement: T::zero(),
+            residual: T::zero(),
+            lack: -end.lack,
+            gramian: SMatrix::from_element(T::zero()),
+            negative: 0,
+            reach: SVector::from_element(T::zero()),
+            costate,
+        }
+    }
+
+    #[inline]
+    fn count(&mut self, price: T, model: &Quadratic<T, D, U>, policy: &Policy<T, D, U>) {
+        self.price += price;
+        self.magnitude += price.abs();
+        self.decrement -= model.by_input.dot(&policy.shift);
+        self.residual = larger(self.residual, model.by_input.max_abs());
+        self.lack += model.input_multiplier.tr_mul(&policy.shift);
+        self.gramian -= model.input_multiplier.tr_mul(&policy.by_multiplier);
+        self.negative += policy.negative;
+        for j in 0..U {
+            self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
+        }
+    }
+
+    /// Twice what the correction with these δν takes from the price in the model.
+    pub fn decrement(&self, end: &End<T, D>, change: &SVector<T, D>) -> T {
+        self.decrement - change.dot(&(self.lack + end.lack * T::from_f64(2.0)))
+    }
+}
+
+impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+    /// The time t₀ + kh.
+    #[inline]
+    pub fn time_after(&self, steps: usize) -> S::Scalar {
+        self.time + S::Scalar::from_f64(steps as f64) * self.h
+    }
+
+    /// Linearises and eliminates a plan that ends at `last`: fills costates, gains and shifts of the stages.
+    ///
+    /// # Errors
+    /// Those of a step.
+    pub fn eliminate(
+        &self,
+        plan: &mut [Stage<S, D, U, C>],
+        last: &S::Place,
+        end: &End<S::Scalar, D>,
+        settings: &Settings<'_, S::Scalar, D>,
+    ) -> Result<Summary<S::Scalar, D, U>, Error> {
+        let endpoint = self.system.endpoint_expanded(self.time_after(plan.len()), last);
+        let mut value = Value::of_end(&endpoint, end, settings.multipliers, settings.weight);
+        let mut summary = Summary::of_end(endpoint.price, end, value.costate);
+        for (index, stage) in plan.iter_mut().enumerate().rev() {
+            let t = self.time_after(index);
+            let step =
+                self.system.expand(&self.constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+            let mut model = Quadratic::of_step(&step);
+            if C > 0 {
+                let bounds =
+                    self.system.bounds_expanded(t, &stage.place, &stage.input, &(stage.multipliers * settings.bend));
+                let (force, stiffness) = settings.barrier.condense(stage);
+                model.add_bounds(&bounds, &force, &stiffness);
+            }
+            model.add_value(&step, &value);
+            let (policy, before) = model.eliminate(settings.curvature);
+            summary.count(step.price, &model, &policy);
+            (stage.next_costate, stage.costate) = (value.costate, before.costate);
+            (stage.shift, stage.gain, stage.by_multiplier) = (policy.shift, policy.gain, policy.by_multiplier);
+            if settings.is_last {
+                let inverse = Gramian::of(&summary.gramian).inverse();
+                stage.gain += policy.by_multiplier * (inverse * before.by_multiplier.transpose());
+            }
+            value = before;
+        }
+        Ok(summary)
+    }
+}
