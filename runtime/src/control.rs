@@ -148,7 +148,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
         self.check(start, &target, plan)?;
         let problem = Problem {
             system: &self.system,
-            constants: self.constants,
+            constants: &self.constants,
             h: self.h,
             time: self.time,
             start,

@@ -32,7 +32,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         let mut x = *self.start;
         for (index, stage) in plan.iter_mut().enumerate() {
             stage.place = x;
-            x = self.system.follow(&self.constants, self.time_after(index), &x, &stage.input)?;
+            x = self.system.follow(self.constants, self.time_after(index), &x, &stage.input)?;
         }
         if x.is_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the end of the guessed plan" }) }
     }
@@ -75,9 +75,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                     }
                 }
             }
-            price += self.system.price(&self.constants, t, &x, &input);
+            price += self.system.price(self.constants, t, &x, &input);
             (stage.trial.place, stage.trial.input) = (x, input);
-            x = self.system.follow(&self.constants, t, &x, &input)?;
+            x = self.system.follow(self.constants, t, &x, &input)?;
         }
         price += self.system.endpoint(self.time_after(plan.len()), &x);
         let allowed = if allowed < fraction { Some(allowed) } else { None };
