@@ -22,10 +22,6 @@ pub struct Steering<'g> {
     pub price_of_time: [Expr<'g>; 2],
     /// a(t, q, u), one after the other.
     pub bounds: Vec<Jet<'g>>,
-    /// φ(t, q).
-    pub endpoint: Option<Jet<'g>>,
-    /// ∂φ/∂t.
-    pub endpoint_by_time: Option<Expr<'g>>,
     /// The weights of the bounds.
     pub weights: Expr<'g>,
     /// What separates q from q⁺: J(q, q⁺ − q).
@@ -116,7 +112,7 @@ pub(super) fn steering<'g>(
 ) -> Option<Steering<'g>> {
     let control = model.control.as_ref()?;
     let motions = motions(model, symbols, generator);
-    let all = [motions.clone(), inputs(model)].concat();
+    let all = [motions, inputs(model)].concat();
     let along = |value: Expr<'g>, symbol: Expr<'g>| value.differential(&[(symbol, model.graph.integer(1))]);
     let by_time = |value: Expr<'g>| [along(value, model.step_size), along(value, model.time)];
     let count = Shape::vector(control.bounds.len().max(1));
@@ -125,11 +121,28 @@ pub(super) fn steering<'g>(
         price: Jet::of(control.price, &all),
         price_of_time: by_time(control.price),
         bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
-        endpoint: control.endpoint.map(|price| Jet::of(price, &motions)),
-        endpoint_by_time: control.endpoint.map(|price| along(price, model.time)),
         weights: model.graph.symbol("z", count, Role::Weight, Property::General),
         approach: approach(model, symbols, momentum_map),
     })
+}
+
+/// The price of the end.
+pub struct Endpoint<'g> {
+    /// φ(t, q).
+    pub price: Jet<'g>,
+    /// ∂φ/∂t.
+    pub by_time: Expr<'g>,
+}
+
+/// The price of the end with its derivatives.
+pub(super) fn endpoint<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    generator: &[Expr<'g>],
+) -> Option<Endpoint<'g>> {
+    let price = model.endpoint?;
+    let by_time = price.differential(&[(model.time, model.graph.integer(1))]);
+    Some(Endpoint { price: Jet::of(price, &motions(model, symbols, generator)), by_time })
 }
 
 /// J(q, q⁺ − q).

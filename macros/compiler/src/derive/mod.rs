@@ -34,7 +34,7 @@ use crate::model::Model;
 
 pub(crate) use action::generator_columns;
 pub(crate) use cayley::of_increment as cayley_coordinates;
-pub use control::{Bend, InputStep, Jet, Steering};
+pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 pub use equation::{Equation, Solution};
@@ -91,6 +91,8 @@ pub struct Formulas<'g> {
     pub covector: Option<Vec<Expr<'g>>>,
     /// What the choice of inputs needs; `None` where nothing is chosen.
     pub steering: Option<Steering<'g>>,
+    /// The price of the end; `None` if there is none.
+    pub endpoint: Option<Endpoint<'g>>,
     /// All of it as text, made when it is first asked for.
     listing: OnceCell<Vec<Formula>>,
 }
@@ -135,8 +137,9 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
     let steering = control::steering(&model, &symbols, &generator, &momentum_map);
+    let endpoint = control::endpoint(&model, &symbols, &generator);
     if model.is_steered() {
-        return Ok(steered(model, symbols, (generator, momentum_map), steering));
+        return Ok(steered(model, symbols, (generator, momentum_map), (steering, endpoint)));
     }
     let cost = velocity::kinetic_cost(&model)?;
     let energy = energy::kinetic(&model, &symbols, cost)?;
@@ -211,6 +214,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         parts: stepped,
         covector,
         steering,
+        endpoint,
     })
 }
 
@@ -219,7 +223,7 @@ fn steered<'g>(
     model: Model<'g>,
     symbols: Symbols<'g>,
     (generator, momentum_map): (Vec<Expr<'g>>, Vec<Expr<'g>>),
-    steering: Option<Steering<'g>>,
+    (steering, endpoint): (Option<Steering<'g>>, Option<Endpoint<'g>>),
 ) -> Formulas<'g> {
     let (graph, zero) = (model.graph, model.graph.integer(0));
     Formulas {
@@ -240,6 +244,7 @@ fn steered<'g>(
         parts: 0,
         covector: None,
         steering,
+        endpoint,
         model,
         symbols,
         generator,

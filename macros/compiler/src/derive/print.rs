@@ -154,13 +154,13 @@ impl<'g> Formulas<'g> {
 
     /// Price, bounds and the price of the end.
     fn formulas_of_choice(&self) -> Vec<Formula> {
-        let Some(control) = &self.model.control else { return Vec::new() };
+        let endpoint =
+            self.model.endpoint.map(|price| Formula::new("price of the end", format!("φ({})", self.q()), &[price]));
+        let Some(control) = &self.model.control else { return endpoint.into_iter().collect() };
         let u = tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone()));
         let bounds: Vec<Expr<'g>> = control.bounds.iter().map(|bound| bound.value).collect();
         let price = Formula::new("price", format!("ℓ(h, {u})"), &[control.price]);
         let bounds = (!bounds.is_empty()).then(|| Formula::new("bounds", "0 ≥ a", &bounds));
-        let endpoint =
-            control.endpoint.map(|price| Formula::new("price of the end", format!("φ({})", self.q()), &[price]));
         [price].into_iter().chain(bounds).chain(endpoint).collect()
     }
 

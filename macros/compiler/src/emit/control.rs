@@ -272,6 +272,16 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// φ with its derivatives, at `q` and `t`.
+    pub(super) fn endpoint_expanded(&self) -> Option<TokenStream> {
+        let private = &self.paths.private;
+        let tuple = self.tuple(&self.program.endpoint.as_ref()?.expanded, &[0, 1]);
+        Some(quote! {
+            let (price, by_time, slope, curvature) = #tuple;
+            #private::endpoint(price, by_time, &slope, &curvature)
+        })
+    }
+
     /// Price, bounds and the price of the end.
     fn prices(&self, kernels: &ControlKernels) -> TokenStream {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
@@ -289,21 +299,15 @@ impl Emitter<'_, '_> {
         let price = &price[0];
         let (bounds, expanded) = (self.matrix(&kernels.bounds), self.tuple(&kernels.bounds_expanded, &[]));
         let zero = quote!(<#scalar as #private::Zero>::zero());
-        let endpoint = match &kernels.endpoint {
-            Some(kernel) => {
-                let (locals, value) = self.values(kernel);
+        let endpoint = match &self.program.endpoint {
+            Some(kernels) => {
+                let (locals, value) = self.values(&kernels.price);
                 let value = &value[0];
                 quote!(#locals #value)
             }
             None => zero.clone(),
         };
-        let endpoint_expanded = match &kernels.endpoint_expanded {
-            Some(kernel) => {
-                let tuple = self.tuple(kernel, &[0, 1]);
-                quote!(let (price, by_time, slope, curvature) = #tuple; #private::endpoint(price, by_time, &slope, &curvature))
-            }
-            None => quote!(#private::no_endpoint()),
-        };
+        let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
         let formulas = &self.program.formulas;
         let documentation = docs::formulas("The price of a step.", &formulas.titled("price"), Some(&kernels.price));
         let of_bounds = docs::formulas("The bounds.", &formulas.titled("bounds"), Some(&kernels.bounds));

@@ -28,10 +28,14 @@ pub struct ControlKernels {
     pub bounds: Kernel,
     /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
     pub bounds_expanded: Kernel,
-    /// φ; `None` if there is none.
-    pub endpoint: Option<Kernel>,
+}
+
+/// The kernels of the price of the end.
+pub struct EndpointKernels {
+    /// φ.
+    pub price: Kernel,
     /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
-    pub endpoint_expanded: Option<Kernel>,
+    pub expanded: Kernel,
 }
 
 /// The kernels of F(t, h, q, u).
@@ -73,14 +77,20 @@ pub(super) fn control(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<
         price_of_time: lowering.price_of_time(steering, bend),
         bounds: super::stack(lowering.scalars, &values),
         bounds_expanded: lowering.bounds(steering),
-        endpoint: steering.endpoint.as_ref().map(|jet| plain(lowering.scalars, &[jet.value])),
-        endpoint_expanded: steering.endpoint.as_ref().zip(steering.endpoint_by_time).map(|(jet, by_time)| {
-            let m = formulas.model.dimension();
-            let mut outputs = grids(lowering.scalars, &[jet.value, by_time]);
-            outputs.push(lowering.block(Shape::vector(m), |i, _| jet.slope[i]));
-            outputs.push(lowering.block(Shape::square(m), |i, j| symmetric(&jet.curvature, i, j)));
-            kernel(lowering.scalars, &outputs, Hoisting::Nothing)
-        }),
+    })
+}
+
+/// The kernels of the price of the end, where there is one.
+pub(super) fn endpoint(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<EndpointKernels> {
+    let endpoint = formulas.endpoint.as_ref()?;
+    let (jet, m) = (&endpoint.price, formulas.model.dimension());
+    let mut lowering = Lowered { formulas, elements: elements(formulas), scalars };
+    let mut outputs = grids(lowering.scalars, &[jet.value, endpoint.by_time]);
+    outputs.push(lowering.block(Shape::vector(m), |i, _| jet.slope[i]));
+    outputs.push(lowering.block(Shape::square(m), |i, j| symmetric(&jet.curvature, i, j)));
+    Some(EndpointKernels {
+        price: plain(lowering.scalars, &[jet.value]),
+        expanded: kernel(lowering.scalars, &outputs, Hoisting::Nothing),
     })
 }
 

@@ -19,7 +19,7 @@ use crate::derive::Formulas;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Factor, Isotropy, Space};
 
-pub use control::{BendKernels, ControlKernels, StepOfInputs};
+pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
 pub use grid::{Grid, Lowering};
 pub use kernel::{Code, Hoisted, Hoisting, Kernel};
@@ -73,6 +73,8 @@ pub struct Program<'g> {
     pub variations: Option<VariationKernels>,
     /// What the choice of inputs needs, where there is one.
     pub control: Option<ControlKernels>,
+    /// The price of the end, where there is one.
+    pub endpoint: Option<EndpointKernels>,
     /// (TΦ_F)^{-*} p, from the increment of F, q⁺ and p.
     pub cotangent_lift: Kernel,
     /// Computes the constants, one output each.
@@ -98,6 +100,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
+    let endpoint = control::endpoint(&formulas, &mut scalars);
     let inverses = inverses(&formulas);
     let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
     let after = legendre_next(&formulas);
@@ -128,6 +131,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         cotangent_lift: lift,
         variations,
         control,
+        endpoint,
         needs_inertia_inverse: hoisted.scalars.iter().any(|&scalar| uses_inertia_inverse(&scalars, scalar)),
         constants,
         constant_names: names,

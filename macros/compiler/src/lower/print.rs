@@ -104,7 +104,10 @@ impl Program<'_> {
 
     /// The kernels of a choice of inputs.
     fn kernels_of_control(&self) -> Vec<(String, &Kernel)> {
-        let Some(control) = &self.control else { return Vec::new() };
+        let of_end = self.endpoint.iter().flat_map(|end| {
+            [("endpoint".to_string(), &end.price), ("endpoint_expanded".to_string(), &end.expanded)]
+        });
+        let Some(control) = &self.control else { return of_end.collect() };
         let (step, bend) = (control.step.as_ref(), control.bend.as_ref());
         let named = [
             ("orbit_metric", bend.is_none().then_some(&control.orbit_metric)),
@@ -120,10 +123,8 @@ impl Program<'_> {
             ("price_of_time", Some(&control.price_of_time)),
             ("bounds", Some(&control.bounds)),
             ("bounds_expanded", Some(&control.bounds_expanded)),
-            ("endpoint", control.endpoint.as_ref()),
-            ("endpoint_expanded", control.endpoint_expanded.as_ref()),
         ];
-        named.into_iter().filter_map(|(name, kernel)| Some((name.to_string(), kernel?))).collect()
+        named.into_iter().filter_map(|(name, kernel)| Some((name.to_string(), kernel?))).chain(of_end).collect()
     }
 
     fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {

@@ -70,7 +70,7 @@ fn elaborate<'g>(
     Some((input, value))
 }
 
-/// The price, the bounds and the price of the end; `None` if one has an error.
+/// The price and the bounds; `None` if one has an error.
 pub(super) fn read<'g>(
     context: &mut Context<'_, 'g>,
     arguments: &Arguments<'_, 'g>,
@@ -85,17 +85,22 @@ pub(super) fn read<'g>(
     check_is_vector(context, control, leaf)?;
     let price = of_input(context, arguments, &control.price, input, "a price is a scalar");
     let bounds = control.bounds.as_ref().map(|closure| bounds(context, arguments, closure, input));
-    let endpoint = control.endpoint.as_ref().map(|closure| {
-        let taken = arguments.match_slots(closure, POTENTIAL, &mut context.diagnostics);
-        let scope = arguments.scope(closure, POTENTIAL, &taken, &[], &mut context.diagnostics);
-        scalar(context, closure, Elaborated { scope, needs: "a price is a scalar" })
-    });
     Some(Control {
         price: price?,
         bounds: bounds.map_or(Some(Vec::new()), |bounds| bounds)?,
-        endpoint: endpoint.map_or(Some(None), |endpoint| endpoint.map(Some))?,
         written: written(&control.price),
     })
+}
+
+/// The price of the end; `None` if it has an error.
+pub(super) fn endpoint<'g>(
+    context: &mut Context<'_, 'g>,
+    arguments: &Arguments<'_, 'g>,
+    closure: &Closure,
+) -> Option<Expr<'g>> {
+    let taken = arguments.match_slots(closure, POTENTIAL, &mut context.diagnostics);
+    let scope = arguments.scope(closure, POTENTIAL, &taken, &[], &mut context.diagnostics);
+    scalar(context, closure, Elaborated { scope, needs: "a price is a scalar" })
 }
 
 fn check_is_vector(context: &mut Context<'_, '_>, control: &parse::Control, leaf: &Configuration<'_>) -> Option<()> {

@@ -102,6 +102,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         inputs: formulas.forces.inputs,
         input: formulas.forces.input,
         control: formulas.control,
+        endpoint: formulas.endpoint,
         symmetries: formulas.symmetries,
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
@@ -120,6 +121,7 @@ struct Formulas<'g> {
     symmetries: Vec<OfferedSymmetry<'g>>,
     forces: Forces<'g>,
     control: Option<Control<'g>>,
+    endpoint: Option<Expr<'g>>,
 }
 
 impl<'g> Formulas<'g> {
@@ -146,6 +148,8 @@ impl<'g> Formulas<'g> {
         let symmetries = symmetries::read(context, &system, &declaration.symmetries);
         forces::check_dials(declaration, &mut context.diagnostics);
         let forced = forces::System { arguments, names, element, factors, configuration, configurations };
+        let endpoint = declaration.endpoint.as_ref().map(|closure| control::endpoint(context, arguments, closure));
+        let endpoint = endpoint.map_or(Some(None), |endpoint| endpoint.map(Some));
         let mut forces = forces::read(context, &forced, declaration);
         let steered = control::motion(context, &forced, declaration);
         let kinetic = match steered {
@@ -161,7 +165,7 @@ impl<'g> Formulas<'g> {
         let input = (forces.input.clone(), forces.inputs.clone());
         let control = declaration.control.as_ref().map(|control| control::read(context, arguments, control, &input));
         let control = control.map_or(Some(None), |control| control.map(Some))?;
-        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries, forces, control })
+        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries, forces, control, endpoint: endpoint? })
     }
 }
 

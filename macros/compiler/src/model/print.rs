@@ -45,8 +45,8 @@ impl fmt::Display for Model<'_> {
         if let Some(control) = &self.control {
             writeln!(f, "  price      {}", control.price)?;
             control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
-            control.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))?;
         }
+        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))?;
         self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;

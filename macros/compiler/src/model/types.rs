@@ -44,6 +44,8 @@ pub struct Model<'g> {
     pub input: Structure,
     /// What the inputs are chosen by; `None` where nothing is chosen.
     pub control: Option<Control<'g>>,
+    /// φ(t, q), the price of the end; `None` if there is none.
+    pub endpoint: Option<Expr<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// What becomes of motions of the group that move no configuration.
@@ -242,8 +244,6 @@ pub struct Control<'g> {
     pub price: Expr<'g>,
     /// What has to hold.
     pub bounds: Vec<Bound<'g>>,
-    /// φ(t, q), the price of the end; `None` if there is none.
-    pub endpoint: Option<Expr<'g>>,
     /// The price as written.
     pub written: Written,
 }

@@ -16,8 +16,6 @@ pub struct Control {
     pub price: Closure,
     /// `[a <= b, …]`.
     pub bounds: Option<Closure>,
-    /// The price of the end.
-    pub endpoint: Option<Closure>,
 }
 
 /// What has been read of a declaration's motion.
@@ -31,9 +29,9 @@ pub(super) struct Read {
 pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Read> {
     let steered = [("controls", keys.controls.take()), ("dynamics", keys.dynamics.take())];
     let mut steered = steered.into_iter().filter_map(|(_, closure)| closure);
-    let (bounds, endpoint) = (keys.bounds.take(), keys.endpoint.take());
+    let bounds = keys.bounds.take();
     let Some(motion) = steered.next() else {
-        let control = control_of_forces(keys, bounds, endpoint, diagnostics);
+        let control = control_of_forces(keys, bounds, diagnostics);
         return control.map(|control| Read { action: keys.action.take(), kinetic: None, control: Some(control) });
     };
     if let Some(second) = steered.next() {
@@ -54,18 +52,17 @@ pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Rea
         false => moved(keys, motion, diagnostics)
             .map_or((None, None), |(action, dynamics)| (Some(action), Some(Kinetic::Dynamics(dynamics)))),
     };
-    let control = price.map(|price| Control { price, bounds, endpoint });
+    let control = price.map(|price| Control { price, bounds });
     Some(Read { action, kinetic, control })
 }
 
 fn control_of_forces(
     keys: &mut Keys,
     bounds: Option<Closure>,
-    endpoint: Option<Closure>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Control> {
     let Some(price) = keys.effort.take() else {
-        if let Some(closure) = bounds.as_ref().or(endpoint.as_ref()).filter(|_| !keys.was_given("effort")) {
+        if let Some(closure) = bounds.filter(|_| !keys.was_given("effort")) {
             let error = Diagnostic::new(closure.key.span(), format!("`{}` without anything to choose", closure.key));
             diagnostics.push(error.help(
                 "add `effort = |u| u.norm_squared() / 2` to a force with an input, or `controls`, or `dynamics`",
@@ -81,7 +78,18 @@ fn control_of_forces(
                 .note("the effort is the price of the inputs of the force"),
         );
     }
-    Some(Control { price, bounds, endpoint })
+    Some(Control { price, bounds })
+}
+
+/// The end has a price where something is chosen that leads there.
+pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics: &mut Diagnostics) {
+    let chosen = control.is_some() || keys.dials.emit.boundary || keys.was_given("effort");
+    if let Some(endpoint) = keys.endpoint.as_ref().filter(|_| !chosen) {
+        let error = Diagnostic::new(endpoint.key.span(), "`endpoint` without anything to choose");
+        diagnostics.push(error.help(
+            "add `emit = [boundary]` for paths of least action to a free end, or `effort`, `controls` or `dynamics` for inputs",
+        ));
+    }
 }
 
 /// Where inputs move the configuration there is no mechanics.

@@ -32,6 +32,8 @@ pub struct Declaration {
     pub force_on: Option<Closure>,
     /// What the choice of inputs costs and is bound by; `None` where nothing is chosen.
     pub control: Option<Control>,
+    /// The price of the end.
+    pub endpoint: Option<Closure>,
     /// The symmetries that the user offers.
     pub symmetries: Vec<Closure>,
     /// Everything else.
@@ -87,8 +89,8 @@ impl Declaration {
         let control = self
             .control
             .iter()
-            .flat_map(|control| [Some(&control.price), control.bounds.as_ref(), control.endpoint.as_ref()]);
-        energies.into_iter().chain(control).flatten().chain(forces).chain(&self.symmetries)
+            .flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
+        energies.into_iter().chain(control).flatten().chain(forces).chain(&self.endpoint).chain(&self.symmetries)
     }
 }
 
@@ -138,13 +140,14 @@ pub(super) fn assemble(
         Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
         None => (keys.action.take(), kinetic, None),
     };
+    control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
     if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
         diagnostics.push(
             Diagnostic::new(discretization.span, "a cost is discrete already, there is nothing to discretise")
                 .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
         );
     }
-    let Keys { potential, force, force_on, symmetries, groups, dials, .. } = keys;
+    let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, .. } = keys;
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
             ident: input.ident.clone(),
@@ -158,6 +161,7 @@ pub(super) fn assemble(
             force,
             force_on,
             control,
+            endpoint,
             symmetries,
             dials,
         }),

@@ -33,9 +33,12 @@ impl fmt::Display for Declaration {
             writeln!(f, "  {:<10} = {}", force.key.to_string(), force.spell())?;
         }
         if let Some(control) = &self.control {
-            for closure in [&control.price].into_iter().chain(&control.bounds).chain(&control.endpoint) {
+            for closure in [&control.price].into_iter().chain(&control.bounds) {
                 writeln!(f, "  {:<10} = {}", closure.key.to_string(), closure.spell())?;
             }
+        }
+        if let Some(endpoint) = &self.endpoint {
+            writeln!(f, "  endpoint   = {}", endpoint.spell())?;
         }
         for symmetry in &self.symmetries {
             writeln!(f, "  symmetry   = {}", symmetry.spell())?;
