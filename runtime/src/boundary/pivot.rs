@@ -51,7 +51,8 @@ pub(super) fn solve<T: Scalar, const M: usize>(
 
 /// [`solve`] where all pivots have the sign of `sign`.
 ///
-/// With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W is: the next vertex, which waits for it, can be begun.
+/// With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W is: the next vertex, which waits for it, can be begun. One loop for each
+/// matrix, for such loops are unrolled where M is small, and matrices stay in registers.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 fn definite<T: Scalar, const M: usize>(
@@ -60,48 +61,62 @@ fn definite<T: Scalar, const M: usize>(
     g: &SVector<T, M>,
     sign: T,
 ) -> Option<Solution<T, M>> {
-    let (mut l, mut w) = (*d, *c);
-    let mut v: [T; M] = from_fn(|i| g[i]);
-    let mut hessian = [[T::zero(); M]; M];
-    let mut gradient = [T::zero(); M];
-    let (mut gain, mut shift) = (w, v);
-    for k in 0..M {
-        let pivot = l[k][k];
-        if pivot * sign <= T::zero() || !pivot.is_finite() {
-            return None;
-        }
-        let reciprocal = pivot.recip();
-        let column: [T; M] = from_fn(|i| l[i][k]);
-        for i in k + 1..M {
-            l[i][k] = column[i] * reciprocal;
-            for j in k + 1..=i {
-                l[i][j] -= l[i][k] * column[j];
-            }
+    let (l, reciprocals) = factors(d, sign)?;
+    let (mut w, mut v): ([[T; M]; M], [T; M]) = (*c, from_fn(|i| g[i]));
+    for i in 0..M {
+        for k in 0..i {
             for j in 0..M {
                 w[i][j] -= l[i][k] * w[k][j];
             }
             v[i] -= l[i][k] * v[k];
         }
-        for j in 0..M {
-            gain[k][j] = w[k][j] * reciprocal;
-        }
-        shift[k] = v[k] * reciprocal;
-        for i in 0..M {
-            for j in 0..=i {
-                hessian[i][j] += w[k][i] * gain[k][j];
-            }
-            gradient[i] += gain[k][i] * v[k];
+    }
+    let mut gain: [[T; M]; M] = from_fn(|i| from_fn(|j| w[i][j] * reciprocals[i]));
+    let mut shift: [T; M] = from_fn(|i| v[i] * reciprocals[i]);
+    let mut hessian = [[T::zero(); M]; M];
+    for i in 0..M {
+        for j in 0..=i {
+            hessian[i][j] = sum::<T, M>(|k| w[k][i] * gain[k][j]);
         }
     }
-    for k in (0..M).rev() {
-        for i in k + 1..M {
+    let gradient = from_fn(|i| sum::<T, M>(|k| w[k][i] * shift[k]));
+    for i in (0..M).rev() {
+        for k in i + 1..M {
             for j in 0..M {
-                gain[k][j] -= l[i][k] * gain[i][j];
+                gain[i][j] -= l[k][i] * gain[k][j];
             }
-            shift[k] -= l[i][k] * shift[i];
+            shift[i] -= l[k][i] * shift[k];
         }
     }
-    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: gradient.into(), negative: 0 })
+    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: SVector::from(gradient), negative: 0 })
+}
+
+/// L below the diagonal and the reciprocals of Δ, where all of Δ has the sign of `sign`.
+#[inline]
+#[allow(clippy::needless_range_loop)] // As above.
+fn factors<T: Scalar, const M: usize>(d: &[[T; M]; M], sign: T) -> Option<([[T; M]; M], [T; M])> {
+    let (mut l, mut reciprocals) = (*d, [T::zero(); M]);
+    let mut is_definite = true;
+    for k in 0..M {
+        let pivot = l[k][k];
+        // Written so that NaN is not definite. Nothing leaves the loop, which is then unrolled.
+        is_definite &= pivot * sign > T::zero() && pivot.is_finite();
+        reciprocals[k] = pivot.recip();
+        let column: [T; M] = from_fn(|i| l[i][k]);
+        for i in k + 1..M {
+            l[i][k] = column[i] * reciprocals[k];
+            for j in k + 1..=i {
+                l[i][j] -= l[i][k] * column[j];
+            }
+        }
+    }
+    is_definite.then_some((l, reciprocals))
+}
+
+/// Σ_k
+#[inline]
+fn sum<T: Scalar, const M: usize>(term: impl Fn(usize) -> T) -> T {
+    (1..M).fold(term(0), |sum, k| sum + term(k))
 }
 
 /// The matrix of these rows.
