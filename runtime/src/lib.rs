@@ -100,4 +100,4 @@ pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
-pub use variational::{Edge, Sensitive, Variational};
+pub use variational::{Edge, Momenta, Sensitive, Variational};

@@ -16,9 +16,16 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1.
     const EDGES: usize;
 
-    /// The increment of τ(η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map or the
-    /// exponential.
-    fn retraction(&self, eta: &Self::Momentum) -> Self::Element;
+    /// The increments of τ(η) and of τ(−η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map
+    /// or the exponential. They have most of their terms in common.
+    fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2];
+
+    /// The increment of τ(η).
+    #[inline]
+    fn retraction(&self, eta: &Self::Momentum) -> Self::Element {
+        let [ahead, _] = self.retractions(eta);
+        ahead
+    }
 
     /// The increment of the motion by `d` and after it by `second`, of both as increments.
     fn compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element;
@@ -52,6 +59,19 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         u: &Self::Input,
     ) -> Edge<Self::Scalar, M>;
 
+    /// [`edge`](Self::edge) without derivatives of the momenta.
+    #[allow(clippy::too_many_arguments)]
+    fn momenta(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Momenta<Self::Scalar, M>;
+
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
     fn infinitesimal_motion(&self, q: &Self::Configuration, xi: &Self::Momentum) -> Self::Configuration;
 
@@ -83,6 +103,17 @@ pub struct Edge<T, const M: usize> {
     pub after_by_start: SMatrix<T, M, M>,
     /// ∂F⁺ℓd/∂η′
     pub after_by_end: SMatrix<T, M, M>,
+}
+
+/// The discrete Lagrangian ℓd of an edge with its Legendre transforms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Momenta<T, const M: usize> {
+    /// ℓd(t, h, q, F)
+    pub lagrangian: T,
+    /// F⁻ℓd, the momentum at the start.
+    pub before: SVector<T, M>,
+    /// F⁺ℓd, the momentum at the end.
+    pub after: SVector<T, M>,
 }
 
 /// A system whose steps have been differentiated with respect to all that is fixed during a step, P quantities. Implemented by

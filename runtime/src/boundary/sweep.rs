@@ -15,7 +15,7 @@ use super::Node;
 use super::end::End;
 use super::pivot::Curvature;
 use super::vertex::{Pending, Summary};
-use crate::{Edge, Scalar, Space, Stepper, Variational};
+use crate::{Edge, Momenta, Scalar, Space, Stepper, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;
 
@@ -59,6 +59,25 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         summary
     }
 
+    /// Momenta, action and residual of a path that ends at `last_vertex`, without second derivatives: gains and shifts of the nodes stay
+    /// those of the sweep that `before` tells of.
+    pub fn measure(
+        &self,
+        path: &mut [Node<S, M>],
+        last_vertex: &S::Configuration,
+        end: &End<S::Scalar, M>,
+        before: &Summary<S::Scalar, M>,
+    ) -> Summary<S::Scalar, M> {
+        let mut next = last_vertex;
+        let edges = path.iter_mut().enumerate().rev().map(|(index, node)| {
+            let momenta = self.momenta(index, &node.configuration, &node.increment, next);
+            node.momentum = momenta.before;
+            next = &node.configuration;
+            momenta
+        });
+        before.measured(edges, end)
+    }
+
     /// Moves the vertices by `fraction` of Newton's correction. Returns q_N.
     #[inline]
     pub fn correct(&self, path: &mut [Node<S, M>], fraction: S::Scalar) -> S::Configuration {
@@ -84,15 +103,17 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<S::Scalar, M>,
     ) -> S::Configuration {
         let system = &self.stepper.system;
-        let (mut q, mut back) = (*self.start, SVector::from_element(S::Scalar::zero()));
+        let mut q = *self.start;
+        let mut back = system.retraction(&SVector::from_element(S::Scalar::zero()));
         for (index, node) in path.iter_mut().enumerate() {
             let next = motion(index, node);
-            let behind = system.compose(&system.retraction(&back), &node.increment);
-            node.increment = system.compose(&behind, &system.retraction(&next));
+            let behind = system.compose(&back, &node.increment);
+            let [ahead, inverse] = system.retractions(&next);
+            node.increment = system.compose(&behind, &ahead);
             node.configuration = q;
             node.motion = next;
             q = system.advance(&q, &node.increment);
-            back = -next;
+            back = inverse;
         }
         q
     }
@@ -108,7 +129,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             motion = -node.shift - node.gain * motion;
             let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
             let next = system.advance(&q, &increment);
-            action += self.edge(index, &q, &increment, &next).lagrangian;
+            action += self.momenta(index, &q, &increment, &next).lagrangian;
             q = next;
         }
         action
@@ -125,9 +146,27 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// Not inlined: the elimination beside it needs the registers.
     #[inline(never)]
     fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
+        let (t, edge) = self.place(index);
+        self.stepper.system.edge(&self.stepper.constants, edge, t, q, d, next, &S::Input::origin())
+    }
+
+    #[inline]
+    fn momenta(
+        &self,
+        index: usize,
+        q: &S::Configuration,
+        d: &S::Element,
+        next: &S::Configuration,
+    ) -> Momenta<S::Scalar, M> {
+        let (t, edge) = self.place(index);
+        self.stepper.system.momenta(&self.stepper.constants, edge, t, q, d, next, &S::Input::origin())
+    }
+
+    /// The time at which the step of an edge starts, and the number of the edge in it.
+    #[inline]
+    fn place(&self, index: usize) -> (S::Scalar, usize) {
         let per_step = S::EDGES.max(1);
-        let t = time_after::<S, M>(self.time, self.stepper.h, index / per_step);
-        self.stepper.system.edge(&self.stepper.constants, index % per_step, t, q, d, next, &S::Input::origin())
+        (time_after::<S, M>(self.time, self.stepper.h, index / per_step), index % per_step)
     }
 }
 

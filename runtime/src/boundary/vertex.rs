@@ -4,7 +4,7 @@ use super::end::End;
 use super::pivot::{Curvature, Solution, solve};
 use crate::linear::rows;
 use crate::space::larger;
-use crate::{Edge, Scalar};
+use crate::{Edge, Momenta, Scalar};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -73,6 +73,28 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
             stiffness: zero,
             edges: T::from_f64(edges as f64),
         }
+    }
+
+    /// Action, momenta and residual of another path near this one, from its last edge to its first.
+    #[inline]
+    pub fn measured(&self, edges: impl Iterator<Item = Momenta<T, M>>, end: &End<T, M>) -> Self {
+        let mut summary = Self { action: T::zero(), momenta: T::zero(), residual_squared: T::zero(), ..*self };
+        let mut later: Option<SVector<T, M>> = None;
+        for Momenta { lagrangian, before, after } in edges {
+            let residual = match (later, &end.kernel) {
+                (Some(later), _) => after - later,
+                (None, Some(kernel)) => kernel * after,
+                (None, None) => SVector::from_element(T::zero()),
+            };
+            if later.is_none() {
+                summary.after = after;
+            }
+            summary.action += lagrangian;
+            summary.momenta += before.dot(&before);
+            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
+            later = Some(before);
+        }
+        summary
     }
 
     /// Adds up what scales the correction.

@@ -100,7 +100,7 @@ impl Program<'_> {
 
     fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {
         let mut kernels = vec![
-            ("retraction".to_string(), &variations.retraction),
+            ("retractions".to_string(), &variations.retractions),
             ("compose".to_string(), &variations.compose),
             ("infinitesimal_motion".to_string(), &variations.generator),
             ("orbit_metric".to_string(), &variations.orbit_metric),
@@ -108,6 +108,7 @@ impl Program<'_> {
         for (index, edge) in variations.edges.iter().enumerate() {
             let suffix = self.suffix(index);
             kernels.push((format!("edge{suffix}"), &edge.edge));
+            kernels.push((format!("momenta{suffix}"), &edge.momenta));
             kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }
         kernels
