@@ -68,7 +68,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let mut eta = eta;
         let mut end = end_of(&eta);
         for _ in 0..PASSES {
-            if end.is_closed() || end.is_orthogonal() {
+            if end.is_reached() || end.is_closed() || end.is_orthogonal() {
                 break;
             }
             let next = eta + end.arc() / edges;

@@ -35,7 +35,7 @@ pub(super) enum Curvature<T> {
 /// D⁻¹C and D⁻¹g of a symmetric D, both by rows, of which only the lower triangle is read; `sign` is that of a minimum.
 ///
 /// D = L Δ Lᵀ without pivoting where D is definite: M³/6 + M²(M + 1) multiplications, M divisions. Else from eigenvalues.
-#[inline]
+#[inline(always)]
 pub(super) fn solve<T: Scalar, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
@@ -43,10 +43,66 @@ pub(super) fn solve<T: Scalar, const M: usize>(
     sign: T,
     curvature: Curvature<T>,
 ) -> Solution<T, M> {
-    match definite(d, c, g, sign) {
-        Some(solution) => solution,
-        None => indefinite(d, c, g, sign, curvature),
+    if M == 3
+        && let Some(solution) = cofactors(d, c, g, sign)
+    {
+        return solution;
     }
+    match definite(d, c, g, sign) {
+        Some(solution) if M != 3 => solution,
+        _ => indefinite(d, c, g, sign, curvature),
+    }
+}
+
+/// [`solve`] of three dimensions where D is definite, from D⁻¹ = adj D / det D: one division where an elimination has three, each of which
+/// waits for the one before. `None` too where det D is too large or small to be known in full.
+#[inline(always)]
+#[allow(clippy::needless_range_loop)]
+fn cofactors<T: Scalar, const M: usize>(
+    d: &[[T; M]; M],
+    c: &[[T; M]; M],
+    g: &SVector<T, M>,
+    sign: T,
+) -> Option<Solution<T, M>> {
+    let (a, b, e) = (d[0][0], d[1][1], d[2][2]);
+    let (x, y, z) = (d[2][1], d[2][0], d[1][0]);
+    let (aa, bb, ee) = (b * e - x * x, a * e - y * y, a * b - z * z);
+    let (xx, yy, zz) = (y * z - a * x, z * x - b * y, x * y - e * z);
+    let determinant = a * aa + (z * zz + y * yy);
+    let reciprocal = determinant.recip();
+    let adjugate = [[aa, zz, yy], [zz, bb, xx], [yy, xx, ee]];
+    let tiny = T::EPSILON * T::EPSILON;
+    let in_range = |x: T| x * sign * tiny > T::zero();
+    // Written so that NaN is not definite.
+    if !(a * sign > T::zero() && ee > T::zero() && in_range(determinant) && in_range(reciprocal)) {
+        return None;
+    }
+    let mut gain = [[T::zero(); M]; M];
+    for i in 0..M {
+        for j in 0..M {
+            gain[i][j] = sum::<T, M>(|k| adjugate[i][k] * c[k][j]);
+        }
+    }
+    let mut shift = [T::zero(); M];
+    for i in 0..M {
+        shift[i] = sum::<T, M>(|k| adjugate[i][k] * g[k]);
+    }
+    let (mut hessian, mut gradient) = ([[T::zero(); M]; M], [T::zero(); M]);
+    for i in 0..M {
+        for j in 0..=i {
+            hessian[i][j] = sum::<T, M>(|k| c[k][i] * gain[k][j]) * reciprocal;
+        }
+    }
+    for i in 0..M {
+        gradient[i] = sum::<T, M>(|k| c[k][i] * shift[k]) * reciprocal;
+    }
+    for i in 0..M {
+        for j in 0..M {
+            gain[i][j] *= reciprocal;
+        }
+        shift[i] *= reciprocal;
+    }
+    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: SVector::from(gradient), negative: 0 })
 }
 
 /// [`solve`] where all pivots have the sign of `sign`.

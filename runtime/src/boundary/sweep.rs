@@ -42,11 +42,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     ) -> Summary<S::Scalar, M> {
         let mut summary = Summary::of_nothing(path.len());
         let Some((last, rest)) = path.split_last_mut() else { return summary };
-        let edge = self.edge(rest.len(), &last.configuration, &last.increment, last_vertex);
-        summary.count(&edge);
-        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
-        let mut pending = Pending::behind(&edge, &solution);
-        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
+        let mut pending = self.eliminate_end(rest.len(), last, last_vertex, end, curvature, &mut summary);
         let mut next = &last.configuration;
         for (index, node) in rest.iter_mut().enumerate().rev() {
             let edge = self.edge(index, &node.configuration, &node.increment, next);
@@ -57,6 +53,24 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             next = &node.configuration;
         }
         summary
+    }
+
+    /// The last edge and the vertex where it ends, apart from the loop over the others.
+    #[inline(never)]
+    fn eliminate_end(
+        &self,
+        index: usize,
+        last: &mut Node<S, M>,
+        last_vertex: &S::Configuration,
+        end: &End<S::Scalar, M>,
+        curvature: Curvature<S::Scalar>,
+        summary: &mut Summary<S::Scalar, M>,
+    ) -> Pending<S::Scalar, M> {
+        let edge = self.edge(index, &last.configuration, &last.increment, last_vertex);
+        summary.count(&edge);
+        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
+        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
+        Pending::behind(&edge, &solution)
     }
 
     /// Momenta, action and residual of a path that ends at `last_vertex`, without second derivatives: gains and shifts of the nodes stay
@@ -143,8 +157,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         })
     }
 
-    /// Not inlined: the elimination beside it needs the registers.
-    #[inline(never)]
+    #[inline(always)]
     fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
         let (t, edge) = self.place(index);
         self.stepper.system.edge(&self.stepper.constants, edge, t, q, d, next, &S::Input::origin())

@@ -114,7 +114,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
     }
 
     /// The interior vertex where `edge` ends.
-    #[inline]
+    #[inline(always)]
     pub fn eliminate(
         &mut self,
         edge: &Edge<T, M>,
@@ -210,9 +210,10 @@ fn lower_half<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
     let half = T::from_ratio(1, 2);
     let mut lower = [[T::zero(); M]; M];
     for (i, row) in lower.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().take(i + 1).enumerate() {
+        for (j, entry) in row.iter_mut().take(i).enumerate() {
             *entry = (a[(i, j)] + a[(j, i)]) * half;
         }
+        row[i] = a[(i, i)];
     }
     lower
 }
