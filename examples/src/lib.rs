@@ -7,7 +7,7 @@
 //! | module | its job |
 //! |---|---|
 //! | [`flags`] | what every scene takes on the command line, and number parsers with clear errors |
-//! | [`integrate`] | step after step, with progress and with errors that name the step |
+//! | [`integrate`], [`progress`] | step after step, with progress and with errors that name the step |
 //! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
 //! | [`claims`] | what a scene asserts: each with its measured number and its bound |
 //! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
@@ -24,7 +24,7 @@ pub mod energy_band;
 pub mod figure;
 pub mod flags;
 pub mod integrate;
-mod progress;
+pub mod progress;
 pub mod reference;
 pub mod round_off;
 pub mod scene;

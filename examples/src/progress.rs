@@ -7,18 +7,20 @@ use std::time::{Duration, Instant};
 const INTERVAL: u64 = 4096;
 
 /// Silent for a second, then a bar on standard error, if that is a terminal.
-pub(crate) struct Progress {
+pub struct Progress {
     steps: u64,
     began: Instant,
     bar: Option<ProgressBar>,
 }
 
 impl Progress {
-    pub(crate) fn new(steps: u64) -> Self {
+    /// For a run of so many steps.
+    pub fn new(steps: u64) -> Self {
         Self { steps, began: Instant::now(), bar: None }
     }
 
-    pub(crate) fn reached(&mut self, step: u64) {
+    /// Takes the number of the step that has been made.
+    pub fn reached(&mut self, step: u64) {
         if !step.is_multiple_of(INTERVAL) {
             return;
         }

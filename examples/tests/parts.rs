@@ -4,8 +4,17 @@
 #[path = "../fluid_ellipsoid/geodesic.rs"]
 mod geodesic;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../inertia_estimation/noise.rs"]
+mod noise;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../inertia_estimation/rotation.rs"]
+mod rotation;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/spheroid.rs"]
 mod spheroid;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../inertia_estimation/unknowns.rs"]
+mod unknowns;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../underwater_vehicle/vehicle.rs"]
 mod vehicle;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 11] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -26,6 +26,7 @@ const SCENES: [(&str, &str); 10] = [
         "relativistic_spin",
         "step,time,q00,q01,q02,q03,q10,q11,q12,q13,q20,q21,q22,q23,q30,q31,q32,q33,E1,E2,E3,B1,B2,B3",
     ),
+    ("inertia_estimation", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
 
@@ -86,6 +87,9 @@ fn other_flags_hold_all_their_claims() {
         ("relativistic_spin", &["--anomaly", "-2", "--steps", "1000"]),
         ("relativistic_spin", &["--step-size", "0.1", "--steps", "1000"]),
         ("relativistic_spin", &["--electric", "0,0,0", "--magnetic", "0,0,0", "--steps", "10"]),
+        ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
+        ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
+        ("inertia_estimation", &["--spin", "0,0,2.67", "--radius", "1e9", "--step-size", "0.5", "--steps", "1200"]),
     ] {
         let figure = file(&format!("{scene}-other.svg"));
         let output = run(scene, &[arguments, &["--figure", text(&figure)]].concat());
@@ -158,6 +162,10 @@ fn mistakes_are_explained() {
         ("spacecraft", &["--inertia", "1,1,3,0,0,0"], "no body has the principal moments"),
         ("spacecraft", &["--mass", "1e-9"], "is too large for an orbit"),
         ("spacecraft", &["--step-size", "1e4"], "is too long for an orbit with a period"),
+        ("inertia_estimation", &["--inertia", "1,1,3,0,0,0"], "no body has this inertia"),
+        ("inertia_estimation", &["--steps", "2"], "do not determine 11 numbers"),
+        ("inertia_estimation", &["--spin", "1e300,0,0"], "take shorter steps"),
+        ("inertia_estimation", &["--noise", "0"], "`0` is not above zero"),
         ("spacecraft", &["--eccentricity", "1"], "`1` is not in 0 to 0.9"),
     ] {
         let errors = refusal(scene, arguments);

@@ -43,7 +43,8 @@
 //! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
-//! | go from here to there in a given time | [`Stepper::boundary`], where second derivatives were asked for; [`Extremal`] |
+//! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
+//! | give each step an input of its forces | [`Stepper::step_with`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
 //!
@@ -64,6 +65,7 @@ extern crate std;
 pub mod __private;
 mod boundary;
 mod conserved;
+mod controlled;
 mod eigen;
 mod element;
 mod energy;
@@ -90,6 +92,7 @@ mod variational;
 pub use boundary::{Boundary, Extremal, Guess, Node, States};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
+pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 pub use error::Error;
 pub use nalgebra;
 pub use scalar::Scalar;
@@ -100,4 +103,4 @@ pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
-pub use variational::{Edge, Momenta, Sensitive, Variational};
+pub use variational::{Carried, Edge, Momenta, Sensitive, Variational};

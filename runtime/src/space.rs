@@ -125,6 +125,7 @@ macro_rules! tuple {
                 max
             }
             #[inline]
+            #[allow(clippy::unused_unit)] // of the tuple without parts
             fn origin() -> Self {
                 ($($name::origin(),)*)
             }

@@ -1,7 +1,7 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
 use crate::linear::{eliminate, rows};
-use crate::{Clebsch, Edge, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
+use crate::{Carried, Clebsch, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -110,16 +110,16 @@ fn unit<T: Scalar, const M: usize>() -> SMatrix<T, M, M> {
     SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() })
 }
 
-/// The tangent map of an edge, by the implicit function theorem: F⁻ℓd = N gives η′, F⁺ℓd = N⁺ gives ν′. `None` where ∂F⁻ℓd/∂η′ is
-/// singular.
+/// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N: with η′ = Ad η + ζ, ζ = (∂F⁻ℓd/∂η′)⁻¹ (ν − ∂F⁻ℓd η), the
+/// derivatives along η at fixed F. `None` where ∂F⁻ℓd/∂η′ is singular.
 #[inline]
-fn of_edge<T: Scalar, const M: usize>(edge: &Edge<T, M>) -> Option<Tangent<T, M>> {
+pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
     let inverse = solve(&edge.before_by_end, &unit())?;
-    let motion_by_motion = -times(&inverse, &edge.before_by_start);
+    let turned = times(&inverse, &edge.before);
     Some(Tangent {
-        motion_by_motion,
+        motion_by_motion: edge.adjoint - turned,
         motion_by_momentum: inverse,
-        momentum_by_motion: edge.after_by_start + times(&edge.after_by_end, &motion_by_motion),
+        momentum_by_motion: edge.after - times(&edge.after_by_end, &turned),
         momentum_by_momentum: times(&edge.after_by_end, &inverse),
     })
 }
@@ -138,7 +138,7 @@ fn solve<T: Scalar, const M: usize, const K: usize>(
 struct Passed<S: Clebsch, const M: usize> {
     increment: S::Element,
     next: S::Configuration,
-    edge: Edge<S::Scalar, M>,
+    edge: Carried<S::Scalar, M>,
     tangent: Tangent<S::Scalar, M>,
 }
 
@@ -167,7 +167,7 @@ where
         for number in 0..S::EDGES {
             let passed = self.pass(number, state.time.now(), &q, &mu, u)?;
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
-            (q, mu) = (passed.next, passed.edge.after);
+            (q, mu) = (passed.next, passed.edge.momentum);
         }
         Ok((self.stepped(state, q, mu)?, tangent))
     }
@@ -189,7 +189,7 @@ where
             Err(error) => return Err(error.with_step_size(self.step_size().to_f64())),
         };
         let next = system.advance(q, &increment);
-        let edge = system.edge(constants, number, t, q, &increment, &next, u);
+        let edge = system.carried(constants, number, t, q, &increment, &next, u);
         let tangent = of_edge(&edge).ok_or(Error::SingularTangent { step_size: self.step_size().to_f64() })?;
         Ok(Passed { increment, next, edge, tangent })
     }
@@ -243,7 +243,7 @@ where
             let of_edge = Sensitivity { motion, momentum: after + times(&passed.edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(&passed.tangent, &of_edge);
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
-            (q, mu) = (passed.next, passed.edge.after);
+            (q, mu) = (passed.next, passed.edge.momentum);
         }
         Ok((self.stepped(state, q, mu)?, tangent, sensitivity))
     }

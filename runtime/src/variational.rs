@@ -48,6 +48,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     ) -> Result<Self::Element, Error>;
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
+    #[allow(clippy::too_many_arguments)]
     fn edge(
         &self,
         constants: &Self::Constants,
@@ -71,6 +72,20 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> Momenta<Self::Scalar, M>;
+
+    /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
+    /// Together they say everything, and nothing of the size of inertia/h cancels.
+    #[allow(clippy::too_many_arguments)]
+    fn carried(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Carried<Self::Scalar, M>;
 
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
     fn infinitesimal_motion(&self, q: &Self::Configuration, xi: &Self::Momentum) -> Self::Configuration;
@@ -116,6 +131,23 @@ pub struct Momenta<T, const M: usize> {
     pub after: SVector<T, M>,
 }
 
+/// An edge with the derivatives of its momenta along the motions of its start that carry its end along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried<T, const M: usize> {
+    /// F⁺ℓd, the momentum at the end.
+    pub momentum: SVector<T, M>,
+    /// η ↦ η′: Ad_F for a left action, Ad_{F⁻¹} for a right one.
+    pub adjoint: SMatrix<T, M, M>,
+    /// ∂F⁻ℓd/∂η at fixed F: of potentials, forces and costs that couple; else 0.
+    pub before: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η at fixed F.
+    pub after: SMatrix<T, M, M>,
+    /// ∂F⁻ℓd/∂η′
+    pub before_by_end: SMatrix<T, M, M>,
+    /// ∂F⁺ℓd/∂η′
+    pub after_by_end: SMatrix<T, M, M>,
+}
+
 /// A system whose steps have been differentiated with respect to all that is fixed during a step, P quantities. Implemented by
 /// `#[derive(Clebsch)]` with `emit = [tangent]`.
 pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
@@ -124,7 +156,7 @@ pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
     const QUANTITIES: [&'static str; P];
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
     fn edge_slopes(
         &self,
         constants: &Self::Constants,

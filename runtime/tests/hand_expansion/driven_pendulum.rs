@@ -247,7 +247,7 @@ const _: () = {
             let identity = SMatrix::<f64, 3, 3>::identity();
             let turning = (identity * (2.0 + d.trace()) - d) * c;
             ::clebsch::Edge {
-                lagrangian: d.norm_squared() * (0.5 * c) - g.dot(q) - g_next.dot(&next),
+                lagrangian: d.norm_squared() * (0.5 * c) - g.dot(q) - g_next.dot(next),
                 before: components(d) * c + q.cross(&g),
                 after: components(d) * c - next.cross(&g_next),
                 before_by_start: q * g.transpose() - turning.transpose() - identity * q.dot(&g),
@@ -275,6 +275,33 @@ const _: () = {
                 lagrangian: d.norm_squared() * (0.5 * c) - height,
                 before: components(d) * c + moment(self, t, q) * half_h,
                 after: components(d) * c - moment(self, t + constants.h, next) * half_h,
+            }
+        }
+
+        /// η′ = Fη, ∂N/∂η = qgᵀ − (q·g)I, ∂N⁺/∂η = ((q⁺·g⁺)I − q⁺g⁺ᵀ)F
+        #[inline]
+        fn carried(
+            &self,
+            constants: &Constants,
+            number: usize,
+            t: f64,
+            q: &SVector<f64, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SVector<f64, 3>,
+            u: &(),
+        ) -> ::clebsch::Carried<f64, 3> {
+            let (g, g_next) =
+                (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
+            let edge = ::clebsch::Variational::edge(self, constants, number, t, q, d, next, u);
+            let identity = SMatrix::<f64, 3, 3>::identity();
+            let adjoint = identity + d;
+            ::clebsch::Carried {
+                momentum: edge.after,
+                adjoint,
+                before: q * g.transpose() - identity * q.dot(&g),
+                after: (identity * next.dot(&g_next) - next * g_next.transpose()) * adjoint,
+                before_by_end: edge.before_by_end,
+                after_by_end: edge.after_by_end,
             }
         }
 

@@ -47,6 +47,11 @@ where
         assert_near!(edge.before_by_end.column(j), (up.before - down.before) / (2.0 * step), 1e-8);
         assert_near!(edge.after_by_end.column(j), (up.after - down.after) / (2.0 * step), 1e-8);
     }
+    // motions of q with q⁺, and motions of q⁺ alone, make up all of them
+    let carried =
+        system.carried(&system.constants(h).expect("a good step size"), 0, 0.3, q, d, &system.advance(q, d), &());
+    assert_near!(carried.before, edge.before_by_start + edge.before_by_end * carried.adjoint, 1e-13);
+    assert_near!(carried.after, edge.after_by_start + edge.after_by_end * carried.adjoint, 1e-13);
 }
 
 #[test]

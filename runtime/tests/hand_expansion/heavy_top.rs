@@ -307,6 +307,34 @@ const _: () = {
             }
         }
 
+        /// η′ = Fᵀη, ∂N/∂η = Γmᵀ − (Γ·m)I, ∂N⁺/∂η = ((Γ⁺·m)I − Γ⁺mᵀ)Fᵀ
+        #[inline]
+        fn carried(
+            &self,
+            constants: &Constants,
+            number: usize,
+            t: f64,
+            r: &SMatrix<f64, 3, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SMatrix<f64, 3, 3>,
+            u: &(),
+        ) -> ::clebsch::Carried<f64, 3> {
+            let m = &constants.moment;
+            let gamma = vector([r[(2, 0)], r[(2, 1)], r[(2, 2)]]);
+            let gamma_next = gamma + d.tr_mul(&gamma);
+            let edge = ::clebsch::Variational::edge(self, constants, number, t, r, d, next, u);
+            let identity = SMatrix::<f64, 3, 3>::identity();
+            let adjoint = identity + d.transpose();
+            ::clebsch::Carried {
+                momentum: edge.after,
+                adjoint,
+                before: gamma * m.transpose() - identity * gamma.dot(m),
+                after: (identity * gamma_next.dot(m) - gamma_next * m.transpose()) * adjoint,
+                before_by_end: edge.before_by_end,
+                after_by_end: edge.after_by_end,
+            }
+        }
+
         /// ⟨R E_i, R E_j⟩
         #[inline]
         fn orbit_metric(&self, _r: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {

@@ -24,10 +24,10 @@ macro_rules! steppers {
 }
 
 modules! {
-    annotated_body centred_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    annotated_body centred_body damped_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top
-    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair two_bodies two_pendulums
+    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob two_bodies two_pendulums
     underwater_vehicle watched_top weighted_sl2
 }
 
@@ -67,6 +67,8 @@ steppers! {
     step_two_bodies: two_bodies::TwoBodies;
     step_two_pendulums: two_pendulums::TwoPendulums;
     step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;
+    step_damped_body: damped_body::DampedBody;
+    step_steered_bob: steered_bob::SteeredBob;
     step_watched_top: watched_top::WatchedTop;
     step_weighted_sl2: weighted_sl2::WeightedSl2;
 }

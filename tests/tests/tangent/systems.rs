@@ -128,6 +128,21 @@ pub struct Nil<T: Scalar> {
     pub mass: SMatrix<T, 3, 3>,
 }
 
+/// Drag, a torque that depends on attitude and time, and a force on the configuration with an input.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    force      = |t, R, omega| R.transpose() * Vector3::new(t.cos(), t.sin(), 1) - self.drag * omega.norm_squared() * omega,
+    force_on   = |R, omega, u: Vector2| R * (u.x * I + omega.cross_matrix()) * R[(0, 1)] + u.y * Matrix3::new(1, 2, 3, 4, 5, 6, 7, 8, 9),
+    emit       = [tangent],
+)]
+pub struct Steered<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<T>,
+    pub drag: T,
+}
+
 /// The symmetric matrix with this upper triangle, row by row.
 fn symmetric<T: Scalar, const N: usize>(upper: &[T]) -> SMatrix<T, N, N> {
     // rows before row i hold N, N − 1, …, N − i + 1 numbers
@@ -178,4 +193,9 @@ pub fn flyer<T: Scalar>(numbers: &[T]) -> Flyer<T> {
 /// As [`top`].
 pub fn nil<T: Scalar>(numbers: &[T]) -> Nil<T> {
     Nil { mass: symmetric(numbers) }
+}
+
+/// As [`top`].
+pub fn steered<T: Scalar>(numbers: &[T]) -> Steered<T> {
+    Steered { inertia: symmetric(numbers), drag: numbers[6] }
 }

@@ -218,11 +218,15 @@ fn check_unmoved<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> 
 fn check_offers(model: &Model<'_>, symmetries: &Symmetries<'_>) -> Result<(), Diagnostics> {
     let Some(&index) = symmetries.refused.first() else { return Ok(()) };
     let offered = &model.symmetries[index];
+    let (what, unchanged) = match model.force.is_some() {
+        true => ("the cost, the potential and the force", "leaves all of them unchanged"),
+        false => ("the cost and the potential", "leaves both unchanged"),
+    };
     let error = Diagnostic::new(
         offered.written.place,
-        format!("`{}` is not a symmetry of the cost and the potential", offered.written.text),
+        format!("`{}` is not a symmetry of {what}", offered.written.text),
     )
-    .help("leave it out, or offer the part of the group that leaves both unchanged")
+    .help(format!("leave it out, or offer the part of the group that {unchanged}"))
     .note("it has to leave them unchanged for all values of the configuration, the group element and the parameters, and to move the configuration as some motion of the declared group does");
     Err(error.into())
 }

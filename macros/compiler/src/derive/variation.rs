@@ -24,8 +24,21 @@ pub struct Variation<'g> {
     pub after_by_start: Option<Vec<Expr<'g>>>,
     /// ∂F⁺ℓd/∂η′.
     pub after_by_end: Vec<Expr<'g>>,
+    /// The same along motions that leave F as it is.
+    pub carried: Carried<'g>,
     /// The derivatives of both Legendre transforms with respect to each of the [`Quantity`]s, where they are asked for.
     pub slopes: Option<Slopes<'g>>,
+}
+
+/// The derivatives along the motions η of q that carry q⁺ along, by η′ = Ad_F η for a left action and Ad_{F⁻¹} η for a right one, and leave F
+/// as it is. Where the cost does not couple only potentials and forces are left of them.
+pub struct Carried<'g> {
+    /// η′, column by column.
+    pub adjoint: Vec<Expr<'g>>,
+    /// ∂F⁻ℓd.
+    pub before: Vec<Expr<'g>>,
+    /// ∂F⁺ℓd.
+    pub after: Vec<Expr<'g>>,
 }
 
 /// What becomes of the momenta at both ends of an edge when a quantity changes that is fixed during a step.
@@ -148,10 +161,33 @@ impl<'g> Source<'_, 'g> {
             before_by_end: self.columns(first, &self.at_end()),
             after_by_start: force.map(|_| self.columns(last, &self.at_start())),
             after_by_end: self.columns(last, &self.at_end()),
+            carried: self.carried(first, last),
             slopes: (!self.quantities.is_empty())
                 .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),
             before: first,
             after: last,
+        }
+    }
+
+    fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {
+        let symbols = self.symbols;
+        let moved = |(k, factor): (usize, &Factor<'g>)| {
+            let element = match factor.side {
+                Side::Left => factor.symbol,
+                Side::Right => factor.group.inverse(factor.symbol),
+            };
+            factor.group.adjoint(element, symbols.algebra[k])
+        };
+        let moved: Vec<Expr<'g>> = self.model.factors.iter().enumerate().map(moved).collect();
+        let along: Vec<_> = symbols.algebra.iter().copied().zip(moved.iter().copied()).collect();
+        let leaves = self.model.configurations.iter().map(|leaf| leaf.symbol);
+        let images = self.generator.iter().map(|part| self.at_image(*part).substitute(&along));
+        let mut motions: Vec<_> = leaves.zip(self.generator.iter().copied()).collect();
+        motions.extend(symbols.images.iter().copied().zip(images));
+        Carried {
+            adjoint: symbols.basis().iter().map(|element| self.stack(&moved).substitute(element)).collect(),
+            before: self.columns(before, &motions),
+            after: self.columns(after, &motions),
         }
     }
 

@@ -167,7 +167,9 @@ impl Emitter<'_, '_> {
     fn edge(&self) -> TokenStream {
         let edge = self.handed("edge", "Edge", "An edge with its second derivatives.");
         let momenta = self.handed("momenta", "Momenta", "An edge with its first derivatives.");
-        quote!(#edge #momenta)
+        let carried =
+            self.handed("carried", "Carried", "The derivatives of an edge along motions that leave F as it is.");
+        quote!(#edge #momenta #carried)
     }
 
     /// A method that the type `Step` has for each edge.
@@ -332,6 +334,32 @@ impl Emitter<'_, '_> {
             7 => grid(kernel, 6),
             _ => quote!(-before_by_end.transpose()),
         };
+        let carried = {
+            let kernel = &kernels.carried;
+            let documentation = docs::formulas(
+                "F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.",
+                &[],
+                Some(kernel),
+            );
+            let (name, locals) = (format_ident!("carried{suffix}"), code::locals(&scope, kernel));
+            let [momentum, adjoint, before, after, before_by_end, after_by_end] =
+                [0, 1, 2, 3, 4, 5].map(|index| grid(kernel, index));
+            quote! {
+                #documentation
+                #[inline]
+                fn #name(&self, #place) -> #krate::Carried<#scalar, #dimension> {
+                    #locals
+                    #krate::Carried {
+                        momentum: #momentum,
+                        adjoint: #adjoint,
+                        before: #before,
+                        after: #after,
+                        before_by_end: #before_by_end,
+                        after_by_end: #after_by_end,
+                    }
+                }
+            }
+        };
         let edge = format_ident!("edge{suffix}");
         let slopes = kernels.slopes.as_ref().map(|kernel| {
             let documentation =
@@ -362,6 +390,7 @@ impl Emitter<'_, '_> {
                     after_by_end: #after_by_end,
                 }
             }
+            #carried
             #slopes
         }
     }

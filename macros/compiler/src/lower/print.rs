@@ -109,6 +109,7 @@ impl Program<'_> {
             let suffix = self.suffix(index);
             kernels.push((format!("edge{suffix}"), &edge.edge));
             kernels.push((format!("momenta{suffix}"), &edge.momenta));
+            kernels.push((format!("carried{suffix}"), &edge.carried));
             kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }
         kernels

@@ -30,6 +30,8 @@ pub struct EdgeKernels {
     pub edge: Kernel,
     /// ℓd, F⁻ℓd, F⁺ℓd.
     pub momenta: Kernel,
+    /// F⁺ℓd; Ad, ∂F⁻ℓd and ∂F⁺ℓd for motions that leave F as it is; ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
+    pub carried: Kernel,
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
     pub slopes: Option<Kernel>,
 }
@@ -137,11 +139,16 @@ fn edge<'g>(
         outputs.push(columns(block, scalars));
     }
     let edge = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
+    let carried = &variation.carried;
+    let mut outputs = grids(scalars, &[inserted(variation.after, &elements)]);
+    let blocks = [&carried.adjoint, &carried.before, &carried.after, &variation.before_by_end, &variation.after_by_end];
+    outputs.extend(blocks.map(|block| columns(block, scalars)));
+    let carried = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
     let slopes = variation.slopes.as_ref().map(|slopes| {
         let outputs = [columns(&slopes.before, scalars), columns(&slopes.after, scalars)];
         kernel(scalars, &outputs, Hoisting::Constants(hoisted))
     });
-    EdgeKernels { edge, momenta, slopes }
+    EdgeKernels { edge, momenta, carried, slopes }
 }
 
 /// The replacements of F by I + D, and of inverses of configurations by the formulas of their groups.

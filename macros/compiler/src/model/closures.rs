@@ -5,7 +5,7 @@ use syn::{BinOp, Expr as Syntax, Stmt};
 
 use super::arguments::Arguments;
 use super::elaborate::{Context, Elaborator};
-use super::leaves::{Expected, leaves};
+use super::leaves::{Expected, leaves, new_value_of};
 use super::value::Value;
 use super::velocity::Velocity;
 use super::{Configuration, Discretization, Factor, Kinetic, Spans, Structure, Written};
@@ -25,7 +25,7 @@ pub(super) fn action<'g>(
     let value = Elaborator::new(context, "action", scope).elaborate(&closure.body)?;
     let expected: Vec<Expected> = configurations?.iter().map(Expected::point).collect();
     let old = arguments.configuration.spell();
-    leaves(context, &closure.body, "action", &value, structure, &expected, &old)
+    leaves(context, &closure.body, "action", &value, structure, &expected, &new_value_of(&old))
 }
 
 /// The cost, or the Lagrangian with its velocity.

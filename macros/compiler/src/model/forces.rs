@@ -107,8 +107,8 @@ fn one<'g>(
         Kind::OfGroup => components(context, system, closure, &value)?,
         Kind::OnConfiguration => {
             let expected: Vec<Expected> = system.configurations.iter().map(Expected::point).collect();
-            let q = system.arguments.configuration.spell();
-            leaves(context, &closure.body, &key, &value, system.configuration, &expected, &q)?
+            let is = format!("a covector at `{}`, which has its shape", system.arguments.configuration.spell());
+            leaves(context, &closure.body, &key, &value, system.configuration, &expected, &is)?
         }
     };
     Some(Read { value, velocities, input })

@@ -30,7 +30,7 @@ impl<'a> Expected<'a> {
     }
 }
 
-/// The new values of what an action moves, leaf by leaf, or an error that says what does not fit.
+/// The value of a closure, leaf by leaf, or an error that says what does not fit; `is` says what the value is.
 pub(super) fn leaves<'g>(
     context: &mut Context<'_, 'g>,
     body: &Syntax,
@@ -38,16 +38,20 @@ pub(super) fn leaves<'g>(
     value: &Value<'g>,
     structure: &Structure,
     expected: &[Expected],
-    old: &str,
+    is: &str,
 ) -> Option<Vec<Expr<'g>>> {
     let mut leaves = Vec::new();
     let Err((found, needed)) = flatten(value, structure, expected, &mut leaves) else { return Some(leaves) };
     let message = format!("the {key} gives {found}, but it has to give {needed}");
     let text = shortened(&spell(body));
-    let error = Diagnostic::new(tail(body).0, message)
-        .note(format!("`{text}` is the new value of `{old}`, which has the shape of the old one"));
+    let error = Diagnostic::new(tail(body).0, message).note(format!("`{text}` is {is}"));
     context.diagnostics.push(error);
     None
+}
+
+/// What an image under an action is.
+pub(super) fn new_value_of(old: &str) -> String {
+    format!("the new value of `{old}`, which has the shape of the old one")
 }
 
 /// Takes a value apart as a structure nests, or says what was found and what was expected.

@@ -69,10 +69,11 @@ impl<'d> Arguments<'d, '_> {
             untyped -= 1;
             taken[untyped] = Some(Slot::Input);
         }
-        if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity)) {
-            if taken[last].is_none() && !self.is_foreign(&closure.arguments[last].pattern) {
-                taken[last] = Some(Slot::Velocity);
-            }
+        if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity))
+            && taken[last].is_none()
+            && !self.is_foreign(&closure.arguments[last].pattern)
+        {
+            taken[last] = Some(Slot::Velocity);
         }
         let introduces = |argument: &Argument| argument.ty.is_some() || closure.arguments.len() == slots.len();
         if slots.contains(&Slot::Offered) && closure.arguments.first().is_some_and(introduces) {

@@ -112,8 +112,10 @@ impl<'g> System<'_, 'g> {
         let points: Vec<Expected> = self.configurations.iter().map(Expected::point).collect();
         let elements: Vec<Expected> = self.factors.iter().map(Expected::element).collect();
         let [first, second] = halves(&closure.body);
-        let point = leaves::leaves(context, first, "symmetry", point, self.configuration, &points, &q);
-        let element = leaves::leaves(context, second, "symmetry", element, self.element, &elements, &f);
+        let point =
+            leaves::leaves(context, first, "symmetry", point, self.configuration, &points, &leaves::new_value_of(&q));
+        let element =
+            leaves::leaves(context, second, "symmetry", element, self.element, &elements, &leaves::new_value_of(&f));
         let (point, element) = point.zip(element)?;
         let foreign = |images: &[Expr<'g>], symbols: &[Expr<'g>]| {
             symbols.iter().find(|symbol| images.iter().any(|image| image.depends_on(**symbol))).copied()

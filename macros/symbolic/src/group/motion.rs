@@ -142,6 +142,15 @@ impl Group {
         graph.blocks(self).iter().map(part).fold(graph.zero(mu.shape()), |sum, part| sum + part)
     }
 
+    /// The coordinates of Ad_F ξ = F ξ F⁻¹.
+    pub fn adjoint<'g>(self, f: Expr<'g>, xi: Expr<'g>) -> Expr<'g> {
+        match self {
+            Group::SpecialOrthogonal(3) => f * xi,
+            Group::SpecialOrthogonal(2) | Group::Translation(_) => xi,
+            _ => self.projected_coordinates(self.compose(self.compose(f, self.wedge(xi)), self.inverse(f))),
+        }
+    }
+
     /// The components of Ad*_F μ = (Ad_F)* μ, with no inverse in the definition: ⟨M, F E_i F⁻¹⟩.
     pub fn coadjoint<'g>(self, f: Expr<'g>, mu: Expr<'g>) -> Expr<'g> {
         match self {

@@ -1,0 +1,178 @@
+//! What `#[derive(Clebsch)]` implements for systems whose inputs are chosen: one step, its price, its bounds, and their derivatives.
+
+use crate::{Error, Scalar, Space};
+use core::fmt::Debug;
+use nalgebra::{SMatrix, SVector};
+
+/// A system whose inputs are chosen: x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u), under the bounds a(t, x, u) ≤ 0, with the price
+/// φ(t, x) of the end.
+///
+/// D is the dimension of places x, U that of inputs u, C the number of bounds. Implemented by `#[derive(Clebsch)]` for a struct with
+/// `controls` or `dynamics`, where x is the configuration, and for one with `effort`, where x is a state (q, N) and f the forced step.
+///
+/// # Coordinates
+/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to
+/// Φ_{exp η}(q) (q exp η or (exp η) q for a group that acts on itself); for a state, (η, ν) with N + ν. Second derivatives are those along
+/// s ↦ Φ_{exp sη}(q).
+pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
+    /// The scalar.
+    type Scalar: Scalar;
+    /// What is steered.
+    type Place: Space<Self::Scalar>;
+    /// What no step changes.
+    type Constants: Copy + Debug;
+
+    /// The name of the struct.
+    const NAME: &'static str;
+    /// The bounds as they were written.
+    const BOUNDS: [&'static str; C];
+    /// The number of components, the first ones, that move the configuration; the others, if any, change the momentum.
+    const MOTIONS: usize;
+
+    /// Checks the parameters and computes what no step changes.
+    ///
+    /// # Errors
+    /// As [`Clebsch::constants`](crate::Clebsch::constants).
+    fn prepare(&self, h: Self::Scalar) -> Result<Self::Constants, Error>;
+
+    /// Whether a place is finite and where places are.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`].
+    fn check_place(&self, x: &Self::Place) -> Result<(), Error>;
+
+    /// x⁺ = f(t, h, x, u)
+    ///
+    /// # Errors
+    /// Those of a step.
+    fn follow(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+    ) -> Result<Self::Place, Error>;
+
+    /// ℓ(t, h, x, u)
+    fn price(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+    ) -> Self::Scalar;
+
+    /// The step with its derivatives, and the second derivatives of ℓ + λ·f, λ the costate at x⁺.
+    ///
+    /// # Errors
+    /// Those of a step.
+    fn expand(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+        costate: &SVector<Self::Scalar, D>,
+    ) -> Result<Expansion<Self::Place, Self::Scalar, D, U>, Error>;
+
+    /// d/dh (ℓ + λ·f) for a step that starts at the time t = t₀ + kh, which moves with h.
+    ///
+    /// # Errors
+    /// Those of a step.
+    fn price_of_time(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        k: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+        costate: &SVector<Self::Scalar, D>,
+    ) -> Result<Self::Scalar, Error>;
+
+    /// a(t, x, u), none of which is positive where the bounds hold.
+    fn bounds(&self, t: Self::Scalar, x: &Self::Place, u: &SVector<Self::Scalar, U>) -> SVector<Self::Scalar, C>;
+
+    /// a with its derivatives, and the second derivatives of z·a.
+    fn bounds_expanded(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+        multipliers: &SVector<Self::Scalar, C>,
+    ) -> BoundsExpansion<Self::Scalar, D, U, C>;
+
+    /// φ(t, x), 0 where no `endpoint` is declared.
+    fn endpoint(&self, t: Self::Scalar, x: &Self::Place) -> Self::Scalar;
+
+    /// φ with its derivatives.
+    fn endpoint_expanded(&self, t: Self::Scalar, x: &Self::Place) -> EndpointExpansion<Self::Scalar, D>;
+
+    /// What separates x from a target: with the motions G: η ↦ η_Q(q), residual Gᵀ(q* − q) and slope GᵀG, and for momenta N* − N and I;
+    /// a small change δ with slope·δ = residual goes there.
+    fn arrival(&self, x: &Self::Place, target: &Self::Place) -> Arrival<Self::Scalar, D>;
+
+    /// The small change δ that moves x to y, to first order; the shortest where several do.
+    fn displacement(&self, x: &Self::Place, y: &Self::Place) -> SVector<Self::Scalar, D>;
+}
+
+/// A step with its derivatives: x⁺ changes by A δ + B δu.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expansion<X, T, const D: usize, const U: usize> {
+    /// x⁺
+    pub next: X,
+    /// A
+    pub by_place: SMatrix<T, D, D>,
+    /// B
+    pub by_input: SMatrix<T, D, U>,
+    /// ℓ
+    pub price: T,
+    /// ∂ℓ/∂x
+    pub price_by_place: SVector<T, D>,
+    /// ∂ℓ/∂u
+    pub price_by_input: SVector<T, U>,
+    /// ∂²(ℓ + λ·f)/∂x²
+    pub place_curvature: SMatrix<T, D, D>,
+    /// ∂²(ℓ + λ·f)/∂u∂x
+    pub mixed_curvature: SMatrix<T, U, D>,
+    /// ∂²(ℓ + λ·f)/∂u²
+    pub input_curvature: SMatrix<T, U, U>,
+}
+
+/// Bounds a ≤ 0 with their derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundsExpansion<T, const D: usize, const U: usize, const C: usize> {
+    /// a
+    pub values: SVector<T, C>,
+    /// ∂a/∂x
+    pub by_place: SMatrix<T, C, D>,
+    /// ∂a/∂u
+    pub by_input: SMatrix<T, C, U>,
+    /// ∂²(z·a)/∂x²
+    pub place_curvature: SMatrix<T, D, D>,
+    /// ∂²(z·a)/∂u∂x
+    pub mixed_curvature: SMatrix<T, U, D>,
+    /// ∂²(z·a)/∂u²
+    pub input_curvature: SMatrix<T, U, U>,
+}
+
+/// The price of the end with its derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndpointExpansion<T, const D: usize> {
+    /// φ
+    pub price: T,
+    /// ∂φ/∂t
+    pub by_time: T,
+    /// ∂φ/∂x
+    pub slope: SVector<T, D>,
+    /// ∂²φ/∂x²
+    pub curvature: SMatrix<T, D, D>,
+}
+
+/// What separates a place from a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival<T, const D: usize> {
+    /// Gᵀ(q* − q), N* − N
+    pub residual: SVector<T, D>,
+    /// GᵀG, I
+    pub slope: SMatrix<T, D, D>,
+}
