@@ -5,12 +5,14 @@
 //! | file | what it does |
 //! |---|---|
 //! | `guess` | the path to start from |
+//! | `coarse` | the same with few edges, where there are many |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
 //! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
 //! | `end` | the gap to the target and the motions that fix it |
 
+mod coarse;
 mod end;
 mod extremal;
 mod guess;
@@ -83,7 +85,8 @@ impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
     /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each edge is F⁻ℓd of the
     /// next and q_N is the target, both up to round-off; where motions fix the target, the last momentum vanishes on them.
     ///
-    /// Work: four to six linearisations from a good guess, each linear in the number of nodes; at most 200.
+    /// Work: three to six linearisations from a good guess, each linear in the number of nodes; at most 200. A long path from
+    /// [`Guess::Geodesic`] is begun with eight edges.
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for what was given;
@@ -104,7 +107,8 @@ impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
         self.check(start, target, &guess, path.len())?;
         let zero = S::Scalar::zero();
         let sign = if self.stepper.h < zero { -S::Scalar::one() } else { S::Scalar::one() };
-        let problem = Problem { stepper: self.stepper, time: self.time, start, target, sign };
+        let Stepper { system, h, constants } = self.stepper;
+        let problem = Problem { system, h: *h, constants, time: self.time, start, target, sign };
         let end = problem.prepare(path, &guess)?;
         let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
         Ok(Extremal {

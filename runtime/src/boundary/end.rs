@@ -49,6 +49,12 @@ impl<T: Scalar, const M: usize> End<T, M> {
         self.closing.iter().all(|x| *x == T::zero())
     }
 
+    /// Whether the gap is closed or below `enough` of the size of the configuration.
+    #[inline]
+    pub fn is_near(&self, enough: T) -> bool {
+        self.is_closed() || self.distance <= enough * self.scale
+    }
+
     /// Whether the gap is none to a person: below √ε.
     pub fn is_reached(&self) -> bool {
         self.distance <= T::EPSILON.sqrt() * (self.scale + self.distance)

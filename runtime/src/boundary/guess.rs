@@ -1,6 +1,7 @@
 //! The path that Newton's method starts from.
 
 use super::Node;
+use super::coarse::interpolated;
 use super::end::End;
 use super::newton::unreachable;
 use super::sweep::Problem;
@@ -31,23 +32,25 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// # Errors
     /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
     pub fn prepare(&self, path: &mut [Node<S, M>], guess: &Guess<S::Scalar, M>) -> Result<S::Configuration, Error> {
+        let end;
         match guess {
             Guess::Geodesic => {
-                let end = End::of(&self.stepper.system, self.start, self.target);
-                if end.is_orthogonal() {
-                    return Err(Error::UndeterminedDirection { distance: end.distance.to_f64() });
+                let gap = End::of(self.system, self.start, self.target);
+                if gap.is_orthogonal() {
+                    return Err(Error::UndeterminedDirection { distance: gap.distance.to_f64() });
                 }
-                self.fill(path, SVector::from_element(S::Scalar::zero()));
+                let eta = self.fill(path, SVector::from_element(S::Scalar::zero()));
+                end = self.refined(path, &eta);
             }
             Guess::Velocity(velocity) => {
                 let edges = S::Scalar::from_f64(S::EDGES.max(1) as f64);
-                self.fill(path, velocity * (self.stepper.h / edges));
+                self.fill(path, velocity * (self.h / edges));
+                end = self.roll_out(path);
             }
-            Guess::Path => {}
+            Guess::Path => end = self.roll_out(path),
         }
-        let end = self.roll_out(path);
         let end = self.close(path, end, S::Scalar::from_ratio(1, 8));
-        let gap = End::of(&self.stepper.system, &end, self.target);
+        let gap = End::of(self.system, &end, self.target);
         if !(gap.distance.is_finite() && gap.along.is_finite()) {
             return Err(Error::NotFinite { name: "the end of the guessed path" });
         }
@@ -57,9 +60,9 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// Fills the nodes with the same group element τ(η), after corrections of η that bring the end to the target.
     ///
     /// Each correction is the arc over the gap, divided by the number of edges. It is exact where all motions commute and along the
-    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close).
-    fn fill(&self, path: &mut [Node<S, M>], eta: SVector<S::Scalar, M>) {
-        let system = &self.stepper.system;
+    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close). Returns η.
+    pub fn fill(&self, path: &mut [Node<S, M>], eta: SVector<S::Scalar, M>) -> SVector<S::Scalar, M> {
+        let system = self.system;
         let edges = S::Scalar::from_f64(path.len() as f64);
         let end_of = |eta: &SVector<S::Scalar, M>| {
             let q = system.advance(self.start, &self.power(eta, path.len()));
@@ -68,7 +71,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let mut eta = eta;
         let mut end = end_of(&eta);
         for _ in 0..PASSES {
-            if end.is_reached() || end.is_closed() || end.is_orthogonal() {
+            if end.is_near(S::Scalar::from_ratio(1, 256)) || end.is_orthogonal() {
                 break;
             }
             let next = eta + end.arc() / edges;
@@ -82,11 +85,27 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         }
         let increment = system.retraction(&eta);
         path.iter_mut().for_each(|node| node.increment = increment);
+        eta
+    }
+
+    /// Moves the vertices of a path of equal edges τ(η) to where a path of few edges finds them. Returns q_N.
+    fn refined(&self, path: &mut [Node<S, M>], eta: &SVector<S::Scalar, M>) -> S::Configuration {
+        let edges = path.len();
+        let Some(increment) = path.last().map(|node| node.increment) else { return *self.start };
+        let motions = self.coarse(path, eta);
+        path.iter_mut().for_each(|node| node.increment = increment);
+        match motions {
+            Some(motions) => {
+                let mut motion = interpolated(&motions, edges);
+                self.displace(path, |index, _| motion(index + 1))
+            }
+            None => self.roll_out(path),
+        }
     }
 
     /// The increment of τ(η)ⁿ, by squaring.
     fn power(&self, eta: &SVector<S::Scalar, M>, exponent: usize) -> S::Element {
-        let system = &self.stepper.system;
+        let system = self.system;
         let mut square = system.retraction(eta);
         let mut power = system.retraction(&SVector::from_element(S::Scalar::zero()));
         let mut rest = exponent;
@@ -104,13 +123,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// it smaller. Returns q_N.
     #[cold]
     pub fn close(&self, path: &mut [Node<S, M>], end: S::Configuration, enough: S::Scalar) -> S::Configuration {
-        let system = &self.stepper.system;
+        let system = self.system;
         let edges = S::Scalar::from_f64(path.len() as f64);
         let (mut q, mut gap) = (end, End::of(system, &end, self.target));
         let mut fraction = S::Scalar::one();
         for _ in 0..PASSES {
-            let near = gap.is_closed() || gap.distance <= enough * gap.scale;
-            if near || gap.is_orthogonal() || !gap.distance.is_finite() {
+            if gap.is_near(enough) || gap.is_orthogonal() || !gap.distance.is_finite() {
                 break;
             }
             let motion = gap.arc() * fraction;

@@ -52,7 +52,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let mut curvature = Curvature::Kept;
         let mut size = S::Scalar::zero();
         for sweeps in 1..=SWEEPS {
-            let gap = End::of(&self.stepper.system, &end, self.target);
+            let gap = End::of(self.system, &end, self.target);
             let summary = self.eliminate(path, &end, &gap, curvature);
             size = summary.size();
             if !summary.action.is_finite() && (sweeps == 1 || curvature != Curvature::Kept) {
@@ -106,9 +106,11 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         end: &S::Configuration,
         before: &Summary<S::Scalar, M>,
     ) -> Option<Summary<S::Scalar, M>> {
-        let gap = End::of(&self.stepper.system, end, self.target);
+        let gap = End::of(self.system, end, self.target);
         let summary = self.measure(path, end, &gap, before);
-        (gap.is_closed() && gap.is_reached() && summary.is_stationary(S::Scalar::from_f64(16.0))).then_some(summary)
+        let unit = S::Scalar::from_f64(4.0) * S::Scalar::EPSILON * summary.edges.sqrt();
+        (gap.along <= unit * gap.scale && gap.is_reached() && summary.is_stationary(S::Scalar::from_f64(16.0)))
+            .then_some(summary)
     }
 
     /// Whether a full step is made next. Comparisons are written so that NaN is none.

@@ -15,13 +15,16 @@ use super::Node;
 use super::end::End;
 use super::pivot::Curvature;
 use super::vertex::{Pending, Summary};
-use crate::{Edge, Momenta, Scalar, Space, Stepper, Variational};
+use crate::{Edge, Momenta, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;
 
-/// Fixed endpoints for a stepper.
+/// Fixed endpoints for a system and a step size.
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a, S: Variational<M>, const M: usize> {
-    pub stepper: &'a Stepper<S>,
+    pub system: &'a S,
+    pub h: S::Scalar,
+    pub constants: &'a S::Constants,
     /// The time of the start.
     pub time: S::Scalar,
     pub start: &'a S::Configuration,
@@ -116,7 +119,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         path: &mut [Node<S, M>],
         mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<S::Scalar, M>,
     ) -> S::Configuration {
-        let system = &self.stepper.system;
+        let system = self.system;
         let mut q = *self.start;
         let mut back = system.retraction(&SVector::from_element(S::Scalar::zero()));
         for (index, node) in path.iter_mut().enumerate() {
@@ -135,7 +138,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// The action after `fraction` of Newton's correction.
     #[cold]
     pub fn action_after(&self, path: &[Node<S, M>], fraction: S::Scalar) -> S::Scalar {
-        let system = &self.stepper.system;
+        let system = self.system;
         let zero = SVector::<S::Scalar, M>::from_element(S::Scalar::zero());
         let (mut q, mut motion, mut action) = (*self.start, zero, S::Scalar::zero());
         for (index, node) in path.iter().enumerate() {
@@ -153,14 +156,14 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     pub fn roll_out(&self, path: &mut [Node<S, M>]) -> S::Configuration {
         path.iter_mut().fold(*self.start, |q, node| {
             node.configuration = q;
-            self.stepper.system.advance(&q, &node.increment)
+            self.system.advance(&q, &node.increment)
         })
     }
 
     #[inline(always)]
     fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
         let (t, edge) = self.place(index);
-        self.stepper.system.edge(&self.stepper.constants, edge, t, q, d, next, &S::Input::origin())
+        self.system.edge(self.constants, edge, t, q, d, next, &S::Input::origin())
     }
 
     #[inline]
@@ -172,14 +175,14 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         next: &S::Configuration,
     ) -> Momenta<S::Scalar, M> {
         let (t, edge) = self.place(index);
-        self.stepper.system.momenta(&self.stepper.constants, edge, t, q, d, next, &S::Input::origin())
+        self.system.momenta(self.constants, edge, t, q, d, next, &S::Input::origin())
     }
 
     /// The time at which the step of an edge starts, and the number of the edge in it.
     #[inline]
     fn place(&self, index: usize) -> (S::Scalar, usize) {
         let per_step = S::EDGES.max(1);
-        (time_after::<S, M>(self.time, self.stepper.h, index / per_step), index % per_step)
+        (time_after::<S, M>(self.time, self.h, index / per_step), index % per_step)
     }
 }
 
