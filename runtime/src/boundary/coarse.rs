@@ -4,7 +4,7 @@ use super::Node;
 use super::end::End;
 use super::pivot::Curvature;
 use super::sweep::Problem;
-use crate::{Scalar, Variational};
+use crate::{Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
@@ -45,7 +45,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             motions.iter_mut().skip(1).zip(few.iter()).for_each(|(sum, node)| *sum += node.motion);
             // The next correction would be less than what few edges differ by from many.
             if size <= S::Scalar::from_ratio(1, 8) {
-                return Some(motions);
+                return motions.iter().all(Space::is_finite).then_some(motions);
             }
             bound = size * S::Scalar::from_ratio(1, 2);
         }

@@ -32,23 +32,22 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// # Errors
     /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
     pub fn prepare(&self, path: &mut [Node<S, M>], guess: &Guess<S::Scalar, M>) -> Result<S::Configuration, Error> {
-        let end;
-        match guess {
+        let end = match guess {
             Guess::Geodesic => {
                 let gap = End::of(self.system, self.start, self.target);
                 if gap.is_orthogonal() {
                     return Err(Error::UndeterminedDirection { distance: gap.distance.to_f64() });
                 }
                 let eta = self.fill(path, SVector::from_element(S::Scalar::zero()));
-                end = self.refined(path, &eta);
+                self.refined(path, &eta)
             }
             Guess::Velocity(velocity) => {
                 let edges = S::Scalar::from_f64(S::EDGES.max(1) as f64);
                 self.fill(path, velocity * (self.h / edges));
-                end = self.roll_out(path);
+                self.roll_out(path)
             }
-            Guess::Path => end = self.roll_out(path),
-        }
+            Guess::Path => self.roll_out(path),
+        };
         let end = self.close(path, end, S::Scalar::from_ratio(1, 8));
         let gap = End::of(self.system, &end, self.target);
         if !(gap.distance.is_finite() && gap.along.is_finite()) {

@@ -93,8 +93,8 @@ impl Body {
             let s = h * h * weight;
             let kick = [-s * y, s * x, 0.0];
             let kicked = [edge.after[0] - kick[0], edge.after[1] - kick[1], edge.after[2]];
-            for i in 0..3 {
-                residual = residual.max((kicked[i] - later.before[i]).abs());
+            for (kicked, before) in kicked.iter().zip(&later.before) {
+                residual = residual.max((kicked - before).abs());
             }
             let d = [
                 pivot[0] + edge.end[0] + s * z,

@@ -70,10 +70,15 @@ where
         Answer { iterations: solution.iterations, action: solution.action, residual: solution.residual }
     };
     let answers = [cold(), warm(&further), by_hand()];
+    let often = |times: u64, run: &dyn Fn(u64) -> Answer| {
+        for k in 0..times {
+            black_box(run(k));
+        }
+    };
     let runs: [Run<'_>; 3] = [
-        Box::new(|times| (0..times).for_each(|_| drop(black_box(cold())))),
-        Box::new(|times| (0..times).for_each(|k| drop(black_box(warm([&target, &further][(k % 2) as usize]))))),
-        Box::new(|times| (0..times).for_each(|_| drop(black_box(by_hand())))),
+        Box::new(|times| often(times, &|_| cold())),
+        Box::new(|times| often(times, &|k| warm([&target, &further][(k % 2) as usize]))),
+        Box::new(|times| often(times, &|_| by_hand())),
     ];
     let bytes =
         [edges * size_of::<Node<S, 3>>(), edges * size_of::<Node<S, 3>>(), (edges + 1) * size_of::<hand::Vertex>()];

@@ -1,6 +1,6 @@
 //! The systems between fixed endpoints: each takes another way through the compiler.
 
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Scalar};
 use nalgebra::Vector3;
 
 #[derive(Clebsch, Clone, Debug)]
@@ -103,4 +103,41 @@ pub struct Chain {
 )]
 pub struct Point {
     pub mass: f64,
+}
+
+/// The top by unit quaternions.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SU<2>, Q: SU<2>| Q * F,
+    cost      = |h, F| 2 * F.imag().dot(&self.inertia.component_mul(&F.imag())) / h,
+    potential = |Q| self.weight * (Q * Vector3::new(0, 0, 1)).z,
+    emit      = [boundary],
+)]
+pub struct QuaternionTop {
+    pub inertia: Vector3<f64>,
+    pub weight: f64,
+}
+
+/// The top over any scalar.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| (Matrix3::from_diagonal(&self.mass) * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| self.weight * R[(2, 2)],
+    emit      = [boundary],
+)]
+pub struct AnyTop<T: Scalar> {
+    pub mass: Vector3<T>,
+    pub weight: T,
+}
+
+/// A point that turns about the origin at any distance from it.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, x: Vector3| F * x,
+    cost   = |h, F| self.inertia * (F - I).norm_squared() / (4 * h),
+    emit   = [boundary],
+)]
+pub struct Swivel {
+    pub inertia: f64,
 }
