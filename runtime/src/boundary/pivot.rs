@@ -7,17 +7,23 @@ use crate::space::larger;
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
-/// D⁻¹C and D⁻¹g, and what is known of D.
+/// K = D⁻¹C and s = D⁻¹g, written to where they stay: on the way there copies would wait for one another.
+pub(super) struct Feedback<'a, T, const M: usize> {
+    /// K
+    pub gain: &'a mut SMatrix<T, M, M>,
+    /// s
+    pub shift: &'a mut SVector<T, M>,
+}
+
+/// What the next vertex needs of D, and what is known of D.
 #[derive(Clone, Copy)]
 pub(super) struct Solution<T, const M: usize> {
-    /// K = D⁻¹C
-    pub gain: SMatrix<T, M, M>,
-    /// s = D⁻¹g
-    pub shift: SVector<T, M>,
     /// CᵀD⁻¹C: the lower triangle by rows. What is above counts for nothing.
     pub hessian: [[T; M]; M],
     /// CᵀD⁻¹g
     pub gradient: SVector<T, M>,
+    /// s·g
+    pub decrement: T,
     /// The number of eigenvalues of the wrong sign: those of directions in which the action is no minimum.
     pub negative: usize,
 }
@@ -43,11 +49,22 @@ pub(super) fn solve<T: Scalar, const M: usize>(
     g: &SVector<T, M>,
     sign: T,
     curvature: Curvature<T>,
+    feedback: Feedback<'_, T, M>,
 ) -> Solution<T, M> {
-    let solution = if M == 3 { cofactors(d, c, g, sign) } else { definite(d, c, g, sign) };
+    let Feedback { gain, shift } = feedback;
+    let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
+    let solution = if M == 3 { cofactors(d, c, g, sign, feedback) } else { definite(d, c, g, sign, feedback) };
     match solution {
         Some(solution) => solution,
-        None => indefinite(d, c, g, sign, curvature),
+        None => {
+            let cold = indefinite(d, c, g, sign, curvature, Feedback { gain, shift });
+            // Entry by entry, so that those of the other way stay in registers.
+            Solution {
+                hessian: from_fn(|i| from_fn(|j| cold.hessian[i][j])),
+                gradient: SVector::from_fn(|i, _| cold.gradient[i]),
+                ..cold
+            }
+        }
     }
 }
 
@@ -62,6 +79,7 @@ fn cofactors<T: Scalar, const M: usize>(
     c: &[[T; M]; M],
     g: &SVector<T, M>,
     sign: T,
+    feedback: Feedback<'_, T, M>,
 ) -> Option<Solution<T, M>> {
     let (a, b, e) = (d[0][0], d[1][1], d[2][2]);
     let (x, y, z) = (d[2][1], d[2][0], d[1][0]);
@@ -101,7 +119,7 @@ fn cofactors<T: Scalar, const M: usize>(
         }
         shift[i] *= reciprocal;
     }
-    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: SVector::from(gradient), negative: 0 })
+    Some(feedback.filled(&gain, &shift, g, hessian, gradient))
 }
 
 /// [`solve`] where all pivots have the sign of `sign`.
@@ -115,6 +133,7 @@ fn definite<T: Scalar, const M: usize>(
     c: &[[T; M]; M],
     g: &SVector<T, M>,
     sign: T,
+    feedback: Feedback<'_, T, M>,
 ) -> Option<Solution<T, M>> {
     let (l, reciprocals) = factors(d, sign)?;
     let (mut w, mut v): ([[T; M]; M], [T; M]) = (*c, from_fn(|i| g[i]));
@@ -143,7 +162,25 @@ fn definite<T: Scalar, const M: usize>(
             shift[i] -= l[k][i] * shift[k];
         }
     }
-    Some(Solution { gain: matrix(&gain), shift: shift.into(), hessian, gradient: SVector::from(gradient), negative: 0 })
+    Some(feedback.filled(&gain, &shift, g, hessian, gradient))
+}
+
+impl<T: Scalar, const M: usize> Feedback<'_, T, M> {
+    /// Of a definite pivot.
+    #[inline(always)]
+    fn filled(
+        self,
+        gain: &[[T; M]; M],
+        shift: &[T; M],
+        g: &SVector<T, M>,
+        hessian: [[T; M]; M],
+        gradient: [T; M],
+    ) -> Solution<T, M> {
+        *self.gain = matrix(gain);
+        *self.shift = SVector::from(*shift);
+        let decrement = sum::<T, M>(|i| shift[i] * g[i]);
+        Solution { hessian, gradient: SVector::from(gradient), decrement, negative: 0 }
+    }
 }
 
 /// L below the diagonal and the reciprocals of Δ, where all of Δ has the sign of `sign`.
@@ -191,6 +228,7 @@ fn indefinite<T: Scalar, const M: usize>(
     g: &SVector<T, M>,
     sign: T,
     curvature: Curvature<T>,
+    feedback: Feedback<'_, T, M>,
 ) -> Solution<T, M> {
     let (d, c) = (matrix(d), matrix(c));
     let spectrum = Spectrum::of(&d);
@@ -203,14 +241,32 @@ fn indefinite<T: Scalar, const M: usize>(
     });
     let negative = spectrum.values.iter().filter(|&&value| is_wrong(value)).count();
     let (gain, shift) = (inverse * c, inverse * g);
-    Solution { gain, shift, hessian: rows(&c.tr_mul(&gain)), gradient: c.tr_mul(&shift), negative }
+    (*feedback.gain, *feedback.shift) = (gain, shift);
+    Solution { hessian: rows(&c.tr_mul(&gain)), gradient: c.tr_mul(&shift), decrement: shift.dot(g), negative }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Curvature, solve};
+    use super::{Curvature, Feedback};
     use crate::linear::rows;
     use nalgebra::{Matrix3, Vector3};
+
+    struct Solution {
+        gain: Matrix3<f64>,
+        shift: Vector3<f64>,
+        hessian: [[f64; 3]; 3],
+        gradient: Vector3<f64>,
+        decrement: f64,
+        negative: usize,
+    }
+
+    fn solve(d: &Matrix3<f64>, g: &Vector3<f64>, sign: f64, curvature: Curvature<f64>) -> Solution {
+        let (mut gain, mut shift) = (Matrix3::zeros(), Vector3::zeros());
+        let feedback = Feedback { gain: &mut gain, shift: &mut shift };
+        let super::Solution { hessian, gradient, decrement, negative } =
+            super::solve(&rows(d), &rows(&C), g, sign, curvature, feedback);
+        Solution { gain, shift, hessian, gradient, decrement, negative }
+    }
 
     const C: Matrix3<f64> = Matrix3::new(1.0, 2.0, 0.5, -1.0, 0.3, 0.2, 0.7, 0.1, -2.0);
 
@@ -222,16 +278,17 @@ mod tests {
         {
             let d =
                 Matrix3::from_diagonal(&diagonal.into()) + Matrix3::new(0.0, 1.0, 0.2, 1.0, 0.0, -0.5, 0.2, -0.5, 0.0);
-            let solution = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Kept);
+            let solution = solve(&d, &g, 1.0, Curvature::Kept);
             assert!((d * solution.gain - C).amax() < 1e-13, "{diagonal:?}");
             assert!((d * solution.shift - g).amax() < 1e-13, "{diagonal:?}");
             assert!((C.tr_mul(&solution.shift) - solution.gradient).amax() < 1e-13, "{diagonal:?}");
+            assert!((solution.shift.dot(&g) - solution.decrement).abs() < 1e-13, "{diagonal:?}");
             let hessian = C.tr_mul(&solution.gain);
             assert!((0..3).all(|i| (0..=i).all(|j| (hessian[(i, j)] - solution.hessian[i][j]).abs() < 1e-13)));
-            let backward = solve(&rows(&-d), &rows(&C), &g, -1.0, Curvature::Kept);
+            let backward = solve(&-d, &g, -1.0, Curvature::Kept);
             assert_eq!((solution.negative, backward.negative), (negative, negative), "{diagonal:?}");
             assert!((backward.shift + solution.shift).amax() < 1e-13);
-            let downhill = solve(&rows(&d), &rows(&C), &g, 1.0, Curvature::Mirrored { damping: 0.0 });
+            let downhill = solve(&d, &g, 1.0, Curvature::Mirrored { damping: 0.0 });
             assert!(downhill.shift.dot(&g) > 0.0);
             assert_eq!(downhill.negative, negative);
         }
@@ -242,7 +299,7 @@ mod tests {
     fn pivots_of_any_size_are_solved() {
         let d = Matrix3::new(4.0, 1.0, 0.2, 1.0, 5.0, -0.5, 0.2, -0.5, 6.0);
         for scale in [1e-120, 1e-90, 1e90, 1e120] {
-            let solution = solve(&rows(&(d * scale)), &rows(&C), &(Vector3::x() * scale), 1.0, Curvature::Kept);
+            let solution = solve(&(d * scale), &(Vector3::x() * scale), 1.0, Curvature::Kept);
             assert!((d * solution.gain * scale - C).amax() < 1e-14, "{scale:e}");
             assert!((d * solution.shift - Vector3::x()).amax() < 1e-15, "{scale:e}");
             assert_eq!(solution.negative, 0);
@@ -252,8 +309,7 @@ mod tests {
     #[test]
     fn a_singular_pivot_gives_finite_directions() {
         let solution = solve(
-            &rows(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0))),
-            &rows(&C),
+            &Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0)),
             &Vector3::x(),
             1.0,
             Curvature::Mirrored { damping: 0.0 },

@@ -13,7 +13,7 @@
 
 use super::Node;
 use super::end::End;
-use super::pivot::Curvature;
+use super::pivot::{Curvature, Feedback};
 use super::vertex::{Pending, Summary};
 use crate::{Edge, Momenta, Scalar, Space, Variational};
 use nalgebra::SVector;
@@ -50,9 +50,10 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         for (index, node) in rest.iter_mut().enumerate().rev() {
             let edge = self.edge(index, &node.configuration, &node.increment, next);
             summary.count(&edge);
-            let solution = summary.eliminate(&edge, &pending, self.sign, curvature);
+            let feedback = Feedback { gain: &mut node.gain, shift: &mut node.shift };
+            let solution = summary.eliminate(&edge, &pending, self.sign, curvature, feedback);
             pending = Pending::behind(&edge, &solution);
-            (node.momentum, node.gain, node.shift) = (edge.before, solution.gain, solution.shift);
+            node.momentum = edge.before;
             next = &node.configuration;
         }
         summary
@@ -71,8 +72,9 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     ) -> Pending<S::Scalar, M> {
         let edge = self.edge(index, &last.configuration, &last.increment, last_vertex);
         summary.count(&edge);
-        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
-        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
+        let feedback = Feedback { gain: &mut last.gain, shift: &mut last.shift };
+        let solution = summary.eliminate_end(&edge, end, self.sign, curvature, feedback);
+        last.momentum = edge.before;
         Pending::behind(&edge, &solution)
     }
 

@@ -1,7 +1,7 @@
 //! One vertex in the backward sweep: its block of the Hessian, its elimination, and the sums over all of them.
 
 use super::end::End;
-use super::pivot::{Curvature, Solution, solve};
+use super::pivot::{Curvature, Feedback, Solution, solve};
 use crate::linear::rows;
 use crate::space::larger;
 use crate::{Edge, Momenta, Scalar};
@@ -107,9 +107,9 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
     }
 
     #[inline]
-    fn count_vertex(&mut self, residual: &SVector<T, M>, gradient: &SVector<T, M>, solution: &Solution<T, M>) {
+    fn count_vertex(&mut self, residual: &SVector<T, M>, solution: &Solution<T, M>) {
         self.residual_squared = larger(self.residual_squared, residual.dot(residual));
-        self.decrement += solution.shift.dot(gradient);
+        self.decrement += solution.decrement;
         self.negative += solution.negative;
     }
 
@@ -121,6 +121,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         pending: &Pending<T, M>,
         sign: T,
         curvature: Curvature<T>,
+        feedback: Feedback<'_, T, M>,
     ) -> Solution<T, M> {
         let mut pivot = lower_half(&edge.after_by_end);
         for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
@@ -130,8 +131,8 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
             damp(&mut pivot, edge, damping * sign);
         }
         let gradient = pending.gradient + edge.after;
-        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature);
-        self.count_vertex(&(edge.after - pending.before), &gradient, &solution);
+        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature, feedback);
+        self.count_vertex(&(edge.after - pending.before), &solution);
         solution
     }
 
@@ -145,15 +146,17 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         end: &End<T, M>,
         sign: T,
         curvature: Curvature<T>,
+        feedback: Feedback<'_, T, M>,
     ) -> Solution<T, M> {
+        let Feedback { gain, shift } = feedback;
         self.after = edge.after;
         self.decrement += end.closing.dot(&(edge.after_by_end * end.closing)).abs();
         let Some(kernel) = &end.kernel else {
+            (*gain, *shift) = (SMatrix::from_element(T::zero()), -end.closing);
             return Solution {
-                gain: SMatrix::from_element(T::zero()),
-                shift: -end.closing,
                 hessian: [[T::zero(); M]; M],
                 gradient: edge.before_by_end * end.closing,
+                decrement: T::zero(),
                 negative: 0,
             };
         };
@@ -165,14 +168,11 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         if let Curvature::Mirrored { damping } = curvature {
             damp(&mut pivot, edge, damping * sign);
         }
-        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature);
-        self.count_vertex(&(kernel * edge.after), &gradient, &solution);
-        Solution {
-            gain: kernel * solution.gain,
-            shift: kernel * solution.shift - end.closing,
-            gradient: solution.gradient + edge.before_by_end * end.closing,
-            ..solution
-        }
+        let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
+        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature, feedback);
+        self.count_vertex(&(kernel * edge.after), &solution);
+        (*gain, *shift) = (kernel * *gain, kernel * *shift - end.closing);
+        Solution { gradient: solution.gradient + edge.before_by_end * end.closing, ..solution }
     }
 }
 
