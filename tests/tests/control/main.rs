@@ -1,0 +1,3 @@
+//! The choice of inputs, through the macro.
+
+mod derivatives;
