@@ -135,11 +135,7 @@ pub struct Endpoint<'g> {
 }
 
 /// The price of the end with its derivatives.
-pub(super) fn endpoint<'g>(
-    model: &Model<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-) -> Option<Endpoint<'g>> {
+pub(super) fn endpoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Option<Endpoint<'g>> {
     let price = model.endpoint?;
     let by_time = price.differential(&[(model.time, model.graph.integer(1))]);
     Some(Endpoint { price: Jet::of(price, &motions(model, symbols, generator)), by_time })

@@ -104,9 +104,10 @@ impl Program<'_> {
 
     /// The kernels of a choice of inputs.
     fn kernels_of_control(&self) -> Vec<(String, &Kernel)> {
-        let of_end = self.endpoint.iter().flat_map(|end| {
-            [("endpoint".to_string(), &end.price), ("endpoint_expanded".to_string(), &end.expanded)]
-        });
+        let of_end = self
+            .endpoint
+            .iter()
+            .flat_map(|end| [("endpoint".to_string(), &end.price), ("endpoint_expanded".to_string(), &end.expanded)]);
         let Some(control) = &self.control else { return of_end.collect() };
         let (step, bend) = (control.step.as_ref(), control.bend.as_ref());
         let named = [
@@ -129,7 +130,7 @@ impl Program<'_> {
 
     fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {
         let mut kernels = vec![
-            ("retraction".to_string(), &variations.retraction),
+            ("retractions".to_string(), &variations.retractions),
             ("compose".to_string(), &variations.compose),
             ("infinitesimal_motion".to_string(), &variations.generator),
             ("orbit_metric".to_string(), &variations.orbit_metric),
@@ -137,6 +138,7 @@ impl Program<'_> {
         for (index, edge) in variations.edges.iter().enumerate() {
             let suffix = self.suffix(index);
             kernels.push((format!("edge{suffix}"), &edge.edge));
+            kernels.push((format!("momenta{suffix}"), &edge.momenta));
             kernels.push((format!("carried{suffix}"), &edge.carried));
             kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }

@@ -165,7 +165,16 @@ impl<'g> Formulas<'g> {
         let input = (forces.input.clone(), forces.inputs.clone());
         let control = declaration.control.as_ref().map(|control| control::read(context, arguments, control, &input));
         let control = control.map_or(Some(None), |control| control.map(Some))?;
-        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries, forces, control, endpoint: endpoint? })
+        Some(Formulas {
+            action,
+            laws: laws?,
+            kinetic: kinetic?,
+            potential,
+            symmetries,
+            forces,
+            control,
+            endpoint: endpoint?,
+        })
     }
 }
 

@@ -56,11 +56,7 @@ pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Rea
     Some(Read { action, kinetic, control })
 }
 
-fn control_of_forces(
-    keys: &mut Keys,
-    bounds: Option<Closure>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Control> {
+fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &mut Diagnostics) -> Option<Control> {
     let Some(price) = keys.effort.take() else {
         if let Some(closure) = bounds.filter(|_| !keys.was_given("effort")) {
             let error = Diagnostic::new(closure.key.span(), format!("`{}` without anything to choose", closure.key));

@@ -86,10 +86,7 @@ impl Declaration {
         let potential = self.potential.as_ref().and_then(Potential::closure);
         let forces = self.force.iter().chain(&self.force_on);
         let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
-        let control = self
-            .control
-            .iter()
-            .flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
+        let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
         energies.into_iter().chain(control).flatten().chain(forces).chain(&self.endpoint).chain(&self.symmetries)
     }
 }
