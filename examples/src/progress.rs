@@ -8,7 +8,9 @@ const INTERVAL: u64 = 4096;
 
 /// Silent for a second, then a bar on standard error, if that is a terminal.
 pub struct Progress {
-    steps: u64,
+    work: u64,
+    unit: &'static str,
+    interval: u64,
     began: Instant,
     bar: Option<ProgressBar>,
 }
@@ -16,16 +18,21 @@ pub struct Progress {
 impl Progress {
     /// For a run of so many steps.
     pub fn new(steps: u64) -> Self {
-        Self { steps, began: Instant::now(), bar: None }
+        Self { work: steps, unit: "steps", interval: INTERVAL, began: Instant::now(), bar: None }
     }
 
-    /// Takes the number of the step that has been made.
+    /// For so many pieces of work that take long enough to look at the clock after each.
+    pub fn of(work: u64, unit: &'static str) -> Self {
+        Self { work, unit, interval: 1, began: Instant::now(), bar: None }
+    }
+
+    /// Takes the number of the step or the piece that has been made.
     pub fn reached(&mut self, step: u64) {
-        if !step.is_multiple_of(INTERVAL) {
+        if !step.is_multiple_of(self.interval) {
             return;
         }
         if self.bar.is_none() && self.began.elapsed() > Duration::from_secs(1) {
-            self.bar = Some(bar(self.steps));
+            self.bar = Some(bar(self.work, self.unit));
         }
         if let Some(bar) = &self.bar {
             bar.set_position(step);
@@ -41,7 +48,9 @@ impl Drop for Progress {
     }
 }
 
-fn bar(steps: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {human_pos} of {human_len} steps, {eta} left");
-    ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+fn bar(work: u64, unit: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(&format!(
+        "{{bar:40}} {{percent:>3}} %  {{human_pos}} of {{human_len}} {unit}, {{eta}} left"
+    ));
+    ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 11] = [
+const SCENES: [(&str, &str); 13] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -26,6 +26,8 @@ const SCENES: [(&str, &str); 11] = [
         "relativistic_spin",
         "step,time,q00,q01,q02,q03,q10,q11,q12,q13,q20,q21,q22,q23,q30,q31,q32,q33,E1,E2,E3,B1,B2,B3",
     ),
+    ("sphere_bvp", "step,time,q1,q2,q3,N1,N2,N3"),
+    ("slew", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3"),
     ("inertia_estimation", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
@@ -87,6 +89,13 @@ fn other_flags_hold_all_their_claims() {
         ("relativistic_spin", &["--anomaly", "-2", "--steps", "1000"]),
         ("relativistic_spin", &["--step-size", "0.1", "--steps", "1000"]),
         ("relativistic_spin", &["--electric", "0,0,0", "--magnetic", "0,0,0", "--steps", "10"]),
+        ("sphere_bvp", &["--order", "1"]),
+        ("sphere_bvp", &["--steps", "80"]),
+        ("sphere_bvp", &["--gravity", "0", "--from", "0.6,0.8,0", "--to", "0,0,-1"]),
+        ("slew", &["--body", "envisat", "--time", "600", "--steps", "60", "--to", "0,0,1,180"]),
+        ("slew", &["--discretization", "cayley", "--to", "0,0,1,90", "--steps", "100"]),
+        ("slew", &["--inertia", "1,1,1,0,0,0", "--steps", "20"]),
+        ("slew", &["--steps", "1"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
         ("inertia_estimation", &["--spin", "0,0,2.67", "--radius", "1e9", "--step-size", "0.5", "--steps", "1200"]),
@@ -144,6 +153,14 @@ fn mistakes_are_explained() {
         ("relativistic_spin", &["--mass", "0"], "`0` is not above zero"),
         ("relativistic_spin", &["--step-size", "1"], "step 1 was not reached"),
         ("relativistic_spin", &["--momentum", "1e200,0,0"], "the configuration is not finite"),
+        ("sphere_bvp", &["--from", "0,2,0"], "normalise"),
+        ("sphere_bvp", &["--to", "0,-0.6,0.8"], "where they are opposite, give a velocity"),
+        ("sphere_bvp", &["--to", "0,0.6,-0.8"], "two different points are needed"),
+        ("slew", &["--to", "1,2,3,720"], "two different attitudes are needed"),
+        ("slew", &["--from", "0,0,0,10"], "an axis needs a direction"),
+        ("slew", &["--inertia", "1,2,9,0,0,0"], "no body has the principal moments"),
+        ("slew", &["--inertia", "1,2,3,0,0,0", "--body", "envisat"], "cannot be used with"),
+        ("slew", &["--time", "1800", "--step-size", "10"], "cannot be used with"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),

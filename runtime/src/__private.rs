@@ -14,6 +14,10 @@ pub use crate::orbit::{largest, length_defect, orientation_defect, orthogonality
 pub use crate::parameters::{
     annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
 };
+pub use crate::steered::{
+    Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,
+    forced_step, no_endpoint, pair,
+};
 pub use crate::stumpff::stumpff;
 pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
 pub use core;

@@ -20,6 +20,7 @@ mod pivot;
 mod sweep;
 mod vertex;
 
+pub(crate) use end::shortest;
 pub use extremal::{Extremal, States};
 pub use guess::Guess;
 pub use node::Node;

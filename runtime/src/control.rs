@@ -152,19 +152,19 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let solved = self.problem(start, &target, self.h)?.attempt(plan)?;
+        let solved = self.problem(start, &target, self.h, &self.constants).attempt(plan)?;
         Ok(Optimum::new(plan, solved, self.h))
     }
 
-    /// The problem with the step size `h`.
+    /// The problem with the step size `h`, for which there are these constants.
     fn problem<'a>(
         &'a self,
         start: &'a S::Place,
         target: &'a Target<S::Place>,
         h: S::Scalar,
-    ) -> Result<Problem<'a, S, D, U, C>, Error> {
-        let constants = if h == self.h { self.constants } else { self.system.prepare(h)? };
-        Ok(Problem { system: &self.system, constants, h, time: self.time, start, goal: Goal::of(&self.system, target) })
+        constants: &'a S::Constants,
+    ) -> Problem<'a, S, D, U, C> {
+        Problem { system: &self.system, constants, h, time: self.time, start, goal: Goal::of(&self.system, target) }
     }
 
     /// Start, target and guess are finite and where places are.

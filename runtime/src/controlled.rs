@@ -20,7 +20,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// What is steered.
     type Place: Space<Self::Scalar>;
     /// What no step changes.
-    type Constants: Copy + Debug;
+    type Constants: Clone + Debug;
 
     /// The name of the struct.
     const NAME: &'static str;

@@ -82,6 +82,7 @@ mod parameters;
 mod scalar;
 mod space;
 mod state;
+mod steered;
 mod stepper;
 mod stumpff;
 mod system;

@@ -162,15 +162,7 @@ impl<S: Clebsch> Stepper<S> {
 
     fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
         self.check_configuration(&q)?;
-        if !mu.is_finite() {
-            return Err(Error::NotFinite { name: "the momentum" });
-        }
-        let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
-        let violation = self.system.isotropy_defect(&q, &mu);
-        // Written so that NaN is a violation.
-        if !matches!(violation.partial_cmp(&tolerance), Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)) {
-            return Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() });
-        }
+        check_momentum(&self.system, &q, &mu)?;
         let impulse = self.system.impulse(&self.constants, t, &q);
         if !impulse.is_finite() {
             return Err(Error::NotFinite { name: "the gradient of the potential at the configuration" });
@@ -193,16 +185,39 @@ impl<S: Clebsch> Stepper<S> {
 
     /// q is finite and on its orbit, up to √ε.
     pub(crate) fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
-        if !q.is_finite() {
-            return Err(Error::NotFinite { name: "the configuration" });
-        }
-        let tolerance = S::Scalar::EPSILON.sqrt();
-        let defect = self.system.orbit_defect(q);
-        if defect <= tolerance {
-            return Ok(());
-        }
-        Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+        check_configuration(&self.system, q)
     }
+}
+
+/// q is finite and on its orbit, up to √ε.
+pub(crate) fn check_configuration<S: Clebsch>(system: &S, q: &S::Configuration) -> Result<(), Error> {
+    check_on_orbit(q, system.orbit_defect(q))
+}
+
+/// The same with the defect of q.
+pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
+    if !q.is_finite() {
+        return Err(Error::NotFinite { name: "the configuration" });
+    }
+    let tolerance = T::EPSILON.sqrt();
+    if defect <= tolerance {
+        return Ok(());
+    }
+    Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+}
+
+/// N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
+pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+    if !mu.is_finite() {
+        return Err(Error::NotFinite { name: "the momentum" });
+    }
+    let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
+    let violation = system.isotropy_defect(q, mu);
+    // Written so that NaN is a violation.
+    if !matches!(violation.partial_cmp(&tolerance), Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)) {
+        return Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() });
+    }
+    Ok(())
 }
 
 /// Where the cost or the potential depends on the time.

@@ -102,7 +102,10 @@ impl<T: Scalar, const M: usize, const P: usize> Sensitivity<T, M, P> {
 
 /// A B
 #[inline]
-fn times<T: Scalar, const M: usize, const K: usize>(a: &SMatrix<T, M, M>, b: &SMatrix<T, M, K>) -> SMatrix<T, M, K> {
+pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
+    a: &SMatrix<T, R, M>,
+    b: &SMatrix<T, M, K>,
+) -> SMatrix<T, R, K> {
     SMatrix::from_fn(|i, j| (0..M).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
 }
 

@@ -25,6 +25,8 @@ pub enum Role {
     Input(usize),
     /// The coordinates of log F of a factor.
     Logarithm(usize),
+    /// The Cayley coordinates of F of a factor.
+    Cayley(usize),
     /// A factor of the increment F − I that a step has found.
     Increment(usize),
     /// A factor of the increment of a motion that follows another.
@@ -33,6 +35,10 @@ pub enum Role {
     Algebra(usize),
     /// The momentum μ of a factor.
     Momentum(usize),
+    /// The multipliers of the momentum equation of a step.
+    Multiplier,
+    /// The multipliers of bounds.
+    Weight,
     /// The representing matrix of the momentum of a factor.
     MomentumMatrix(usize),
     /// The chart coordinates of a factor's group element.

@@ -100,6 +100,15 @@ fn regular<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -
     Some(SVector::from_fn(|i, _| x[i]))
 }
 
+/// The smallest x with A x = b, for a symmetric A with no negative eigenvalue.
+#[inline]
+pub(crate) fn shortest<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> SVector<T, M> {
+    match regular(a, b) {
+        Some(x) => x,
+        None => singular(a, b).0,
+    }
+}
+
 /// A⁺b and the projector to the kernel of A.
 #[cold]
 fn singular<T: Scalar, const M: usize>(

@@ -14,7 +14,7 @@ const SWEEPS: u32 = 200;
 /// Halvings of a step that makes the action larger.
 const HALVINGS: usize = 6;
 /// Damping beyond which no step goes downhill but for round-off.
-const DAMPING_LIMIT: f64 = 1e9;
+const DAMPING_LIMIT: f64 = 1e12;
 
 /// A path on which the action is critical.
 pub(super) struct Solved<S: Variational<M>, const M: usize> {
@@ -146,7 +146,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
 
 /// The damping after a step: eight times less after a full one, eight times more after one of less than a quarter.
 fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
-    let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
+    let (least, factor) = (T::from_ratio(1, 8), T::from_f64(8.0));
     if fraction >= T::one() {
         if damping > least { damping / factor } else { T::zero() }
     } else if fraction < T::from_ratio(1, 4) {

@@ -105,7 +105,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
             row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
         }
         if let Curvature::Mirrored { damping } = curvature {
-            damp(&mut pivot, edge, damping * sign);
+            damp(&mut pivot, edge, self.edges, damping * sign);
         }
         let gradient = pending.gradient + edge.after;
         let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature);
@@ -141,7 +141,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         let coupling = -kernel * edge.before_by_end.transpose();
         let mut pivot = lower_half(&pivot);
         if let Curvature::Mirrored { damping } = curvature {
-            damp(&mut pivot, edge, damping * sign);
+            damp(&mut pivot, edge, self.edges, damping * sign);
         }
         let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature);
         self.count_vertex(&(kernel * edge.after), &gradient, &solution);
@@ -167,12 +167,14 @@ impl<T: Scalar, const M: usize> Pending<T, M> {
     }
 }
 
-/// Adds a multiple of the mean of the diagonal of ∂F⁺ℓd/∂η′ to that of a pivot.
+/// Adds a multiple of the stiffness of the slowest variation of a path of N edges, π²/N² of the mean of the diagonal of ∂F⁺ℓd/∂η′, to
+/// the diagonal of a pivot: a finer path of the same motion is damped as much.
 #[cold]
-fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, damping: T) {
+fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edges: T, damping: T) {
     let mean = edge.after_by_end.trace().abs() / T::from_f64(M as f64);
+    let slowest = T::from_f64(10.0) / (edges * edges) * mean;
     for (i, row) in pivot.iter_mut().enumerate() {
-        row[i] += damping * mean;
+        row[i] += damping * slowest;
     }
 }
 

@@ -79,7 +79,8 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
         h: S::Scalar,
         plan: &mut [Stage<S, D, U, C>],
     ) -> Result<(Solved<S, D, U, C>, Sample<S::Scalar>), Error> {
-        let problem = self.problem(start, target, h)?;
+        let constants = self.system.prepare(h)?;
+        let problem = self.problem(start, target, h, &constants);
         let solved = problem.attempt(plan)?;
         let sample = problem.slope(plan, &solved.last)?;
         Ok((solved, sample))
@@ -95,7 +96,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         for (index, stage) in plan.iter().enumerate() {
             let (t, k) = (self.time_after(index), S::Scalar::from_f64(index as f64));
             let (x, u) = (&stage.place, &stage.input);
-            let mut part = self.system.price_of_time(&self.constants, t, k, x, u, &stage.next_costate)?;
+            let mut part = self.system.price_of_time(self.constants, t, k, x, u, &stage.next_costate)?;
             if C > 0 && index > 0 {
                 part += k * self.bounds_by_time(stage, t);
             }

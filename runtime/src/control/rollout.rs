@@ -33,7 +33,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         let mut x = *self.start;
         for (index, stage) in plan.iter_mut().enumerate() {
             stage.place = x;
-            x = self.system.follow(&self.constants, self.time_after(index), &x, &stage.input)?;
+            x = self.system.follow(self.constants, self.time_after(index), &x, &stage.input)?;
         }
         if x.is_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the end of the guessed plan" }) }
     }
@@ -76,9 +76,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                     }
                 }
             }
-            price += self.system.price(&self.constants, t, &x, &input);
+            price += self.system.price(self.constants, t, &x, &input);
             (stage.trial.place, stage.trial.input) = (x, input);
-            x = self.system.follow(&self.constants, t, &x, &input)?;
+            x = self.system.follow(self.constants, t, &x, &input)?;
         }
         price += self.system.endpoint(self.time_after(plan.len()), &x);
         let allowed = if allowed < fraction { Some(allowed) } else { None };
@@ -114,7 +114,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         let mut displacement = SVector::<S::Scalar, D>::from_element(zero);
         for (index, stage) in plan.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.time_after(index);
-            let step = self.system.expand(&self.constants, t, &stage.place, &stage.input, &stage.next_costate)?;
+            let step = self.system.expand(self.constants, t, &stage.place, &stage.input, &stage.next_costate)?;
             let bounds = self.system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers);
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
             let moved = bounds.by_place * displacement + bounds.by_input * input;

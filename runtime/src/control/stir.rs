@@ -70,7 +70,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         let mut x = *self.start;
         for (index, stage) in plan.iter().enumerate() {
             let input = stage.input + pattern.at(index, plan.len());
-            x = self.system.follow(&self.constants, self.time_after(index), &x, &input).ok()?;
+            x = self.system.follow(self.constants, self.time_after(index), &x, &input).ok()?;
         }
         let distance = self.goal.end(self.system, &x).distance;
         if distance.is_finite() { Some(distance) } else { None }

@@ -24,7 +24,7 @@ use nalgebra::{SMatrix, SVector};
 /// A problem of optimal control.
 pub(super) struct Problem<'a, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
     pub system: &'a S,
-    pub constants: S::Constants,
+    pub constants: &'a S::Constants,
     pub h: S::Scalar,
     /// The time of the start.
     pub time: S::Scalar,
@@ -122,7 +122,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         for (index, stage) in plan.iter_mut().enumerate().rev() {
             let t = self.time_after(index);
             let step =
-                self.system.expand(&self.constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+                self.system.expand(self.constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
             let mut model = Quadratic::of_step(&step);
             if C > 0 {
                 let bounds =

@@ -266,6 +266,26 @@ fn the_number_of_steps_hardly_matters() -> Result<(), Error> {
     Ok(())
 }
 
+/// A long body is far from a free motion when it turns about a fixed axis once more than it has to: the action has to go downhill.
+#[test]
+fn the_number_of_steps_hardly_matters_far_from_the_extremal() -> Result<(), Error> {
+    let mass_matrix = Matrix3::from_diagonal(&Vector3::new(3.4, 0.2, 0.8));
+    let axis = Vector3::new(0.48, 0.6, 0.64);
+    for (turns, angle) in [(1.0, 2.4), (-2.0, 2.4), (1.0, 0.9)] {
+        let angle: f64 = angle + turns * core::f64::consts::TAU;
+        for steps in [100, 1000, 4000] {
+            let stepper =
+                HeavyTop { mass_matrix, weight: 0.0, center: Vector3::z() }.stepper(1.0 / f64::from(steps))?;
+            let boundary = stepper.boundary();
+            let mut path = std::vec![boundary.rest(&Matrix3::identity()); steps as usize];
+            let guess = Guess::Velocity(axis * angle);
+            let extremal = boundary.solve(&Matrix3::identity(), &rotation(axis * angle), guess, &mut path)?;
+            assert!(extremal.iterations() <= 40, "{turns}, {steps}: {}", extremal.iterations());
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn bad_input_is_told() -> Result<(), Error> {
     let stepper = body().stepper(0.1)?;

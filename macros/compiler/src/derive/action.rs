@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Shape, identity};
 
 use super::Symbols;
 use super::symbols::logarithm;
-use crate::model::Model;
+use crate::model::{Factor, Model, Side};
 
 /// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
 pub(super) fn generator<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
@@ -43,6 +43,15 @@ pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Ve
     // by construction: a configuration has at least one leaf
     let pairing = pairing.expect("a leaf of the configuration");
     model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
+}
+
+/// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along: Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
+pub(super) fn adjoint_of<'g>(factor: &Factor<'g>, xi: Expr<'g>) -> Expr<'g> {
+    let element = match factor.side {
+        Side::Left => factor.symbol,
+        Side::Right => factor.group.inverse(factor.symbol),
+    };
+    factor.group.adjoint(element, xi)
 }
 
 /// The components of −J(q, ∂_q K) for each factor.

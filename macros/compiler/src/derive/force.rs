@@ -74,7 +74,7 @@ fn velocities<'a, 'g>(model: &'a Model<'g>) -> &'a [Expr<'g>] {
 fn moving<'g>(model: &Model<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let chosen = match &model.kinetic {
         Kinetic::Lagrangian { discretization, .. } => *discretization,
-        Kinetic::Cost(_) => Discretization::Cayley,
+        Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => Discretization::Cayley,
     };
     let has_cayley =
         model.factors.iter().all(|factor| factor.group.is_translation() || factor.group.has_cayley_chart(model.graph));

@@ -6,8 +6,10 @@
 //! r where K does not depend on q) plus J(q⁺, ∂U₁).
 
 mod action;
+mod cayley;
 mod clearing;
 mod closed_form;
+mod control;
 mod discrete_lagrangian;
 mod energy;
 mod equation;
@@ -25,12 +27,14 @@ mod velocity;
 
 use std::cell::OnceCell;
 
-use clebsch_symbolic::{Chart, Expr, identity};
+use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Model;
 
 pub(crate) use action::generator_columns;
+pub(crate) use cayley::of_increment as cayley_coordinates;
+pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 pub use equation::{Equation, Solution};
@@ -85,6 +89,10 @@ pub struct Formulas<'g> {
     pub parts: usize,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
     pub covector: Option<Vec<Expr<'g>>>,
+    /// What the choice of inputs needs; `None` where nothing is chosen.
+    pub steering: Option<Steering<'g>>,
+    /// The price of the end; `None` if there is none.
+    pub endpoint: Option<Endpoint<'g>>,
     /// All of it as text, made when it is first asked for.
     listing: OnceCell<Vec<Formula>>,
 }
@@ -128,6 +136,11 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let symbols = Symbols::new(&model);
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
+    let steering = control::steering(&model, &symbols, &generator, &momentum_map);
+    let endpoint = control::endpoint(&model, &symbols, &generator);
+    if model.is_steered() {
+        return Ok(steered(model, symbols, (generator, momentum_map), (steering, endpoint)));
+    }
     let cost = velocity::kinetic_cost(&model)?;
     let energy = energy::kinetic(&model, &symbols, cost)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
@@ -156,6 +169,9 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let covector = force::covector(&model, &symbols.covectors, &momentum_map);
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian);
     let stepped = if edges.len() == 1 { 1 } else { 2 };
+    if let Some(control) = model.control.as_ref().filter(|_| stepped == 2) {
+        return Err(composed(control).into());
+    }
     let forces = |parts| covector.as_ref().map(|covector| force::on_edge(&model, covector, parts));
     if edges.len() == 1 && forces(1).is_some_and(|force| force.start_moving.is_some()) {
         // the Legendre transform of ℓd, without the force, is to be inverted
@@ -197,7 +213,53 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         substeps,
         parts: stepped,
         covector,
+        steering,
+        endpoint,
     })
+}
+
+/// What is left without mechanics: the action, and what the choice of inputs needs.
+fn steered<'g>(
+    model: Model<'g>,
+    symbols: Symbols<'g>,
+    (generator, momentum_map): (Vec<Expr<'g>>, Vec<Expr<'g>>),
+    (steering, endpoint): (Option<Steering<'g>>, Option<Endpoint<'g>>),
+) -> Formulas<'g> {
+    let (graph, zero) = (model.graph, model.graph.integer(0));
+    Formulas {
+        legendre: Vec::new(),
+        legendre_next: Vec::new(),
+        legendre_kick: None,
+        listing: OnceCell::new(),
+        is_free: action::is_free(&model, &symbols, &generator),
+        coadjoint: action::coadjoint(&model, &symbols),
+        cotangent_lift: Vec::new(),
+        inertia: graph.zero(Shape::square(model.dimension())),
+        energy: Energy { kinetic: zero, gyroscopic: zero, general: None },
+        potential_energy: zero,
+        symmetries: Symmetries::default(),
+        lagrangian: DiscreteLagrangian { kinetic: zero, start: zero, end: zero, couples: false },
+        quantities: Vec::new(),
+        substeps: Vec::new(),
+        parts: 0,
+        covector: None,
+        steering,
+        endpoint,
+        model,
+        symbols,
+        generator,
+        momentum_map,
+    }
+}
+
+/// A step of two edges is not steered.
+fn composed(control: &crate::model::Control<'_>) -> Diagnostic {
+    Diagnostic::new(
+        control.written.place,
+        "this step is composed of two, and the inputs of such steps cannot be chosen yet",
+    )
+    .help("write `order = 1`, or a cost that is its own adjoint, or a `lagrangian`")
+    .note("a cost that changes when the step is run back has order 1, and is composed with its adjoint for order 2")
 }
 
 /// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.
@@ -261,9 +323,9 @@ fn substep<'g>(
         false => trivialisation::agreement(model, &before, &after),
     };
     let ends = begins + model.step_size / sources.parts;
-    let varied = model.emit.variations();
+    let varied = model.has_variations();
     Substep {
-        variation: varied.then(|| variations.variation(&lagrangian, (&before, &after), (begins, ends), force.as_ref())),
+        variation: varied.then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
         begins,
         ends,
         parts: sources.parts,

@@ -5,7 +5,7 @@ use std::fmt;
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::{Equation, Formulas, Reference, Solution, Substep, reference};
-use crate::model::Side;
+use crate::model::{Kinetic, Side};
 
 /// A derived formula, `symbol = expression`.
 #[derive(Clone)]
@@ -83,6 +83,9 @@ impl<'g> Formulas<'g> {
 
     fn list(&self) -> Vec<Formula> {
         let (q, f) = (self.q(), self.f());
+        if self.model.is_steered() {
+            return self.list_of_control();
+        }
         let mut formulas = vec![
             Formula::new("action", format!("Φ_{f}({q})"), &self.model.action),
             Formula::new("generator", format!("{}_Q({q})", self.letter(&self.symbols.algebra)), &self.generator),
@@ -117,12 +120,48 @@ impl<'g> Formulas<'g> {
             self.formula_of_legendre(),
             self.formula_of_legendre_next(),
         ];
+        formulas.extend(self.formulas_of_choice());
         formulas.extend(self.formulas_of_conserved());
         for substep in self.substeps.iter().take(self.parts) {
             formulas.extend(self.formulas_of_substep(substep));
         }
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
         formulas
+    }
+
+    /// What inputs move, what they cost, and what binds them.
+    fn list_of_control(&self) -> Vec<Formula> {
+        let (q, f) = (self.q(), self.f());
+        let u = tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone()));
+        let mut formulas = vec![
+            Formula::new("action", format!("Φ_{f}({q})"), &self.model.action),
+            Formula::new("generator", format!("{}_Q({q})", self.letter(&self.symbols.algebra)), &self.generator),
+        ];
+        match &self.model.kinetic {
+            Kinetic::Controls { velocity, .. } => {
+                formulas.push(Formula::new(
+                    "controls",
+                    format!("{}({u})", self.letter(&self.symbols.algebra)),
+                    velocity,
+                ));
+            }
+            Kinetic::Dynamics(next) => formulas.push(Formula::new("controls", format!("{q}⁺"), next)),
+            Kinetic::Cost(_) | Kinetic::Lagrangian { .. } => {}
+        }
+        formulas.extend(self.formulas_of_choice());
+        formulas
+    }
+
+    /// Price, bounds and the price of the end.
+    fn formulas_of_choice(&self) -> Vec<Formula> {
+        let endpoint =
+            self.model.endpoint.map(|price| Formula::new("price of the end", format!("φ({})", self.q()), &[price]));
+        let Some(control) = &self.model.control else { return endpoint.into_iter().collect() };
+        let u = tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone()));
+        let bounds: Vec<Expr<'g>> = control.bounds.iter().map(|bound| bound.value).collect();
+        let price = Formula::new("price", format!("ℓ(h, {u})"), &[control.price]);
+        let bounds = (!bounds.is_empty()).then(|| Formula::new("bounds", "0 ≥ a", &bounds));
+        [price].into_iter().chain(bounds).chain(endpoint).collect()
     }
 
     fn chart_symbols(&self) -> Vec<Expr<'g>> {

@@ -13,6 +13,8 @@ pub struct Symbols<'g> {
     pub algebra: Vec<Expr<'g>>,
     /// μ in components, for each factor.
     pub momenta: Vec<Expr<'g>>,
+    /// κ, the multipliers of the momentum equation of a step.
+    pub multiplier: Expr<'g>,
     /// The chart of each factor.
     pub charts: Vec<Chart>,
     /// The chart coordinates of all factors, one vector for each block of their algebras.
@@ -139,6 +141,12 @@ impl<'g> Symbols<'g> {
             covectors: covectors.collect(),
             algebra: factor(&["ξ", "η", "ζ"], Role::Algebra, false),
             momenta: factor(&["μ", "ν", "λ"], Role::Momentum, false),
+            multiplier: graph.symbol(
+                fresh(&["κ", "χ", "ϰ"], &taken),
+                Shape::vector(model.dimension()),
+                Role::Multiplier,
+                Property::General,
+            ),
             charts: model.factors.iter().map(|factor| chart(model, factor)).collect(),
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
             logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
@@ -172,7 +180,7 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
     }
     let discretization = match &model.kinetic {
         Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
-        Kinetic::Cost(_) => None,
+        Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => None,
     };
     match (discretization, model.chart) {
         (Some(Discretization::Exponential), _) | (_, Some(ChartChoice::Exponential)) => Chart::Exponential,

@@ -1,7 +1,8 @@
 //! The trivialised derivatives T*_id L_F ∂_F K and T*_id R_F ∂_F K.
 
-use clebsch_symbolic::{Expr, Group, identity};
+use clebsch_symbolic::{Expr, Group, Property, Role, identity};
 
+use super::cayley;
 use super::symbols::logarithm;
 use crate::model::{Model, Side};
 
@@ -12,12 +13,18 @@ pub(super) struct Covector<'g> {
     pub array: Expr<'g>,
     /// dexp_y^T of the components that come from log F, and dexp_y itself: `None` where K does not depend on log F.
     pub logarithmic: Option<(Expr<'g>, Expr<'g>)>,
+    /// The components that come from Cayley coordinates; `None` where K does not depend on them.
+    pub rational: Option<Expr<'g>>,
 }
 
 impl<'g> Covector<'g> {
     /// The components.
     pub fn components(&self, group: Group) -> Expr<'g> {
         let plain = group.components(self.array);
+        let plain = match self.rational {
+            Some(rational) => plain + rational,
+            None => plain,
+        };
         match self.logarithmic {
             Some((gradient, slope)) => plain + slope.transpose().inverse() * gradient,
             None => plain,
@@ -36,8 +43,14 @@ pub(super) fn trivialisations<'g>(model: &Model<'g>, kinetic: Expr<'g>, k: usize
     };
     let left = factor.group.cotangent_left(factor.symbol, gradient).expand();
     let right = factor.group.cotangent_right(factor.symbol, gradient).expand();
-    let left = Covector { array: left, logarithmic: along(y, -1) };
-    let right = Covector { array: right, logarithmic: along(y, 1) };
+    let xi = model.graph.symbol("ξ", y.shape(), Role::Algebra(k), Property::General);
+    // ⟨∂K/∂z, δz⟩ is linear in the motion
+    let rational = |from_left: bool| {
+        let (z, moved) = cayley::motion(model, k, xi, from_left)?;
+        kinetic.depends_on(z).then(|| kinetic.gradient(z).dot(moved).gradient(xi).expand())
+    };
+    let left = Covector { array: left, logarithmic: along(y, -1), rational: rational(false) };
+    let right = Covector { array: right, logarithmic: along(y, 1), rational: rational(true) };
     match factor.side {
         Side::Left => (left, right),
         Side::Right => (right, left),

@@ -4,7 +4,7 @@
 use clebsch_symbolic::{Chart, Expr, Property, Shape};
 
 use super::trivialisation::Covector;
-use super::{DiscreteLagrangian, EdgeForce, Symbols, action};
+use super::{Bend, DiscreteLagrangian, EdgeForce, Symbols, action, cayley, control};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Factor, Model, Side};
 
@@ -26,6 +26,8 @@ pub struct Variation<'g> {
     pub after_by_end: Vec<Expr<'g>>,
     /// The same along motions that leave F as it is.
     pub carried: Carried<'g>,
+    /// What a choice of inputs needs, where there is one.
+    pub bend: Option<Bend<'g>>,
     /// The derivatives of both Legendre transforms with respect to each of the [`Quantity`]s, where they are asked for.
     pub slopes: Option<Slopes<'g>>,
 }
@@ -106,10 +108,14 @@ fn is_free(symbol: Expr<'_>, (i, j): (usize, usize)) -> bool {
 
 /// Second derivatives need a potential that can be differentiated twice.
 pub(super) fn check(model: &Model<'_>) -> Result<(), Diagnostics> {
-    let Some(opaque) = model.opaque.as_ref().filter(|_| model.emit.variations()) else { return Ok(()) };
-    let asked = if model.emit.tangent { "tangent" } else { "boundary" };
-    let error = Diagnostic::new(opaque.place, format!("`emit = [{asked}]` needs a potential that is a formula"))
-        .help("write the potential as a closure, or leave out the word")
+    let Some(opaque) = model.opaque.as_ref().filter(|_| model.has_variations()) else { return Ok(()) };
+    let (asked, help) = match model.emit {
+        _ if model.control.is_some() => ("effort", "write the potential as a closure, or leave out the effort"),
+        emit if emit.tangent => ("emit = [tangent]", "write the potential as a closure, or leave out the word"),
+        _ => ("emit = [boundary]", "write the potential as a closure, or leave out the word"),
+    };
+    let error = Diagnostic::new(opaque.place, format!("`{asked}` needs a potential that is a formula"))
+        .help(help)
         .note("it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives");
     Err(error.into())
 }
@@ -125,19 +131,20 @@ pub(super) struct Source<'a, 'g> {
 }
 
 impl<'g> Source<'_, 'g> {
-    /// The variation of a discrete Lagrangian whose step starts `begins` and ends `ends` after the whole step, from both
-    /// trivialisations of ∂_F K.
+    /// The variation of a discrete Lagrangian whose step starts `begins` and ends `ends` after the whole step.
     pub fn variation(
         &self,
         lagrangian: &DiscreteLagrangian<'g>,
-        (before, after): (&[Covector<'g>], &[Covector<'g>]),
         (begins, ends): (Expr<'g>, Expr<'g>),
         force: Option<&EdgeForce<'g>>,
     ) -> Variation<'g> {
         let model = self.model;
+        let rational = cayley::replacements(model);
+        let lagrangian = &DiscreteLagrangian { kinetic: lagrangian.kinetic.substitute(&rational), ..*lagrangian };
+        let (before, after) = super::trivialised(model, lagrangian);
         let (start, end) = (self.later(lagrangian.start, begins), self.at_image(self.later(lagrangian.end, ends)));
         let impulse = |potential| action::impulse(model, self.symbols, self.momentum_map, potential);
-        let mut first = self.stacked(before);
+        let mut first = self.stacked(&before);
         if lagrangian.couples {
             let coupling = action::coupling(model, self.symbols, self.momentum_map, lagrangian.kinetic);
             first = first + self.stack(&coupling);
@@ -145,17 +152,17 @@ impl<'g> Source<'_, 'g> {
         if let Some(kick) = impulse(self.later(lagrangian.start, begins)) {
             first = first - self.stack(&kick);
         }
-        let mut last = self.stacked(after);
+        let mut last = self.stacked(&after);
         if let Some(kick) = impulse(self.later(lagrangian.end, ends)) {
             last = last + self.at_image(self.stack(&kick));
         }
         if let Some(force) = force {
             if let Some(start) = force.whole_start() {
-                first = first - self.later(self.stack(&start), begins);
+                first = first - self.later(self.stack(&start), begins).substitute(&rational);
             }
-            last = last + self.at_image(self.later(self.stack(&force.end), ends));
+            last = last + self.at_image(self.later(self.stack(&force.end), ends)).substitute(&rational);
         }
-        Variation {
+        let varied = Variation {
             lagrangian: lagrangian.kinetic + start + end,
             before_by_start: self.columns(first, &self.at_start()),
             before_by_end: self.columns(first, &self.at_end()),
@@ -166,29 +173,49 @@ impl<'g> Source<'_, 'g> {
                 .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),
             before: first,
             after: last,
-        }
+            bend: None,
+        };
+        let bend = model.control.as_ref().map(|_| self.bend(&varied));
+        Variation { bend, ..varied }
+    }
+
+    fn bend(&self, variation: &Variation<'g>) -> Bend<'g> {
+        let along = |motions: &[(Expr<'g>, Expr<'g>)]| -> Vec<control::Direction<'g>> {
+            let motion = |element: &control::Direction<'g>| {
+                motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()
+            };
+            self.symbols.basis().iter().map(motion).collect()
+        };
+        let ends = [along(&self.carried_motions()), along(&self.at_end())].concat();
+        let costate = self.stack(&self.symbols.momenta);
+        control::bend(self.model, variation, (costate, self.symbols.multiplier), &ends)
     }
 
     fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {
-        let symbols = self.symbols;
-        let moved = |(k, factor): (usize, &Factor<'g>)| {
-            let element = match factor.side {
-                Side::Left => factor.symbol,
-                Side::Right => factor.group.inverse(factor.symbol),
-            };
-            factor.group.adjoint(element, symbols.algebra[k])
-        };
-        let moved: Vec<Expr<'g>> = self.model.factors.iter().enumerate().map(moved).collect();
+        let motions = self.carried_motions();
+        let moved = self.stack(&self.moved_along());
+        Carried {
+            adjoint: self.symbols.basis().iter().map(|element| moved.substitute(element)).collect(),
+            before: self.columns(before, &motions),
+            after: self.columns(after, &motions),
+        }
+    }
+
+    /// Ad η for each factor, what q⁺ moves by when F stays as it is.
+    fn moved_along(&self) -> Vec<Expr<'g>> {
+        let moved = |(k, factor): (usize, &Factor<'g>)| action::adjoint_of(factor, self.symbols.algebra[k]);
+        self.model.factors.iter().enumerate().map(moved).collect()
+    }
+
+    /// How q and q⁺ move with η at q while F stays as it is.
+    fn carried_motions(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let (symbols, moved) = (self.symbols, self.moved_along());
         let along: Vec<_> = symbols.algebra.iter().copied().zip(moved.iter().copied()).collect();
         let leaves = self.model.configurations.iter().map(|leaf| leaf.symbol);
         let images = self.generator.iter().map(|part| self.at_image(*part).substitute(&along));
         let mut motions: Vec<_> = leaves.zip(self.generator.iter().copied()).collect();
         motions.extend(symbols.images.iter().copied().zip(images));
-        Carried {
-            adjoint: symbols.basis().iter().map(|element| self.stack(&moved).substitute(element)).collect(),
-            before: self.columns(before, &motions),
-            after: self.columns(after, &motions),
-        }
+        motions
     }
 
     fn slopes(&self, momentum: Expr<'g>) -> Vec<Expr<'g>> {
@@ -242,14 +269,21 @@ impl<'g> Source<'_, 'g> {
     }
 
     /// δF = ηF or Fη, and how log F moves with it: by dexp_y⁻¹ η or dexp_{−y}⁻¹ η.
-    fn motion(&self, k: usize, factor: &Factor<'g>, eta: Expr<'g>, from_left: bool) -> [(Expr<'g>, Expr<'g>); 2] {
+    fn motion(
+        &self,
+        k: usize,
+        factor: &Factor<'g>,
+        eta: Expr<'g>,
+        from_left: bool,
+    ) -> impl Iterator<Item = (Expr<'g>, Expr<'g>)> + use<'g> {
         let (group, f, y) = (factor.group, factor.symbol, self.symbols.logarithms[k]);
         let wedge = group.wedge(eta);
         let (moved, slope) = match from_left {
             true => (group.translate_right(f, wedge), group.exponential_slope(y)),
             false => (group.translate_left(f, wedge), group.exponential_slope(-y)),
         };
-        [(f, moved), (y, slope.inverse() * eta)]
+        let rational = cayley::motion(self.model, k, eta, from_left);
+        [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational)
     }
 
     /// The derivatives of a vector along each basis element of the algebra.

@@ -10,6 +10,8 @@ use crate::model::{Discretization, Factor, Kinetic, Model};
 pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
     let (energy, velocities, discretization) = match &model.kinetic {
         Kinetic::Cost(cost) => return Ok(*cost),
+        // by construction: what inputs move has no kinetic energy, and none is asked for
+        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => return Ok(model.graph.integer(0)),
         Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
     };
     let h = model.step_size;

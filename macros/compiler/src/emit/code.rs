@@ -77,9 +77,13 @@ impl Scope<'_, '_> {
             Role::Increment(k) => leaf("d", factor(k)),
             Role::Following(k) => leaf("second", factor(k)),
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
+            Role::Multiplier => leaf("kappa", ""),
+            Role::Weight => leaf("z", ""),
             Role::Momentum(k) => entry(self.momentum, &self.momenta, self.model.offset(k) + input.row),
             Role::Chart(block) => entry("x", &self.coordinates, self.blocks[block] + input.row),
-            Role::Algebra(k) | Role::Logarithm(k) => entry("x", &self.coordinates, self.model.offset(k) + input.row),
+            Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
+                entry("x", &self.coordinates, self.model.offset(k) + input.row)
+            }
             Role::Auxiliary(_) => match &self.constants {
                 Some(constants) => quote!(#constants.inertia_inverse #index),
                 None => quote!(inertia_inverse #index),

@@ -109,7 +109,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Checks of every field that a closure reads: finite, and what the user promises.
-    fn checks(&self) -> TokenStream {
+    pub(super) fn checks(&self) -> TokenStream {
         let private = &self.paths.private;
         let checks = self.model.parameters.iter().map(|parameter| {
             let (field, name) = (&parameter.field, &parameter.name);

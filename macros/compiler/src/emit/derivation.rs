@@ -6,10 +6,13 @@ use clebsch_symbolic::Chart;
 
 use crate::derive::{Equation, Solution, Structure, Substep};
 use crate::lower::Program;
-use crate::model::{Isotropy, Model, Order, Side};
+use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side};
 
 /// The text of `DERIVATION`.
 pub fn derivation(program: &Program<'_>) -> String {
+    if program.formulas.model.is_steered() {
+        return steered(program);
+    }
     let mut text = String::new();
     // by construction: writing to a string does not fail
     let _ = write!(
@@ -26,6 +29,33 @@ pub fn derivation(program: &Program<'_>) -> String {
         costs(program),
     );
     text
+}
+
+/// The text of a system whose configuration inputs move.
+fn steered(program: &Program<'_>) -> String {
+    let (model, formulas) = (&program.formulas.model, &program.formulas);
+    let motion = match &model.kinetic {
+        Kinetic::Controls { discretization: Discretization::Exponential, .. } => {
+            "A step moves the configuration by F = exp(h ξ(u)), exact where the input stays as it is."
+        }
+        Kinetic::Controls { .. } => {
+            "A step moves the configuration by F = (I − h/2 ξ(u))⁻¹(I + h/2 ξ(u)), of second order in h."
+        }
+        _ => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
+    };
+    let inputs: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
+    let bounds = match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
+        0 => String::new(),
+        1 => " and keep one bound".to_string(),
+        count => format!(" and keep {count} bounds"),
+    };
+    format!(
+        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{formulas}\nCost\n\n{}",
+        model.item.ident,
+        frames(model),
+        inputs.join(", "),
+        costs(program),
+    )
 }
 
 /// Which frame momenta are in, factor by factor.

@@ -3,6 +3,7 @@
 mod call;
 mod code;
 mod constants;
+mod control;
 mod derivation;
 mod docs;
 mod equation;
@@ -124,13 +125,17 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     fn items(&self) -> TokenStream {
         let groups = self.groups();
+        if self.model.is_steered() {
+            let (controlled, derivation) = (self.controlled(), self.derivation_of_control());
+            return quote!(#groups #controlled #derivation);
+        }
         let constants = self.constants_type();
         let system = self.system();
         let conserves = self.conserves();
         let step = self.step_type();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
-        let (variational, sensitive) = (self.variational(), self.sensitive());
-        quote!(#groups #constants #system #conserves #variational #sensitive #check #step #equations #velocity)
+        let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
+        quote!(#groups #constants #system #conserves #variational #sensitive #controlled #check #step #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.

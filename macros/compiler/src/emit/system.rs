@@ -303,9 +303,9 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// `orbit_defect`, `isotropy_defect` and `project_momentum`.
-    fn space_checks(&self) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+    /// By how much q violates what the declaration promises.
+    pub(super) fn orbit_defect(&self) -> TokenStream {
+        let private = &self.paths.private;
         let defects = self.model.configurations.iter().filter_map(|leaf| {
             let access = code::accessor(&leaf.accessor);
             match leaf.space {
@@ -326,6 +326,16 @@ impl Emitter<'_, '_> {
             defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
             locals
         });
+        quote! {
+            #membership
+            #private::largest([#(#defects),*])
+        }
+    }
+
+    /// `orbit_defect`, `isotropy_defect` and `project_momentum`.
+    fn space_checks(&self) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let (scope, orbit_defect) = (self.scope_of_system(), self.orbit_defect());
         let (defect, projection) = match &self.program.generator {
             None => (quote!(<#scalar as #private::Zero>::zero()), quote!(*mu)),
             Some(kernel) => {
@@ -342,8 +352,7 @@ impl Emitter<'_, '_> {
         quote! {
             /// By how much q violates what the declaration promises.
             fn orbit_defect(&self, q: &Self::Configuration) -> #scalar {
-                #membership
-                #private::largest([#(#defects),*])
+                #orbit_defect
             }
             /// The size of the component of μ that no motion of q can have.
             fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {

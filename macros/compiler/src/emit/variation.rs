@@ -18,6 +18,15 @@ impl Emitter<'_, '_> {
         let edges = Literal::usize_unsuffixed(variations.edges.len());
         let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
         let carried = self.carried();
+        let scalar = &self.paths.scalar;
+        let end = self.endpoint_expanded().map(|body| {
+            quote! {
+                /// The price of the end with its derivatives.
+                fn endpoint(&self, t: #scalar, q: &Self::Configuration) -> #krate::EndpointExpansion<#scalar, #dimension> {
+                    #body
+                }
+            }
+        });
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Variational<#dimension> for #ident<#arguments> #predicates {
@@ -27,6 +36,7 @@ impl Emitter<'_, '_> {
                 #drift
                 #edge
                 #carried
+                #end
             }
         }
     }

@@ -3,6 +3,7 @@
 //! A kernel is one small function of generated code. Three rates decide where a value is computed: once per stepper (the
 //! constants), once per solve (the terms), or where it is used.
 
+mod control;
 mod cost;
 mod grid;
 mod kernel;
@@ -18,6 +19,7 @@ use crate::derive::Formulas;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Factor, Isotropy, Space};
 
+pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
 pub use grid::{Grid, Lowering};
 pub use kernel::{Code, Hoisted, Hoisting, Kernel};
@@ -69,6 +71,10 @@ pub struct Program<'g> {
     pub steps: Vec<StepKernels>,
     /// What variations need, where they are asked for.
     pub variations: Option<VariationKernels>,
+    /// What the choice of inputs needs, where there is one.
+    pub control: Option<ControlKernels>,
+    /// The price of the end, where there is one.
+    pub endpoint: Option<EndpointKernels>,
     /// (TΦ_F)^{-*} p, from the increment of F, q⁺ and p.
     pub cotangent_lift: Kernel,
     /// Computes the constants, one output each.
@@ -93,6 +99,8 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
+    let control = control::control(&formulas, &mut scalars);
+    let endpoint = control::endpoint(&formulas, &mut scalars);
     let inverses = inverses(&formulas);
     let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
     let after = legendre_next(&formulas);
@@ -122,6 +130,8 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
             .then(|| generator(&formulas, &mut scalars)),
         cotangent_lift: lift,
         variations,
+        control,
+        endpoint,
         needs_inertia_inverse: hoisted.scalars.iter().any(|&scalar| uses_inertia_inverse(&scalars, scalar)),
         constants,
         constant_names: names,

@@ -39,6 +39,9 @@ impl fmt::Display for Cost {
 impl Program<'_> {
     /// All kernels with their names, in the order of the generated code.
     pub fn kernels(&self) -> Vec<(String, &Kernel)> {
+        if self.formulas.model.is_steered() {
+            return self.kernels_of_control();
+        }
         let mut kernels: Vec<(String, &Kernel)> = vec![
             ("constants".into(), &self.constants),
             ("act".into(), &self.act),
@@ -58,6 +61,7 @@ impl Program<'_> {
         kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
         kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
         kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
+        kernels.extend(self.kernels_of_control());
         for (index, step) in self.steps.iter().enumerate() {
             let suffix = self.suffix(index);
             let named = |name: &str| format!("{name}{suffix}");
@@ -96,6 +100,32 @@ impl Program<'_> {
             }
         }
         kernels
+    }
+
+    /// The kernels of a choice of inputs.
+    fn kernels_of_control(&self) -> Vec<(String, &Kernel)> {
+        let of_end = self
+            .endpoint
+            .iter()
+            .flat_map(|end| [("endpoint".to_string(), &end.price), ("endpoint_expanded".to_string(), &end.expanded)]);
+        let Some(control) = &self.control else { return of_end.collect() };
+        let (step, bend) = (control.step.as_ref(), control.bend.as_ref());
+        let named = [
+            ("orbit_metric", bend.is_none().then_some(&control.orbit_metric)),
+            ("approach", Some(&control.approach)),
+            ("increment", step.map(|step| &step.increment)),
+            ("advance", step.map(|step| &step.advance)),
+            ("expand", step.map(|step| &step.expand)),
+            ("by_input", bend.map(|bend| &bend.by_input)),
+            ("bend", bend.map(|bend| &bend.curvature)),
+            ("bracket", bend.map(|bend| &bend.bracket)),
+            ("price", Some(&control.price)),
+            ("price_expanded", control.price_expanded.as_ref()),
+            ("price_of_time", Some(&control.price_of_time)),
+            ("bounds", Some(&control.bounds)),
+            ("bounds_expanded", Some(&control.bounds_expanded)),
+        ];
+        named.into_iter().filter_map(|(name, kernel)| Some((name.to_string(), kernel?))).chain(of_end).collect()
     }
 
     fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {

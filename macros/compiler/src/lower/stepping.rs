@@ -330,7 +330,9 @@ pub(super) fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>
         replacements.push((factor.symbol, element));
         replacements
     };
-    factors.flat_map(element).collect()
+    let coordinates = symbols.increments.iter().enumerate();
+    let coordinates = coordinates.filter_map(|(k, d)| crate::derive::cayley_coordinates(&formulas.model, k, *d));
+    factors.flat_map(element).chain(coordinates).collect()
 }
 
 /// The replacement of the letters F⁻¹ and F⁻ᵀ by the explicit inverse of an element.

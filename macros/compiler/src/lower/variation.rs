@@ -40,7 +40,7 @@ pub(super) fn variations(
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> Option<VariationKernels> {
-    if !formulas.model.emit.variations() {
+    if !formulas.model.has_variations() {
         return None;
     }
     let edges = formulas.substeps.iter().take(formulas.parts).filter_map(|substep| substep.variation.as_ref());
@@ -94,7 +94,7 @@ fn compose(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
 }
 
 /// J(q, (E_j)_Q(q)), column by column.
-fn orbit_metric(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+pub(super) fn orbit_metric(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     let column = |element: &Vec<(Expr<'_>, Expr<'_>)>| {
         let velocities = formulas.generator.iter().map(|velocity| velocity.substitute(element));
         let covectors: Vec<_> = formulas.symbols.covectors.iter().copied().zip(velocities).collect();
@@ -104,6 +104,17 @@ fn orbit_metric(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     };
     let columns: Vec<Vec<Scalar>> = formulas.symbols.basis().iter().map(column).collect();
     kernel(scalars, &[matrix(&columns)], Hoisting::Nothing)
+}
+
+/// A matrix from its columns, with I + D put in for F.
+pub(super) fn columns<'g>(
+    columns: &[Expr<'g>],
+    elements: &[(Expr<'g>, Expr<'g>)],
+    scalars: &mut Scalars,
+) -> (Shape, Vec<Scalar>) {
+    let columns: Vec<_> = columns.iter().map(|column| inserted(*column, elements)).collect();
+    let columns: Vec<_> = grids(scalars, &columns).into_iter().map(|(_, entries)| entries).collect();
+    matrix(&columns)
 }
 
 /// A matrix from its columns.
@@ -119,11 +130,7 @@ fn edge<'g>(
     hoisted: &mut Hoisted,
 ) -> EdgeKernels {
     let elements = elements(formulas);
-    let columns = |columns: &[Expr<'g>], scalars: &mut Scalars| {
-        let columns: Vec<_> = columns.iter().map(|column| inserted(*column, &elements)).collect();
-        let columns: Vec<_> = grids(scalars, &columns).into_iter().map(|(_, entries)| entries).collect();
-        matrix(&columns)
-    };
+    let columns = |block: &[Expr<'g>], scalars: &mut Scalars| columns(block, &elements, scalars);
     let values = [variation.lagrangian, variation.before, variation.after];
     let values = values.map(|value| inserted(value, &elements));
     let mut outputs = grids(scalars, &values);
@@ -145,7 +152,7 @@ fn edge<'g>(
 }
 
 /// The replacements of F by I + D, and of inverses of configurations by the formulas of their groups.
-fn elements<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn elements<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let leaves = formulas.model.configurations.iter().zip(&formulas.symbols.images);
     let inverses = leaves.flat_map(|(leaf, image)| match leaf.space {
         crate::model::Space::Group(group) => {

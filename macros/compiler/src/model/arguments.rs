@@ -17,6 +17,8 @@ pub(super) struct Arguments<'d, 'g> {
     pub configuration_value: Option<Value<'g>>,
     /// The symbols that lie on a group.
     pub members: Vec<(Expr<'g>, Group)>,
+    /// The input, as the closure that introduces it calls it.
+    pub input: Option<&'d Pattern>,
     pub step_size: Expr<'g>,
     pub time: Expr<'g>,
 }
@@ -180,7 +182,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
     }
 
     /// The scope in which arguments have the values of their slots, and what is left out has a reason.
-    fn scope(
+    pub fn scope(
         &self,
         closure: &Closure,
         slots: &[Slot],
@@ -201,8 +203,9 @@ impl<'d, 'g> Arguments<'d, 'g> {
             };
             scope.add_argument(&argument.pattern, value, diagnostics);
         }
-        let named = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
-        for slot in named.into_iter().filter(|slot| !taken.contains(&Some(*slot))) {
+        let named = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Element, Slot::Chosen];
+        let named = named.into_iter().filter(|slot| *slot != Slot::Chosen || !slots.contains(&Slot::Input));
+        for slot in named.filter(|slot| !taken.contains(&Some(*slot))) {
             let missing = match slots.contains(&slot) {
                 true => Missing::Argument { head: self.head(taken, slots, Some(slot), closure) },
                 false => Missing::Foreign { help: self.dependence(closure, slots) },
@@ -210,6 +213,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
             let names: Vec<String> = match (self.pattern(slot), slot) {
                 (Some(pattern), _) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
                 (None, Slot::Time) => vec!["t".into()],
+                (None, Slot::Chosen) => Vec::new(),
                 (None, _) => vec!["h".into()],
             };
             names.into_iter().for_each(|name| scope.add_missing(name, missing.clone()));
@@ -220,6 +224,10 @@ impl<'d, 'g> Arguments<'d, 'g> {
     /// What a closure may depend on.
     fn dependence(&self, closure: &Closure, slots: &[Slot]) -> String {
         let (key, q) = (&closure.key, self.configuration.spell());
+        if slots.contains(&Slot::Chosen) || (slots.contains(&Slot::Input) && !slots.contains(&Slot::Velocity)) {
+            let step = if slots.contains(&Slot::Step) { "the step `h`, " } else { "" };
+            return format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone");
+        }
         match slots.contains(&Slot::Velocity) {
             _ if slots.contains(&Slot::Offered) => {
                 format!("the {key} depends on its own element, on `{q}` and on `{}` alone", self.element.spell())

@@ -45,11 +45,13 @@ pub(super) fn kinetic<'g>(
             lagrangian(context, closure, arguments, structure, factors)
                 .map(|(energy, velocities, name)| Kinetic::Lagrangian { energy, velocities, name, discretization })
         }
+        // what inputs move is read with them
+        parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
     }
 }
 
 /// The Cayley map where it stays in every factor: projected, it grows beyond use. The exponential elsewhere.
-fn default_discretization(graph: &Graph, factors: Option<&[Factor<'_>]>) -> Discretization {
+pub(super) fn default_discretization(graph: &Graph, factors: Option<&[Factor<'_>]>) -> Discretization {
     let leaves = |factor: &&Factor<'_>| !factor.group.is_translation() && !factor.group.has_cayley_chart(graph);
     match factors.is_some_and(|factors| factors.iter().any(|factor| leaves(&factor))) {
         true => Discretization::Exponential,
@@ -144,13 +146,13 @@ pub(super) fn potential<'g>(
 }
 
 /// What a scalar closure is elaborated with.
-struct Elaborated<'g> {
-    scope: super::scope::Scope<'g>,
-    needs: &'static str,
+pub(super) struct Elaborated<'g> {
+    pub scope: super::scope::Scope<'g>,
+    pub needs: &'static str,
 }
 
 /// The value of a closure that has to give a scalar.
-fn scalar<'g>(context: &mut Context<'_, 'g>, closure: &Closure, given: Elaborated<'g>) -> Option<Expr<'g>> {
+pub(super) fn scalar<'g>(context: &mut Context<'_, 'g>, closure: &Closure, given: Elaborated<'g>) -> Option<Expr<'g>> {
     let key = closure.key.to_string();
     let mut elaborator = Elaborator::new(context, &key, given.scope);
     let value = elaborator.elaborate(&closure.body)?;

@@ -32,7 +32,7 @@ pub(super) struct Forces<'g> {
 }
 
 /// The leaves of an input, and how they nest.
-type Input<'g> = (Structure, Vec<Configuration<'g>>);
+pub(super) type Input<'g> = (Structure, Vec<Configuration<'g>>);
 
 /// Reads both closures; `None` if one has an error, which was reported.
 pub(super) fn read<'g>(
@@ -134,7 +134,7 @@ fn unnamed_velocity<'g>(context: &Context<'_, 'g>, system: &System<'_, '_, 'g>) 
 }
 
 /// The leaves of a typed argument: spaces of vectors.
-fn read_input<'g>(
+pub(super) fn read_input<'g>(
     context: &mut Context<'_, 'g>,
     system: &System<'_, '_, 'g>,
     argument: &Argument,
@@ -155,6 +155,12 @@ fn read_input<'g>(
     Some((product.structure, leaves))
 }
 
+/// What an input is in a closure.
+pub(super) fn value_of<'g>((structure, leaves): &Input<'g>) -> Value<'g> {
+    let values: Vec<_> = leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
+    Value::nested(structure, &values)
+}
+
 struct Elaborated<'a, 'g> {
     taken: Taken,
     velocity: Option<Value<'g>>,
@@ -168,10 +174,7 @@ fn elaborate<'g>(
     closure: &Closure,
     given: Elaborated<'_, 'g>,
 ) -> Option<Value<'g>> {
-    let input = given.input.map(|(structure, leaves)| {
-        let values: Vec<_> = leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
-        Value::nested(structure, &values)
-    });
+    let input = given.input.map(value_of);
     let (taken, diagnostics) = (&given.taken, &mut context.diagnostics);
     let mut scope = system.arguments.force_scope(closure, taken, given.velocity, input, diagnostics);
     let groups: Vec<Group> = system.factors.iter().map(|factor| factor.group).collect();
@@ -181,7 +184,7 @@ fn elaborate<'g>(
 }
 
 /// The components of each factor: a vector, or a tuple with a vector for each block of its algebra, `(torque, force)` on SE(3).
-fn components<'g>(
+pub(super) fn components<'g>(
     context: &mut Context<'_, 'g>,
     system: &System<'_, '_, 'g>,
     closure: &Closure,
@@ -190,8 +193,12 @@ fn components<'g>(
     let mut parts = Vec::new();
     let Err((found, needed)) = flatten(context, system, value, system.element, &mut parts) else { return Some(parts) };
     let text = shortened(&spell(&closure.body));
-    let error = Diagnostic::new(tail(&closure.body).0, format!("the force gives {found}, but it has to give {needed}"))
-        .note(format!("`{text}` is a covector of the group: it has the components of the momentum"));
+    let (gives, has, is) = match closure.key == "controls" {
+        true => ("the controls give", "they have", "a velocity in the group: it has the components of its Lie algebra"),
+        false => ("the force gives", "it has", "a covector of the group: it has the components of the momentum"),
+    };
+    let error = Diagnostic::new(tail(&closure.body).0, format!("{gives} {found}, but {has} to give {needed}"))
+        .note(format!("`{text}` is {is}"));
     context.diagnostics.push(error);
     None
 }

@@ -5,6 +5,7 @@ mod action_laws;
 mod arguments;
 mod chart;
 mod closures;
+mod control;
 mod declared;
 mod elaborate;
 mod fields;
@@ -46,7 +47,7 @@ use self::groups::Names;
 use self::symmetries::System;
 use self::typed::Typed;
 use crate::diagnostic::Diagnostics;
-use crate::parse::{Declaration, Potential};
+use crate::parse::{Declaration, Pattern, Potential};
 
 /// The model of a declaration.
 pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
@@ -66,7 +67,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let typed = Typed::new(graph, types, groups, spaces, &mut diagnostics);
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
-    let arguments = typed.arguments(types, step_size, time);
+    let arguments = typed.arguments(types, input(declaration), (step_size, time));
     let mut context = Context { graph, fields: &fields, constants: Vec::new(), diagnostics };
     let formulas = Formulas::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, mut diagnostics, .. } = context;
@@ -100,6 +101,8 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         force: formulas.forces.force,
         inputs: formulas.forces.inputs,
         input: formulas.forces.input,
+        control: formulas.control,
+        endpoint: formulas.endpoint,
         symmetries: formulas.symmetries,
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
@@ -117,6 +120,8 @@ struct Formulas<'g> {
     potential: Option<Expr<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
     forces: Forces<'g>,
+    control: Option<Control<'g>>,
+    endpoint: Option<Expr<'g>>,
 }
 
 impl<'g> Formulas<'g> {
@@ -143,9 +148,43 @@ impl<'g> Formulas<'g> {
         let symmetries = symmetries::read(context, &system, &declaration.symmetries);
         forces::check_dials(declaration, &mut context.diagnostics);
         let forced = forces::System { arguments, names, element, factors, configuration, configurations };
-        let forces = forces::read(context, &forced, declaration);
-        Some(Formulas { action, laws: laws?, kinetic: kinetic?, potential, symmetries, forces: forces? })
+        let endpoint = declaration.endpoint.as_ref().map(|closure| control::endpoint(context, arguments, closure));
+        let endpoint = endpoint.map_or(Some(None), |endpoint| endpoint.map(Some));
+        let mut forces = forces::read(context, &forced, declaration);
+        let steered = control::motion(context, &forced, declaration);
+        let kinetic = match steered {
+            Some((kinetic, (input, inputs))) => {
+                forces = Some(Forces { force: None, inputs, input });
+                Some(kinetic)
+            }
+            // what moves has an error, and without it nothing is known of the input
+            None if declaration.kinetic.is_steered() => return None,
+            None => kinetic,
+        };
+        let forces = forces?;
+        let input = (forces.input.clone(), forces.inputs.clone());
+        let control = declaration.control.as_ref().map(|control| control::read(context, arguments, control, &input));
+        let control = control.map_or(Some(None), |control| control.map(Some))?;
+        Some(Formulas {
+            action,
+            laws: laws?,
+            kinetic: kinetic?,
+            potential,
+            symmetries,
+            forces,
+            control,
+            endpoint: endpoint?,
+        })
     }
+}
+
+/// What the closure that introduces the input calls it.
+fn input(declaration: &Declaration) -> Option<&Pattern> {
+    let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
+    let mut closures = steered.chain(&declaration.force).chain(&declaration.force_on);
+    closures
+        .find_map(|closure| closure.arguments.last().filter(|argument| argument.ty.is_some()))
+        .map(|argument| &argument.pattern)
 }
 
 /// The user's struct, as generated code has to name it.

@@ -39,7 +39,8 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
     let groups = spaces::read_groups(types.group, names, &mut ignored)?;
     let spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
-    let forces = declaration.force.iter().chain(&declaration.force_on);
+    let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
+    let forces = steered.chain(&declaration.force).chain(&declaration.force_on);
     let input = forces.filter_map(|closure| closure.arguments.last()?.ty.as_ref()).next();
     let input = input.and_then(|ty| spaces::read_spaces(ty, names, &mut ignored));
     Some(Outline {

@@ -27,9 +27,14 @@ impl fmt::Display for Model<'_> {
             Kinetic::Lagrangian { energy, name, discretization, .. } => {
                 writeln!(f, "  lagrangian {energy} of {name}, by {discretization}")?;
             }
+            Kinetic::Controls { velocity, discretization } => {
+                velocity.iter().try_for_each(|part| writeln!(f, "  controls   {part}, by {discretization}"))?;
+            }
+            Kinetic::Dynamics(next) => next.iter().try_for_each(|part| writeln!(f, "  dynamics   {part}"))?,
         }
         match self.potential {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
+            None if self.is_steered() => {}
             None => writeln!(f, "  potential  none")?,
         }
         if let Some(force) = &self.force {
@@ -37,6 +42,11 @@ impl fmt::Display for Model<'_> {
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
         self.inputs.iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
+        if let Some(control) = &self.control {
+            writeln!(f, "  price      {}", control.price)?;
+            control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
+        }
+        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))?;
         self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;
@@ -44,7 +54,10 @@ impl fmt::Display for Model<'_> {
         if let Some(chart) = self.chart {
             writeln!(f, "  chart      {chart}")?;
         }
-        writeln!(f, "  order      {}", self.order)
+        match self.is_steered() {
+            true => Ok(()),
+            false => writeln!(f, "  order      {}", self.order),
+        }
     }
 }
 

@@ -17,8 +17,10 @@ pub(super) enum Slot {
     Velocity,
     /// The element of an offered symmetry, which has a type.
     Offered,
-    /// The input of a force, which has a type.
+    /// The input of a force or of controls, which has a type.
     Input,
+    /// The same input where it is priced and bounded.
+    Chosen,
 }
 
 /// The arguments of a cost, in order.
@@ -29,6 +31,14 @@ pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
 /// The arguments of a force, in order.
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
+/// The arguments of controls, in order.
+pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
+/// The arguments of dynamics, in order.
+pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
+/// The arguments of the price of a step, in order.
+pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
+/// The arguments of bounds, in order.
+pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
 /// The arguments of an offered symmetry, in order.
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
@@ -42,6 +52,7 @@ impl<'d> Arguments<'d, '_> {
             Slot::Element => (self.element.spell(), "the group element"),
             Slot::Velocity => ("omega".into(), "the velocity a new name"),
             Slot::Input => ("u: Vector3".into(), "the input, a new name and its type"),
+            Slot::Chosen => (self.input.map_or("u".into(), Pattern::spell), "the input"),
             Slot::Offered => ("S: SO<3>".into(), "an element of the symmetry, a new name and its group"),
         }
     }
@@ -51,6 +62,7 @@ impl<'d> Arguments<'d, '_> {
         match slot {
             Slot::Configuration => Some(self.configuration),
             Slot::Element => Some(self.element),
+            Slot::Chosen => self.input,
             _ => None,
         }
     }
@@ -101,7 +113,7 @@ impl<'d> Arguments<'d, '_> {
 
     /// Whether a pattern has a meaning that this closure has no slot for.
     fn is_foreign(&self, pattern: &Pattern) -> bool {
-        self.find(pattern, COST).is_some()
+        self.find(pattern, COST).or_else(|| self.find(pattern, BOUNDS)).is_some()
     }
 
     fn check_argument(

@@ -33,7 +33,12 @@ impl<'g> Typed<'g> {
     }
 
     /// The arguments of all closures.
-    pub fn arguments<'d>(&self, typed: TypedArguments<'d>, step_size: Expr<'g>, time: Expr<'g>) -> Arguments<'d, 'g> {
+    pub fn arguments<'d>(
+        &self,
+        typed: TypedArguments<'d>,
+        input: Option<&'d Pattern>,
+        (step_size, time): (Expr<'g>, Expr<'g>),
+    ) -> Arguments<'d, 'g> {
         let factor = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
         let point = |leaf: &Configuration<'g>| Value::leaf(leaf.symbol, leaf.is_quaternion);
         let nested = |structure: &Structure, leaves: Vec<Value<'g>>| Value::nested(structure, &leaves);
@@ -44,6 +49,7 @@ impl<'g> Typed<'g> {
             configuration_value: (self.configurations.as_deref())
                 .map(|all| nested(&self.configuration, all.iter().map(point).collect())),
             members: members(self.factors.as_deref(), self.configurations.as_deref()),
+            input,
             step_size,
             time,
         }

@@ -42,6 +42,10 @@ pub struct Model<'g> {
     pub inputs: Vec<Configuration<'g>>,
     /// How the leaves of the input nest.
     pub input: Structure,
+    /// What the inputs are chosen by; `None` where nothing is chosen.
+    pub control: Option<Control<'g>>,
+    /// φ(t, q), the price of the end; `None` if there is none.
+    pub endpoint: Option<Expr<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// What becomes of motions of the group that move no configuration.
@@ -57,6 +61,21 @@ pub struct Model<'g> {
 }
 
 impl Model<'_> {
+    /// Whether discrete Lagrangians are differentiated twice.
+    pub fn has_variations(&self) -> bool {
+        self.emit.variations() || (self.control.is_some() && !self.is_steered())
+    }
+
+    /// Whether inputs move the configuration, without any mechanics.
+    pub fn is_steered(&self) -> bool {
+        matches!(self.kinetic, Kinetic::Controls { .. } | Kinetic::Dynamics(_))
+    }
+
+    /// The number of components of all factors.
+    pub fn dimension(&self) -> usize {
+        self.offset(self.factors.len())
+    }
+
     /// The index of a factor's first component among those of all.
     pub fn offset(&self, k: usize) -> usize {
         self.factors[..k].iter().map(|factor| factor.group.dimension()).sum()
@@ -181,8 +200,17 @@ pub enum Space {
     Group(Group),
 }
 
-/// The kinetic part of a step's discrete Lagrangian.
+/// What moves the configuration: a kinetic part of the discrete Lagrangian, or inputs.
 pub enum Kinetic<'g> {
+    /// F = τ(h ξ(t, q, u)).
+    Controls {
+        /// ξ in the components of each factor.
+        velocity: Vec<Expr<'g>>,
+        /// How F is made from ξ: by the exponential or Cayley's map.
+        discretization: Discretization,
+    },
+    /// q⁺ = f(t, h, q, u), for each leaf of the configuration: translations by f − q.
+    Dynamics(Vec<Expr<'g>>),
     /// K(t, h, q, F) as declared.
     Cost(Expr<'g>),
     /// To be made from a Lagrangian.
@@ -208,6 +236,24 @@ pub struct Force<'g> {
     pub velocities: Vec<Expr<'g>>,
     /// The closures' bodies as written.
     pub written: Vec<Written>,
+}
+
+/// What inputs are chosen by.
+pub struct Control<'g> {
+    /// ℓ(t, h, q, u), the price of a step.
+    pub price: Expr<'g>,
+    /// What has to hold.
+    pub bounds: Vec<Bound<'g>>,
+    /// The price as written.
+    pub written: Written,
+}
+
+/// a(t, q, u) ≤ 0.
+pub struct Bound<'g> {
+    /// a.
+    pub value: Expr<'g>,
+    /// As it was written, `u.x <= 1`.
+    pub text: String,
 }
 
 /// A symmetry that the user offers: an action of a group on configurations and group elements together, with

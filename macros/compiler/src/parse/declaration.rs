@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::keys::{Dials, Keys};
-use super::{Closure, DeclaredGroup, Field, Opaque};
+use super::{Closure, Control, DeclaredGroup, Field, Opaque, control};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -30,6 +30,10 @@ pub struct Declaration {
     pub force: Option<Closure>,
     /// The force as a covector of the configuration.
     pub force_on: Option<Closure>,
+    /// What the choice of inputs costs and is bound by; `None` where nothing is chosen.
+    pub control: Option<Control>,
+    /// The price of the end.
+    pub endpoint: Option<Closure>,
     /// The symmetries that the user offers.
     pub symmetries: Vec<Closure>,
     /// Everything else.
@@ -63,9 +67,13 @@ impl Potential {
     }
 }
 
-/// The key that gives the kinetic energy.
+/// The key that says what moves the configuration: a kinetic energy, or inputs.
 #[derive(Clone, Debug)]
 pub enum Kinetic {
+    /// `controls = …`, the velocity that inputs give.
+    Controls(Closure),
+    /// `dynamics = …`, the next configuration.
+    Dynamics(Closure),
     /// `cost = …`, the kinetic part of the discrete Lagrangian.
     Cost(Closure),
     /// `lagrangian = …`, to be discretised.
@@ -78,15 +86,24 @@ impl Declaration {
         let potential = self.potential.as_ref().and_then(Potential::closure);
         let forces = self.force.iter().chain(&self.force_on);
         let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
-        energies.into_iter().flatten().chain(forces).chain(&self.symmetries)
+        let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
+        energies.into_iter().chain(control).flatten().chain(forces).chain(&self.endpoint).chain(&self.symmetries)
     }
 }
 
 impl Kinetic {
+    /// Whether inputs move the configuration.
+    pub fn is_steered(&self) -> bool {
+        matches!(self, Kinetic::Controls(_) | Kinetic::Dynamics(_))
+    }
+
     /// The closure.
     pub fn closure(&self) -> &Closure {
         match self {
-            Kinetic::Cost(closure) | Kinetic::Lagrangian(closure) => closure,
+            Kinetic::Cost(closure)
+            | Kinetic::Lagrangian(closure)
+            | Kinetic::Controls(closure)
+            | Kinetic::Dynamics(closure) => closure,
         }
     }
 }
@@ -98,12 +115,14 @@ pub(super) fn assemble(
     fields: Vec<Field>,
     mut diagnostics: Diagnostics,
 ) -> Result<Declaration, Diagnostics> {
+    let steered = control::read(&mut keys, &mut diagnostics);
     // a closure that was given and could not be read has its own error
     let given = |name: &str| keys.was_given(name);
     let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
-    if !given("action") && !nothing_readable {
+    let moved_by_inputs = given("controls") || given("dynamics");
+    if !given("action") && !given("dynamics") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));
-    } else if !nothing_readable && !given("cost") && !given("lagrangian") {
+    } else if !nothing_readable && !moved_by_inputs && !given("cost") && !given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
     let kinetic = match (keys.cost.take(), keys.lagrangian.take()) {
@@ -114,13 +133,18 @@ pub(super) fn assemble(
         (Some(cost), None) => Some(Kinetic::Cost(cost)),
         (None, lagrangian) => lagrangian.map(Kinetic::Lagrangian),
     };
+    let (action, kinetic, control) = match steered {
+        Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
+        None => (keys.action.take(), kinetic, None),
+    };
+    control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
     if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
         diagnostics.push(
             Diagnostic::new(discretization.span, "a cost is discrete already, there is nothing to discretise")
                 .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
         );
     }
-    let Keys { action, potential, force, force_on, symmetries, groups, dials, .. } = keys;
+    let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, .. } = keys;
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
             ident: input.ident.clone(),
@@ -133,6 +157,8 @@ pub(super) fn assemble(
             potential,
             force,
             force_on,
+            control,
+            endpoint,
             symmetries,
             dials,
         }),

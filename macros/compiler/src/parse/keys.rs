@@ -35,7 +35,7 @@ pub(super) enum Kind {
 }
 
 /// All keys.
-pub(super) const KEYS: [(&str, Kind); 22] = [
+pub(super) const KEYS: [(&str, Kind); 23] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
@@ -43,6 +43,11 @@ pub(super) const KEYS: [(&str, Kind); 22] = [
     ("symmetry", Kind::Symmetry),
     ("force", Kind::Closure("|omega, torque: Vector3| torque - self.damping * omega")),
     ("force_on", Kind::Closure("|x, thrust: Vector3| thrust")),
+    ("controls", Kind::Closure("|u: Vector2| vector![u.x, u.y, 0]")),
+    ("dynamics", Kind::Closure("|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]")),
+    ("effort", Kind::Closure("|h, torque| h * torque.norm_squared() / 2")),
+    ("bounds", Kind::Closure("|u| [u.x <= 1, -1 <= u.x]")),
+    ("endpoint", Kind::Closure("|q| …")),
     ("isotropy", Kind::Isotropy),
     ("order", Kind::Order),
     ("discretization", Kind::Discretization),
@@ -53,10 +58,6 @@ pub(super) const KEYS: [(&str, Kind); 22] = [
     ("tolerance", Kind::Later),
     ("constraint", Kind::Later),
     ("discrete_constraint", Kind::Later),
-    ("controls", Kind::Later),
-    ("bounds", Kind::Later),
-    ("endpoint", Kind::Later),
-    ("dynamics", Kind::Later),
     ("space", Kind::Later),
 ];
 
@@ -116,24 +117,34 @@ pub(super) struct Keys {
     pub potential: Option<Potential>,
     pub force: Option<Closure>,
     pub force_on: Option<Closure>,
+    pub controls: Option<Closure>,
+    pub dynamics: Option<Closure>,
+    pub effort: Option<Closure>,
+    pub bounds: Option<Closure>,
+    pub endpoint: Option<Closure>,
     pub symmetries: Vec<Closure>,
     pub groups: Vec<DeclaredGroup>,
     pub dials: Dials,
-    given: Vec<String>,
+    given: Vec<(String, Span)>,
 }
 
 impl Keys {
     /// Notes that a key was given; `false` if it was given before.
     pub fn give(&mut self, key: &Ident) -> bool {
         let name = key.to_string();
-        let first = !self.given.contains(&name);
-        self.given.push(name);
+        let first = !self.was_given(&name);
+        self.given.push((name, key.span()));
         first
     }
 
     /// Whether a key was given, readable or not.
     pub fn was_given(&self, name: &str) -> bool {
-        self.given.iter().any(|given| given == name)
+        self.place_of(name).is_some()
+    }
+
+    /// Where a key was given.
+    pub fn place_of(&self, name: &str) -> Option<Span> {
+        self.given.iter().find(|(given, _)| given == name).map(|(_, span)| *span)
     }
 
     /// Whether no key was given.

@@ -3,6 +3,7 @@
 mod attribute;
 mod bounds;
 mod closure;
+mod control;
 mod declaration;
 mod dials;
 mod field;
@@ -14,6 +15,7 @@ mod spelling;
 mod values;
 
 pub use closure::{Argument, Closure, Pattern};
+pub use control::Control;
 pub use declaration::{Declaration, Kinetic, Potential};
 pub use dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Promise};
 pub use field::Field;

@@ -21,6 +21,8 @@ impl fmt::Display for Declaration {
         match &self.kinetic {
             Kinetic::Cost(closure) => writeln!(f, "  cost       = {}", closure.spell())?,
             Kinetic::Lagrangian(closure) => writeln!(f, "  lagrangian = {}", closure.spell())?,
+            Kinetic::Controls(closure) => writeln!(f, "  controls   = {}", closure.spell())?,
+            Kinetic::Dynamics(closure) => writeln!(f, "  dynamics   = {}", closure.spell())?,
         }
         match &self.potential {
             Some(Potential::Closure(closure)) => writeln!(f, "  potential  = {}", closure.spell())?,
@@ -29,6 +31,14 @@ impl fmt::Display for Declaration {
         }
         for force in self.force.iter().chain(&self.force_on) {
             writeln!(f, "  {:<10} = {}", force.key.to_string(), force.spell())?;
+        }
+        if let Some(control) = &self.control {
+            for closure in [&control.price].into_iter().chain(&control.bounds) {
+                writeln!(f, "  {:<10} = {}", closure.key.to_string(), closure.spell())?;
+            }
+        }
+        if let Some(endpoint) = &self.endpoint {
+            writeln!(f, "  endpoint   = {}", endpoint.spell())?;
         }
         for symmetry in &self.symmetries {
             writeln!(f, "  symmetry   = {}", symmetry.spell())?;

@@ -49,6 +49,11 @@ pub(super) fn read(
                 "cost" => &mut keys.cost,
                 "force" => &mut keys.force,
                 "force_on" => &mut keys.force_on,
+                "controls" => &mut keys.controls,
+                "dynamics" => &mut keys.dynamics,
+                "effort" => &mut keys.effort,
+                "bounds" => &mut keys.bounds,
+                "endpoint" => &mut keys.endpoint,
                 _ => &mut keys.lagrangian,
             };
             *place = closure;

@@ -55,6 +55,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
             Value::Quaternion(graph.symbol("Q", Shape::vector(4), Role::Configuration(4), Property::General)),
         ])),
         members: Vec::new(),
+        input: None,
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
     };

@@ -1,0 +1,61 @@
+//! The Cayley coordinates of a step, Z = (F − I)(F + I)⁻¹ = Σ z_i E_i, as symbols with their own law of motion.
+//!
+//! Lagrangians that are discretised by Cayley's map are functions of z, and z moves by polynomials: along δF = ηF by
+//! δZ = ½ (I − Z) η (I + Z), along δF = Fη by δZ = ½ (I + Z) η (I − Z). Derivatives of what is written with z hold no inverse.
+
+use clebsch_symbolic::{Expr, Group, Property, Role, Shape};
+
+use crate::model::{Factor, Model};
+
+/// The symbol z of a factor.
+pub(crate) fn symbol<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
+    let factor = &model.factors[k];
+    let shape = Shape::vector(factor.group.dimension());
+    model.graph.symbol(&format!("cay⁻¹({})", factor.name), shape, Role::Cayley(k), Property::General)
+}
+
+/// Whether (F − I)(F + I)⁻¹ is in the Lie algebra, as a matrix.
+fn is_rational(model: &Model<'_>, group: Group) -> bool {
+    !group.is_translation() && group != Group::UnitQuaternions && group.has_cayley_chart(model.graph)
+}
+
+/// (F − I)(F + I)⁻¹ with F = I + D, D(2I + D)⁻¹, in coordinates.
+pub(crate) fn of_increment<'g>(model: &Model<'g>, k: usize, increment: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
+    let group = model.factors[k].group;
+    if !is_rational(model, group) {
+        return None;
+    }
+    let twice = 2 * group.identity(model.graph);
+    Some((symbol(model, k), group.projected_coordinates(increment * (increment + twice).inverse())))
+}
+
+/// The replacements of the components of (F − I)(F + I)⁻¹, block by block, by those of Z.
+pub(super) fn replacements<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let rational = model.factors.iter().enumerate().filter(|(_, factor)| is_rational(model, factor.group));
+    rational.flat_map(|(k, factor)| of_factor(model, k, factor)).collect()
+}
+
+fn of_factor<'g>(model: &Model<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let (group, f, z) = (factor.group, factor.symbol, symbol(model, k));
+    let identity = group.identity(model.graph);
+    let whole = (f - identity) * (f + identity).inverse();
+    let block = |block: &clebsch_symbolic::Block| {
+        let part = whole.block(block.row, block.column, block.algebra.matrix_shape()).components(block.algebra);
+        let coordinates = z.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
+        (part, coordinates.wedge(block.algebra).components(block.algebra))
+    };
+    model.graph.blocks(group).iter().map(block).collect()
+}
+
+/// δz along δF = ηF, or along δF = Fη.
+pub(super) fn motion<'g>(model: &Model<'g>, k: usize, eta: Expr<'g>, from_left: bool) -> Option<(Expr<'g>, Expr<'g>)> {
+    let group = model.factors[k].group;
+    if !is_rational(model, group) {
+        return None;
+    }
+    let (z, one) = (symbol(model, k), group.identity(model.graph));
+    let (plus, minus) = (one + group.wedge(z), one - group.wedge(z));
+    let wedge = group.wedge(eta);
+    let moved = if from_left { minus * wedge * plus } else { plus * wedge * minus };
+    Some((z, group.projected_coordinates(moved.expand()) / 2))
+}

@@ -1,0 +1,336 @@
+//! What the choice of inputs needs: the step that inputs make with its derivatives, and price, bounds and the price of the end with theirs.
+//!
+//! Small changes of a configuration are motions η, q ↦ Φ_{exp η}(q). A step by F(t, h, q, u) takes them to η′ with
+//! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
+//! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
+
+use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape};
+
+use super::{Symbols, Variation, action};
+use crate::model::{Discretization, Factor, Kinetic, Model, Side};
+
+/// The direction in which symbols move.
+pub(super) type Direction<'g> = Vec<(Expr<'g>, Expr<'g>)>;
+
+/// What the inputs are chosen with.
+pub struct Steering<'g> {
+    /// The step that inputs make by themselves; `None` where they are those of forces.
+    pub step: Option<InputStep<'g>>,
+    /// ℓ(t, h, q, u).
+    pub price: Jet<'g>,
+    /// The derivatives of ℓ with respect to h and t.
+    pub price_of_time: [Expr<'g>; 2],
+    /// a(t, q, u), one after the other.
+    pub bounds: Vec<Jet<'g>>,
+    /// The weights of the bounds.
+    pub weights: Expr<'g>,
+    /// What separates q from q⁺: J(q, q⁺ − q).
+    pub approach: Vec<Expr<'g>>,
+}
+
+/// The step F(t, h, q, u), as a function of F too where it stands for its value.
+pub struct InputStep<'g> {
+    /// F − I for each factor, F itself for translations.
+    pub increment: Vec<Expr<'g>>,
+    /// η′ along each motion η of q.
+    pub by_place: Vec<Expr<'g>>,
+    /// η′ along each input.
+    pub by_input: Vec<Expr<'g>>,
+    /// The second derivatives of λ·η′ along all of them, λ standing for momenta.
+    pub curvature: Vec<Vec<Expr<'g>>>,
+    /// λ·η′ along h and along t.
+    pub by_time: [Expr<'g>; 2],
+}
+
+/// A scalar with its derivatives along the directions of a list.
+pub struct Jet<'g> {
+    /// f.
+    pub value: Expr<'g>,
+    /// ∂_i f.
+    pub slope: Vec<Expr<'g>>,
+    /// ½ (∂_i ∂_j + ∂_j ∂_i) f, along the motions of a group the second derivative along exponentials.
+    pub curvature: Vec<Vec<Expr<'g>>>,
+}
+
+impl<'g> Jet<'g> {
+    /// The derivatives of a scalar: gradients with respect to the symbols that move, each gradient differentiated along each direction
+    /// once, and paired with the velocities of all.
+    pub(super) fn of(value: Expr<'g>, directions: &[Direction<'g>]) -> Jet<'g> {
+        let mut gradients: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+        for (symbol, _) in directions.iter().flatten() {
+            if value.depends_on(*symbol) && !gradients.iter().any(|(known, _)| known == symbol) {
+                gradients.push((*symbol, value.gradient(*symbol)));
+            }
+        }
+        let zero = value.graph().integer(0);
+        let paired = |direction: &Direction<'g>, other: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>| {
+            let moving = direction.iter().filter_map(|(symbol, velocity)| {
+                let (_, gradient) = gradients.iter().find(|(known, _)| known == symbol)?;
+                Some(other(*gradient, *velocity))
+            });
+            moving.fold(zero, |sum, term| sum + term)
+        };
+        let slope = directions.iter().map(|direction| paired(direction, &|gradient, velocity| gradient.dot(velocity)));
+        // ∂_j ∂_i f
+        let second = |i: usize, j: usize| {
+            paired(&directions[i], &|gradient, velocity| {
+                gradient.differential(&directions[j]).dot(velocity)
+                    + gradient.dot(velocity.differential(&directions[j]))
+            })
+        };
+        let curvature = (0..directions.len()).map(|i| {
+            let entry = |j: usize| if i == j { second(i, i) } else { (second(i, j) + second(j, i)) / 2 };
+            (0..=i).map(entry).collect()
+        });
+        Jet { value, curvature: curvature.collect(), slope: slope.collect() }
+    }
+}
+
+/// Each element of the basis as a motion of q.
+pub(super) fn motions<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Direction<'g>> {
+    let motion = |element: &Direction<'g>| {
+        let leaves = model.configurations.iter().zip(generator);
+        leaves.map(|(leaf, velocity)| (leaf.symbol, velocity.substitute(element))).collect()
+    };
+    symbols.basis().iter().map(motion).collect()
+}
+
+/// Each entry of the input.
+pub(super) fn inputs<'g>(model: &Model<'g>) -> Vec<Direction<'g>> {
+    let entries = |symbol: Expr<'g>| {
+        symbol.shape().positions().map(move |(i, j)| vec![(symbol, symbol.graph().unit(symbol.shape(), i, j))])
+    };
+    model.inputs.iter().flat_map(|leaf| entries(leaf.symbol)).collect()
+}
+
+/// Everything that a declared choice of inputs needs.
+pub(super) fn steering<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    generator: &[Expr<'g>],
+    momentum_map: &[Expr<'g>],
+) -> Option<Steering<'g>> {
+    let control = model.control.as_ref()?;
+    let motions = motions(model, symbols, generator);
+    let all = [motions, inputs(model)].concat();
+    let along = |value: Expr<'g>, symbol: Expr<'g>| value.differential(&[(symbol, model.graph.integer(1))]);
+    let by_time = |value: Expr<'g>| [along(value, model.step_size), along(value, model.time)];
+    let count = Shape::vector(control.bounds.len().max(1));
+    Some(Steering {
+        step: element(model, symbols).map(|element| step(model, symbols, element, &all)),
+        price: Jet::of(control.price, &all),
+        price_of_time: by_time(control.price),
+        bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
+        weights: model.graph.symbol("z", count, Role::Weight, Property::General),
+        approach: approach(model, symbols, momentum_map),
+    })
+}
+
+/// The price of the end.
+pub struct Endpoint<'g> {
+    /// φ(t, q).
+    pub price: Jet<'g>,
+    /// ∂φ/∂t.
+    pub by_time: Expr<'g>,
+}
+
+/// The price of the end with its derivatives.
+pub(super) fn endpoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Option<Endpoint<'g>> {
+    let price = model.endpoint?;
+    let by_time = price.differential(&[(model.time, model.graph.integer(1))]);
+    Some(Endpoint { price: Jet::of(price, &motions(model, symbols, generator)), by_time })
+}
+
+/// J(q, q⁺ − q).
+fn approach<'g>(model: &Model<'g>, symbols: &Symbols<'g>, momentum_map: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let leaves = model.configurations.iter().zip(symbols.covectors.iter().zip(&symbols.images));
+    let gaps: Vec<_> = leaves.map(|(leaf, (p, image))| (*p, *image - leaf.symbol)).collect();
+    momentum_map.iter().map(|momentum| momentum.substitute(&gaps)).collect()
+}
+
+/// F − I for each factor, made of inputs.
+fn element<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Option<Vec<Expr<'g>>> {
+    let (velocity, discretization) = match &model.kinetic {
+        Kinetic::Controls { velocity, discretization } => (velocity, *discretization),
+        Kinetic::Dynamics(next) => {
+            let leaves = model.configurations.iter().zip(next);
+            return Some(leaves.map(|(leaf, next)| *next - leaf.symbol).collect());
+        }
+        Kinetic::Cost(_) | Kinetic::Lagrangian { .. } => return None,
+    };
+    let factors = model.factors.iter().zip(velocity).enumerate();
+    Some(
+        factors
+            .map(|(k, (factor, xi))| {
+                let chart = match discretization {
+                    _ if factor.group.is_translation() => Chart::Identity,
+                    Discretization::Exponential => Chart::Exponential,
+                    _ => Chart::Cayley,
+                };
+                let blocks = model.graph.blocks(factor.group);
+                let of_factor = blocks.iter().map(|block| {
+                    let (slope, parts) = chart.slope_at_identity(block);
+                    model.graph.rational(slope, parts)
+                        * model.step_size
+                        * xi.block(block.offset, 0, Shape::vector(block.algebra.dimension()))
+                });
+                let coordinates: Vec<Expr<'g>> = of_factor.collect();
+                debug_assert_eq!(coordinates.len(), symbols.coordinates(k).len());
+                let (numerator, denominator) = chart.increment(factor.group, &coordinates);
+                numerator / denominator
+            })
+            .collect(),
+    )
+}
+
+/// b along a direction, as an element of the Lie algebra: F⁻¹δF for a right action, δF F⁻¹ for a left one.
+fn trivialised<'g>(factor: &Factor<'g>, change: Expr<'g>) -> Expr<'g> {
+    let (group, f) = (factor.group, factor.symbol);
+    match (group, factor.side) {
+        (Group::Translation(_), _) => change,
+        (_, Side::Right) => group.compose(group.inverse(f), change),
+        (_, Side::Left) => group.compose(change, group.inverse(f)),
+    }
+}
+
+fn coordinates<'g>(group: Group, element: Expr<'g>) -> Expr<'g> {
+    if group.is_translation() { element } else { group.projected_coordinates(element) }
+}
+
+fn step<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    increment: Vec<Expr<'g>>,
+    directions: &[Direction<'g>],
+) -> InputStep<'g> {
+    let dimension = model.dimension();
+    let parts: Vec<Factored<'_, 'g>> = model
+        .factors
+        .iter()
+        .enumerate()
+        .map(|(k, factor)| {
+            let motions = symbols.basis();
+            let adjoint = |element: &Direction<'g>| action::adjoint_of(factor, symbols.algebra[k]).substitute(element);
+            Factored {
+                factor,
+                costate: symbols.momenta[k],
+                moved: motions.iter().map(adjoint).collect(),
+                changes: directions.iter().map(|direction| increment[k].differential(direction)).collect(),
+            }
+        })
+        .collect();
+    let column = |i: usize| {
+        let of_factor = parts.iter().enumerate().map(|(k, part)| {
+            let whole = coordinates(part.factor.group, trivialised(part.factor, part.changes[i]));
+            let whole = if i < dimension { part.moved[i] + whole } else { whole };
+            whole.embed(Shape::vector(dimension), model.offset(k), 0)
+        });
+        of_factor.fold(model.graph.zero(Shape::vector(dimension)), |sum, part| sum + part)
+    };
+    let second = |i: usize, j: usize| {
+        let of_factor = parts.iter().map(|part| part.curvature(directions, i, j));
+        of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
+    };
+    let one = model.graph.integer(1);
+    let by_time = [model.step_size, model.time].map(|symbol| {
+        let of_factor = parts.iter().enumerate().map(|(k, part)| {
+            let change = increment[k].differential(&[(symbol, one)]);
+            part.costate.dot(coordinates(part.factor.group, trivialised(part.factor, change)))
+        });
+        of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
+    });
+    InputStep {
+        by_place: (0..dimension).map(column).collect(),
+        by_input: (dimension..directions.len()).map(column).collect(),
+        curvature: (0..directions.len()).map(|i| (0..=i).map(|j| second(i, j)).collect()).collect(),
+        by_time,
+        increment,
+    }
+}
+
+/// A factor of a step with what moves it.
+struct Factored<'a, 'g> {
+    factor: &'a Factor<'g>,
+    costate: Expr<'g>,
+    /// Ad η for each motion.
+    moved: Vec<Expr<'g>>,
+    /// δF along each direction.
+    changes: Vec<Expr<'g>>,
+}
+
+impl<'g> Factored<'_, 'g> {
+    /// λ · (b″ along two directions, with the brackets).
+    fn curvature(&self, directions: &[Direction<'g>], i: usize, j: usize) -> Expr<'g> {
+        let group = self.factor.group;
+        let second = (self.changes[i].differential(&directions[j]) + self.changes[j].differential(&directions[i])) / 2;
+        let mut sum = coordinates(group, trivialised(self.factor, second));
+        if !group.is_translation() {
+            let [a, b] = [i, j].map(|i| trivialised(self.factor, self.changes[i]));
+            let product = (group.compose(a, b) + group.compose(b, a)) / 2;
+            sum = sum - coordinates(group, product) + self.bracket(i, b) + self.bracket(j, a);
+        }
+        self.costate.dot(sum)
+    }
+
+    /// ½ [Ad η, b] for a right action, ½ [b, Ad η] for a left one; 0 along an input.
+    fn bracket(&self, i: usize, b: Expr<'g>) -> Expr<'g> {
+        let group = self.factor.group;
+        let Some(moved) = self.moved.get(i) else { return self.costate.graph().zero(self.costate.shape()) };
+        let bracket = group.ad(*moved) * coordinates(group, b) / 2;
+        if self.factor.side == Side::Right { bracket } else { -bracket }
+    }
+}
+
+/// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along an edge and the input, and what the input does to both ends.
+///
+/// An edge changes by the motions η of q that leave F as it is, and by the motions ζ of q⁺ alone: exp η′ = exp(Ad η) exp ζ for a right action
+/// and exp ζ exp(Ad η) for a left one, so that ± ½ [Ad η, ζ] joins η′ to second order.
+pub struct Bend<'g> {
+    /// Along η, ζ and the inputs.
+    pub curvature: Vec<Vec<Expr<'g>>>,
+    /// ± ½ μ·[E_i, E_j], with the sign of the side of each factor.
+    pub bracket: Vec<Vec<Expr<'g>>>,
+    /// ∂F⁻ℓd along each input.
+    pub before_by_input: Vec<Expr<'g>>,
+    /// ∂F⁺ℓd along each input.
+    pub after_by_input: Vec<Expr<'g>>,
+    /// β·∂F⁺ℓd + κ·∂F⁻ℓd along h and t.
+    pub by_time: [Expr<'g>; 2],
+}
+
+/// What a choice of the inputs of forces needs of an edge.
+pub(super) fn bend<'g>(
+    model: &Model<'g>,
+    variation: &Variation<'g>,
+    (costate, multiplier): (Expr<'g>, Expr<'g>),
+    ends: &[Direction<'g>],
+) -> Bend<'g> {
+    let directions = [ends.to_vec(), inputs(model)].concat();
+    let function = costate.dot(variation.after) + multiplier.dot(variation.before);
+    let one = model.graph.integer(1);
+    let columns = |momentum: Expr<'g>| inputs(model).iter().map(|input| momentum.differential(input)).collect();
+    Bend {
+        bracket: bracket(model, costate),
+        curvature: Jet::of(function, &directions).curvature,
+        before_by_input: columns(variation.before),
+        after_by_input: columns(variation.after),
+        by_time: [model.step_size, model.time].map(|symbol| function.differential(&[(symbol, one)])),
+    }
+}
+
+/// ½ μ·[E_i, E_j] for a right action, −½ μ·[E_i, E_j] for a left one.
+fn bracket<'g>(model: &Model<'g>, mu: Expr<'g>) -> Vec<Vec<Expr<'g>>> {
+    let (whole, zero) = (model.dimension(), model.graph.integer(0));
+    let mut entries = vec![vec![zero; whole]; whole];
+    for (k, factor) in model.factors.iter().enumerate() {
+        let (offset, dimension) = (model.offset(k), factor.group.dimension());
+        let part = mu.block(offset, 0, Shape::vector(dimension));
+        for i in 0..dimension {
+            let ad = factor.group.ad(model.graph.unit(Shape::vector(dimension), i, 0));
+            let row = ad.transpose() * part / 2;
+            let row = if factor.side == Side::Right { row } else { -row };
+            (0..dimension).for_each(|j| entries[offset + i][offset + j] = row.entry(j, 0));
+        }
+    }
+    entries
+}

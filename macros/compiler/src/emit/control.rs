@@ -1,0 +1,352 @@
+//! The implementation of the trait `Controlled`: what choosing the inputs needs.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::code::Nesting;
+use super::{Emitter, Generics, code, docs};
+use crate::lower::{BendKernels, ControlKernels, Kernel, StepOfInputs};
+
+impl Emitter<'_, '_> {
+    /// The impl block, where something is chosen.
+    pub(super) fn controlled(&self) -> TokenStream {
+        let (Some(kernels), Some(control)) = (&self.program.control, &self.model.control) else {
+            return TokenStream::new();
+        };
+        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
+        let [d, u, c, motions] = [self.place_dimension(), self.inputs(), control.bounds.len(), self.dimension()]
+            .map(Literal::usize_unsuffixed);
+        let texts = control.bounds.iter().map(|bound| bound.text.as_str());
+        let motion = match (&kernels.step, &kernels.bend) {
+            (Some(step), _) => self.steered(kernels, step),
+            (None, Some(bend)) => self.forced(kernels, bend),
+            // by construction: inputs move the configuration or are those of forces
+            (None, None) => TokenStream::new(),
+        };
+        let prices = self.prices(kernels);
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #krate::Controlled<#d, #u, #c> for #ident<#arguments> #predicates {
+                type Scalar = #scalar;
+
+                const NAME: &'static ::core::primitive::str = #name;
+                const BOUNDS: [&'static ::core::primitive::str; #c] = [#(#texts),*];
+                const MOTIONS: ::core::primitive::usize = #motions;
+
+                #motion
+                #prices
+            }
+        }
+    }
+
+    /// The constant `DERIVATION` of a system that has no steps in time.
+    pub(super) fn derivation_of_control(&self) -> TokenStream {
+        let Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, text) = (&self.model.item.ident, super::derivation(self.program));
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #ident<#arguments> #predicates {
+                /// The derivation of this struct in words and formulas.
+                pub const DERIVATION: &'static ::core::primitive::str = #text;
+            }
+        }
+    }
+
+    /// The number of inputs.
+    fn inputs(&self) -> usize {
+        self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum()
+    }
+
+    /// The dimension of what is steered: a configuration, or a state.
+    fn place_dimension(&self) -> usize {
+        if self.model.is_steered() { self.dimension() } else { 2 * self.dimension() }
+    }
+
+    /// A kernel as a block, and its outputs as matrices.
+    fn values(&self, kernel: &Kernel) -> (TokenStream, Vec<TokenStream>) {
+        let scope = self.scope_of_system();
+        let outputs = kernel.outputs.iter().map(|(shape, entries)| match shape.is_scalar() {
+            true => scope.code(&entries[0], false),
+            false => code::grid(&scope, *shape, entries, false),
+        });
+        (code::locals(&scope, kernel), outputs.collect())
+    }
+
+    /// The only output of a kernel, a matrix even where it has one entry.
+    fn matrix(&self, kernel: &Kernel) -> TokenStream {
+        let scope = self.scope_of_system();
+        let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
+        let value = code::grid(&scope, *shape, entries, false);
+        quote!({ #locals #value })
+    }
+
+    /// All outputs of a kernel as matrices, in a tuple, but for those that are scalars by nature.
+    fn tuple(&self, kernel: &Kernel, scalars: &[usize]) -> TokenStream {
+        let scope = self.scope_of_system();
+        let locals = code::locals(&scope, kernel);
+        let outputs =
+            kernel.outputs.iter().enumerate().map(|(index, (shape, entries))| match scalars.contains(&index) {
+                true => scope.code(&entries[0], false),
+                false => code::grid(&scope, *shape, entries, false),
+            });
+        quote!({ #locals (#(#outputs,)*) })
+    }
+
+    /// What inputs move by themselves.
+    fn steered(&self, kernels: &ControlKernels, step: &StepOfInputs) -> TokenStream {
+        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
+        let (configuration, checks, defect) = (self.configuration_type(), self.checks(), self.orbit_defect());
+        let (m, u) = (Literal::usize_unsuffixed(self.dimension()), Literal::usize_unsuffixed(self.inputs()));
+        let scope = self.scope_of_system();
+        let increment = code::body(&scope, &step.increment, Some(Nesting::Element));
+        let advance = code::body(&scope, &step.advance, Some(Nesting::Configuration));
+        let moved = quote! {
+            let (h, q) = (*constants, x);
+            let d = { #increment };
+            let next = { #advance };
+        };
+        let expand = self.tuple(&step.expand, &[2]);
+        let of_time = self.matrix(&kernels.price_of_time);
+        let (metric, approach) = (self.matrix(&kernels.orbit_metric), self.matrix(&kernels.approach));
+        let documentation = docs::formulas(
+            "The step that an input makes.",
+            &self.program.formulas.titled("controls"),
+            Some(&step.increment),
+        );
+        let costate = quote!(#private::SVector<#scalar, #m>);
+        let input = quote!(#private::SVector<#scalar, #u>);
+        quote! {
+            type Place = #configuration;
+            type Constants = #scalar;
+
+            fn prepare(&self, h: #scalar) -> ::core::result::Result<#scalar, #krate::Error> {
+                #checks
+                ::core::result::Result::Ok(h)
+            }
+            fn check_place(&self, q: &#configuration) -> ::core::result::Result<(), #krate::Error> {
+                #private::check_on_orbit(q, { #defect })
+            }
+            #documentation
+            #[inline]
+            fn follow(&self, constants: &#scalar, t: #scalar, x: &#configuration, u: &#input) -> ::core::result::Result<#configuration, #krate::Error> {
+                #moved
+                #private::check_reached(next)
+            }
+            /// The step with its derivatives, and the second derivatives of ℓ + λ·η′.
+            fn expand(
+                &self,
+                constants: &#scalar,
+                t: #scalar,
+                x: &#configuration,
+                u: &#input,
+                mu: &#costate,
+            ) -> ::core::result::Result<#krate::Expansion<#configuration, #scalar, #m, #u>, #krate::Error> {
+                #moved
+                let next = #private::check_reached(next)?;
+                let (by_place, by_input, price, price_by_place, price_by_input, place_curvature, mixed_curvature, input_curvature) = #expand;
+                ::core::result::Result::Ok(#krate::Expansion {
+                    next,
+                    by_place,
+                    by_input,
+                    price,
+                    price_by_place,
+                    price_by_input,
+                    place_curvature,
+                    mixed_curvature,
+                    input_curvature,
+                })
+            }
+            /// d/dh (ℓ + λ·η′), the start of the step moving with h.
+            fn price_of_time(
+                &self,
+                constants: &#scalar,
+                t: #scalar,
+                k: #scalar,
+                x: &#configuration,
+                u: &#input,
+                mu: &#costate,
+            ) -> ::core::result::Result<#scalar, #krate::Error> {
+                #moved
+                let slopes: #private::SVector<#scalar, 2> = #of_time;
+                ::core::result::Result::Ok(slopes[0] + k * slopes[1])
+            }
+            /// Gᵀ(q* − q) and GᵀG.
+            fn arrival(&self, x: &#configuration, target: &#configuration) -> #krate::Arrival<#scalar, #m> {
+                let (q, next) = (x, target);
+                #krate::Arrival { residual: #approach, slope: #metric }
+            }
+            /// The shortest motion that moves one configuration to another, to first order.
+            fn displacement(&self, x: &#configuration, y: &#configuration) -> #costate {
+                let (q, next) = (x, y);
+                #private::displacement(&#metric, &#approach)
+            }
+        }
+    }
+
+    /// What the inputs of forces move.
+    fn forced(&self, kernels: &ControlKernels, bend: &BendKernels) -> TokenStream {
+        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
+        let configuration = self.configuration_type();
+        let [m, u, d, w] =
+            [self.dimension(), self.inputs(), 2 * self.dimension(), 2 * self.dimension() + self.inputs()]
+                .map(Literal::usize_unsuffixed);
+        let (constants_name, (_, constants_arguments)) = (&self.names.constants, self.constants_generics());
+        let place = quote!((#configuration, #private::SVector<#scalar, #m>));
+        let constants = quote!((#constants_name #constants_arguments, #scalar));
+        let (costate, input) = (quote!(#private::SVector<#scalar, #d>), quote!(#private::SVector<#scalar, #u>));
+        let by_input = self.tuple(&bend.by_input, &[]);
+        let passed = quote! {
+            let (constants, h) = (&constants.0, constants.1);
+            let (q, n) = x;
+            let d = &#krate::Variational::drift(self, constants, 0, t, q, n, u)?;
+            let next = &#krate::Variational::advance(self, q, d);
+            let edge = #krate::Variational::carried(self, constants, 0, t, q, d, next, u);
+            let (before, after): (#private::SMatrix<#scalar, #m, #u>, #private::SMatrix<#scalar, #m, #u>) = #by_input;
+            let link = #private::Link::new(&edge, &before, &after, costate).ok_or(#krate::Error::SingularTangent { step_size: #private::Scalar::to_f64(h) })?;
+            let (mu, kappa) = (&link.costate, &link.multiplier);
+        };
+        let (curvature, bracket) = (self.matrix(&bend.curvature), self.matrix(&bend.bracket));
+        let of_time = self.matrix(&kernels.price_of_time);
+        let price = kernels.price_expanded.as_ref().map(|kernel| self.tuple(kernel, &[0]));
+        quote! {
+            type Place = #place;
+            type Constants = #constants;
+
+            fn prepare(&self, h: #scalar) -> ::core::result::Result<#constants, #krate::Error> {
+                ::core::result::Result::Ok((#krate::Clebsch::constants(self, h)?, h))
+            }
+            fn check_place(&self, x: &#place) -> ::core::result::Result<(), #krate::Error> {
+                #private::check_state(self, &x.0, &x.1)
+            }
+            /// The forced step.
+            #[inline]
+            fn follow(&self, constants: &#constants, t: #scalar, x: &#place, u: &#input) -> ::core::result::Result<#place, #krate::Error> {
+                #private::forced_step(self, &constants.0, t, x, u)
+            }
+            /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺): with the multipliers κ of the momentum
+            /// equation those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N), to which η′ contributes ± ½ α·[Ad η, ζ].
+            fn expand(
+                &self,
+                constants: &#constants,
+                t: #scalar,
+                x: &#place,
+                u: &#input,
+                costate: &#costate,
+            ) -> ::core::result::Result<#krate::Expansion<#place, #scalar, #d, #u>, #krate::Error> {
+                #passed
+                let curvature: #private::SMatrix<#scalar, #w, #w> = #curvature;
+                let mu = &link.driving;
+                let bracket: #private::SMatrix<#scalar, #m, #m> = #bracket;
+                let (price, by_motion, by_input, motions, mixed, inputs) = #price;
+                let price = #private::Price { price, by_motion, by_input, motions, mixed, inputs };
+                let next = #private::check_reached((*next, edge.momentum))?;
+                ::core::result::Result::Ok(link.expansion(next, &curvature, &bracket, &price))
+            }
+            /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
+            fn price_of_time(
+                &self,
+                constants: &#constants,
+                t: #scalar,
+                k: #scalar,
+                x: &#place,
+                u: &#input,
+                costate: &#costate,
+            ) -> ::core::result::Result<#scalar, #krate::Error> {
+                #passed
+                let slopes: #private::SVector<#scalar, 2> = #of_time;
+                ::core::result::Result::Ok(slopes[0] + k * slopes[1])
+            }
+            /// (Gᵀ(q* − q), N* − N) and (GᵀG, I).
+            fn arrival(&self, x: &#place, target: &#place) -> #krate::Arrival<#scalar, #d> {
+                let metric = #krate::Variational::orbit_metric(self, &x.0);
+                #private::arrival_of_state(&metric, &#krate::Variational::approach(self, &x.0, &target.0), &(target.1 - x.1))
+            }
+            /// The shortest motion that moves one configuration to another, to first order, and the change of the momentum.
+            fn displacement(&self, x: &#place, y: &#place) -> #costate {
+                let metric = #krate::Variational::orbit_metric(self, &x.0);
+                let motion = #private::displacement(&metric, &#krate::Variational::approach(self, &x.0, &y.0));
+                #private::pair(&motion, &(y.1 - x.1))
+            }
+        }
+    }
+
+    /// φ with its derivatives, at `q` and `t`.
+    pub(super) fn endpoint_expanded(&self) -> Option<TokenStream> {
+        let private = &self.paths.private;
+        let tuple = self.tuple(&self.program.endpoint.as_ref()?.expanded, &[0, 1]);
+        Some(quote! {
+            let (price, by_time, slope, curvature) = #tuple;
+            #private::endpoint(price, by_time, &slope, &curvature)
+        })
+    }
+
+    /// Price, bounds and the price of the end.
+    fn prices(&self, kernels: &ControlKernels) -> TokenStream {
+        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
+        let [d, u, c] = [
+            self.place_dimension(),
+            self.inputs(),
+            self.model.control.as_ref().map_or(0, |control| control.bounds.len()),
+        ]
+        .map(Literal::usize_unsuffixed);
+        let (h, q) = match self.model.is_steered() {
+            true => (quote!(*constants), quote!(x)),
+            false => (quote!(constants.1), quote!(&x.0)),
+        };
+        let (locals, price) = self.values(&kernels.price);
+        let price = &price[0];
+        let (bounds, expanded) = (self.matrix(&kernels.bounds), self.tuple(&kernels.bounds_expanded, &[]));
+        let zero = quote!(<#scalar as #private::Zero>::zero());
+        let endpoint = match &self.program.endpoint {
+            Some(kernels) => {
+                let (locals, value) = self.values(&kernels.price);
+                let value = &value[0];
+                quote!(#locals #value)
+            }
+            None => zero.clone(),
+        };
+        let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
+        let formulas = &self.program.formulas;
+        let documentation = docs::formulas("The price of a step.", &formulas.titled("price"), Some(&kernels.price));
+        let of_bounds = docs::formulas("The bounds.", &formulas.titled("bounds"), Some(&kernels.bounds));
+        quote! {
+            #documentation
+            #[inline]
+            fn price(&self, constants: &Self::Constants, t: #scalar, x: &Self::Place, u: &#private::SVector<#scalar, #u>) -> #scalar {
+                let (h, q) = (#h, #q);
+                #locals
+                #price
+            }
+            #of_bounds
+            #[inline]
+            fn bounds(&self, t: #scalar, x: &Self::Place, u: &#private::SVector<#scalar, #u>) -> #private::SVector<#scalar, #c> {
+                let q = #q;
+                #bounds
+            }
+            /// The bounds with their derivatives, and the second derivatives of z·a.
+            fn bounds_expanded(
+                &self,
+                t: #scalar,
+                x: &Self::Place,
+                u: &#private::SVector<#scalar, #u>,
+                z: &#private::SVector<#scalar, #c>,
+            ) -> #krate::BoundsExpansion<#scalar, #d, #u, #c> {
+                let q = #q;
+                let (values, by_motion, by_input, motions, mixed, inputs) = #expanded;
+                #private::bounds(values, &by_motion, by_input, &motions, &mixed, inputs)
+            }
+            /// The price of the end.
+            fn endpoint(&self, t: #scalar, x: &Self::Place) -> #scalar {
+                let q = #q;
+                #endpoint
+            }
+            /// The price of the end with its derivatives.
+            fn endpoint_expanded(&self, t: #scalar, x: &Self::Place) -> #krate::EndpointExpansion<#scalar, #d> {
+                let q = #q;
+                #endpoint_expanded
+            }
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! The choice of inputs, through the macro.
+
+mod derivatives;
+mod plans;
