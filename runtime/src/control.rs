@@ -10,6 +10,7 @@
 //! |---|---|
 //! | `stage` | what the caller keeps for each step |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
+//! | `iterate` | what is known between sweeps, and decided by it |
 //! | `sweep` | linearises and eliminates backward |
 //! | `quadratic` | the model of one step, and its elimination |
 //! | `pivot` | the U×U linear algebra of one input |
@@ -19,11 +20,16 @@
 //! | `rollout` | follows corrected inputs forward |
 //! | `search` | how much of a correction is made |
 //! | `stir` | varies inputs where by symmetry no first derivative leads to the target |
+//! | `free_time` | the step size of least price |
+//! | `bracket` | the zero of a slope |
 //! | `optimum` | what a problem is answered with |
 
 mod barrier;
+mod bracket;
 mod end;
+mod free_time;
 mod gramian;
+mod iterate;
 mod newton;
 mod optimum;
 mod pivot;
@@ -146,22 +152,19 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let problem = Problem {
-            system: &self.system,
-            constants: &self.constants,
-            h: self.h,
-            time: self.time,
-            start,
-            goal: Goal::of(&self.system, &target),
-        };
-        plan.iter_mut().for_each(|stage| stage.guess = stage.input);
-        match problem.newton(plan) {
-            Ok(solved) => Ok(Optimum::new(plan, solved, self.h)),
-            Err(error) => {
-                plan.iter_mut().for_each(|stage| *stage = Stage::rest(&stage.place).with_input(stage.guess));
-                Err(error)
-            }
-        }
+        let solved = self.problem(start, &target, self.h, &self.constants).attempt(plan)?;
+        Ok(Optimum::new(plan, solved, self.h))
+    }
+
+    /// The problem with the step size `h`, for which there are these constants.
+    fn problem<'a>(
+        &'a self,
+        start: &'a S::Place,
+        target: &'a Target<S::Place>,
+        h: S::Scalar,
+        constants: &'a S::Constants,
+    ) -> Problem<'a, S, D, U, C> {
+        Problem { system: &self.system, constants, h, time: self.time, start, goal: Goal::of(&self.system, target) }
     }
 
     /// Start, target and guess are finite and where places are.

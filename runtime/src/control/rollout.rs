@@ -3,6 +3,7 @@
 use super::Stage;
 use super::barrier::Barrier;
 use super::sweep::Problem;
+use crate::space::larger;
 use crate::{Controlled, Error, Scalar, Space};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -98,15 +99,47 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         }
     }
 
-    /// The bound that is relaxed by most, with the stage and by how much.
+    /// Multipliers of the bounds from the correction that would come next, for a plan that needs none: slacks of active bounds, of
+    /// which μ/s is made, have few digits.
+    ///
+    /// # Errors
+    /// Those of a step.
+    pub fn settle(
+        &self,
+        plan: &mut [Stage<S, D, U, C>],
+        change: &SVector<S::Scalar, D>,
+        barrier: Barrier<S::Scalar>,
+    ) -> Result<(), Error> {
+        let zero = S::Scalar::zero();
+        let mut displacement = SVector::<S::Scalar, D>::from_element(zero);
+        for (index, stage) in plan.iter_mut().enumerate().filter(|_| C > 0) {
+            let t = self.time_after(index);
+            let step = self.system.expand(self.constants, t, &stage.place, &stage.input, &stage.next_costate)?;
+            let bounds = self.system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers);
+            let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
+            let moved = bounds.by_place * displacement + bounds.by_input * input;
+            let (force, stiffness) = barrier.condense(stage);
+            stage.multipliers = SVector::from_fn(|i, _| larger(zero, force[i] + stiffness[i] * moved[i]));
+            displacement = step.by_place * displacement + step.by_input * input;
+        }
+        Ok(())
+    }
+
+    /// Whether bounds are relaxed.
+    pub fn is_relaxed(&self, plan: &[Stage<S, D, U, C>]) -> bool {
+        plan.iter().any(|stage| stage.excess.iter().any(|excess| *excess > S::Scalar::zero()))
+    }
+
+    /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
     pub fn worst_bound(&self, plan: &[Stage<S, D, U, C>]) -> Option<(usize, usize, S::Scalar)> {
         let mut worst = None;
-        let mut most = S::Scalar::zero();
+        let mut least = S::Scalar::one();
         for (index, stage) in plan.iter().enumerate() {
             for i in 0..C {
-                if stage.excess[i] > most {
-                    most = stage.excess[i];
-                    worst = Some((index, i, most));
+                let room = stage.slack[i] / stage.excess[i];
+                if room < least {
+                    least = room;
+                    worst = Some((index, i, stage.excess[i] - stage.slack[i]));
                 }
             }
         }

@@ -5,25 +5,32 @@
 
 use super::Stage;
 use super::end::End;
-use super::sweep::{Problem, Settings};
+use super::gramian::Gramian;
+use super::sweep::{Problem, Settings, Summary};
 use crate::space::larger;
 use crate::{Controlled, Scalar};
-use nalgebra::SVector;
-use num_traits::One;
+use nalgebra::{SMatrix, SVector};
+use num_traits::{One, Zero};
 
 /// Roll-outs of one correction.
 const TRIALS: usize = 12;
 
 /// The plan that a correction starts from.
 pub(super) struct Descent<'a, T, const D: usize> {
-    pub end: &'a End<T, D>,
-    pub settings: &'a Settings<'a, T, D>,
-    /// δν
-    pub change: SVector<T, D>,
+    end: &'a End<T, D>,
+    settings: Settings<T, D>,
+    /// Γ⁺
+    inverse: SMatrix<T, D, D>,
+    /// V_ν
+    lack: SVector<T, D>,
     /// Σℓ + φ
-    pub price: T,
-    /// Twice what the model promises.
-    pub decrement: T,
+    price: T,
+    /// −Σ Q_u·k
+    descent: T,
+}
+
+/// What a correction is judged by.
+pub(super) struct Evidence<T> {
     /// The size of prices, of which round-off is a part ε.
     pub magnitude: T,
     /// Whether a full step needs no proof.
@@ -35,60 +42,93 @@ pub(super) struct Descent<'a, T, const D: usize> {
 }
 
 /// A correction that was made.
-pub(super) struct Made<X, T> {
+pub(super) struct Made<X, T, const D: usize> {
     pub last: X,
     pub fraction: T,
+    /// δν of the whole correction.
+    pub change: SVector<T, D>,
     /// Roll-outs that were refused, other than by slacks.
     pub refused: usize,
 }
 
-impl<T: Scalar, const D: usize> Descent<'_, T, D> {
-    /// ν⁺·g + ½ g·Rg
-    fn penalty(&self, lack: &SVector<T, D>) -> T {
-        let weighted: SVector<T, D> = self.settings.weight * lack;
-        weighted.dot(lack) * T::from_ratio(1, 2) - (self.settings.multipliers + self.change).dot(lack)
+impl<'a, T: Scalar, const D: usize> Descent<'a, T, D> {
+    /// From what a sweep told.
+    pub fn of<const U: usize>(
+        summary: &Summary<T, D, U>,
+        end: &'a End<T, D>,
+        gramian: &Gramian<T, D>,
+        settings: &Settings<T, D>,
+    ) -> Self {
+        Self {
+            end,
+            settings: *settings,
+            inverse: gramian.inverse(),
+            lack: summary.lack,
+            price: summary.price,
+            descent: summary.descent,
+        }
     }
 
-    /// What the augmented Lagrangian is compared with: a small part of the promise, and round-off.
-    fn is_lower(&self, change: T, fraction: T) -> bool {
-        let promised = fraction * self.decrement * T::from_f64(1e-4);
-        change <= T::from_f64(16.0) * T::EPSILON * self.magnitude - promised
+    /// δν of the correction that closes a part of the gap, Γ δν = V_ν + (1 − part) e, and twice what it takes from the model.
+    pub fn correction(&self, part: T) -> (SVector<T, D>, T) {
+        let wanted = self.lack + self.end.lack * (T::one() - part);
+        let change = self.inverse * wanted;
+        let gain = change.dot(&wanted) - (change.dot(&self.lack) + change.dot(&self.end.lack)) * T::from_f64(2.0);
+        (change, self.descent + gain)
+    }
+
+    /// ν⁺·g + ½ g·Rg
+    fn penalty(&self, change: &SVector<T, D>, lack: &SVector<T, D>) -> T {
+        let weighted: SVector<T, D> = self.settings.weight * lack;
+        weighted.dot(lack) * T::from_ratio(1, 2) - (self.settings.multipliers + change).dot(lack)
     }
 }
 
 impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// Makes a part of the correction; `None` where none that is large enough helps.
+    ///
+    /// Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.
     pub fn descend(
         &self,
         plan: &mut [Stage<S, D, U, C>],
         descent: &Descent<'_, S::Scalar, D>,
-    ) -> Option<Made<S::Place, S::Scalar>> {
-        let (mut fraction, mut refused) = (S::Scalar::one(), 0);
+        evidence: &Evidence<S::Scalar>,
+    ) -> Option<Made<S::Place, S::Scalar, D>> {
+        let one = S::Scalar::one();
+        let (mut fraction, mut part, mut refused) = (one, one, 0);
         let barrier = descent.settings.barrier;
-        let before = descent.penalty(&descent.end.lack);
         for _ in 0..TRIALS {
             let half = fraction * S::Scalar::from_ratio(1, 2);
-            if let Ok(rolled) = self.roll_out(plan, fraction, &descent.change, barrier) {
+            let (change, decrement) = descent.correction(part);
+            if let Ok(rolled) = self.roll_out(plan, fraction, &change, barrier) {
                 if let Some(allowed) = rolled.allowed {
                     // Bounds that curve allow less than they did from afar.
-                    let enough = larger(allowed * S::Scalar::from_ratio(99, 100), fraction * S::Scalar::from_f64(1e-3));
-                    fraction = if enough < half || refused > 0 { enough } else { larger(half, enough) };
+                    let least = fraction * S::Scalar::from_f64(1e-3);
+                    let allowed = larger(allowed * S::Scalar::from_ratio(99, 100), least);
+                    let is_far = descent.end.distance > S::Scalar::zero() && !evidence.is_relaxed;
+                    if part >= one && allowed < S::Scalar::from_ratio(1, 2) && is_far {
+                        part = allowed * S::Scalar::from_ratio(4, 5);
+                    } else {
+                        fraction = allowed;
+                    }
                     continue;
                 }
                 let end = self.goal.end(self.system, &rolled.last);
-                let change = rolled.price
+                let penalties = descent.penalty(&change, &end.lack) - descent.penalty(&change, &descent.end.lack);
+                let difference = rolled.price
                     - descent.price
                     - barrier.weight * rolled.slack_logarithms
                     - fraction * rolled.excess_price
-                    + (descent.penalty(&end.lack) - before);
-                let nearer = end.distance < descent.nearest * S::Scalar::from_ratio(9, 10);
-                let feasible = descent.is_relaxed && fraction >= S::Scalar::from_ratio(1, 10);
-                let is_whole = fraction >= S::Scalar::one();
-                if change.is_finite()
-                    && (descent.is_lower(change, fraction) || nearer || feasible || descent.is_trusted && is_whole)
-                {
+                    + penalties;
+                let promised = fraction * decrement * S::Scalar::from_f64(1e-4);
+                let round_off = S::Scalar::from_f64(16.0) * S::Scalar::EPSILON * evidence.magnitude;
+                let is_lower = difference <= round_off - promised;
+                let nearer = end.distance < evidence.nearest * S::Scalar::from_ratio(9, 10);
+                let feasible = evidence.is_relaxed && fraction >= S::Scalar::from_ratio(1, 10);
+                let trusted = evidence.is_trusted && fraction >= one;
+                if difference.is_finite() && (is_lower || nearer || feasible || trusted) {
                     self.accept(plan, fraction, barrier);
-                    return Some(Made { last: rolled.last, fraction, refused });
+                    return Some(Made { last: rolled.last, fraction, change, refused });
                 }
             }
             refused += 1;

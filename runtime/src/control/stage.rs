@@ -62,6 +62,11 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Sta
         Self { input, ..self }
     }
 
+    /// The same with this input, as the guess to go back to.
+    pub(super) fn with_guess(self, guess: SVector<S::Scalar, U>) -> Self {
+        Self { input: guess, guess, ..self }
+    }
+
     /// The place x_k where the step starts.
     #[inline]
     pub fn place(&self) -> &S::Place {

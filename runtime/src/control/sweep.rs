@@ -33,10 +33,11 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C>, const D: usize, const U: u
 }
 
 /// What a backward sweep is made with.
-pub(super) struct Settings<'a, T, const D: usize> {
+#[derive(Clone, Copy)]
+pub(super) struct Settings<T, const D: usize> {
     /// ν and R of the target.
-    pub multipliers: &'a SVector<T, D>,
-    pub weight: &'a SMatrix<T, D, D>,
+    pub multipliers: SVector<T, D>,
+    pub weight: SMatrix<T, D, D>,
     pub barrier: Barrier<T>,
     pub curvature: Curvature<T>,
     /// The part of the curvature of steps and bounds that is counted: 1 for all, 0 for none, which leaves that of the price.
@@ -52,7 +53,7 @@ pub(super) struct Summary<T, const D: usize, const U: usize> {
     /// Σ|ℓ| + |φ|
     pub magnitude: T,
     /// −Σ Q_u·k
-    decrement: T,
+    pub descent: T,
     /// The largest entry of Q_u.
     pub residual: T,
     /// V_ν, what inputs have still to close.
@@ -72,7 +73,7 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
         Self {
             price,
             magnitude: price.abs(),
-            decrement: T::zero(),
+            descent: T::zero(),
             residual: T::zero(),
             lack: -end.lack,
             gramian: SMatrix::from_element(T::zero()),
@@ -86,7 +87,7 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
     fn count(&mut self, price: T, model: &Quadratic<T, D, U>, policy: &Policy<T, D, U>) {
         self.price += price;
         self.magnitude += price.abs();
-        self.decrement -= model.by_input.dot(&policy.shift);
+        self.descent -= model.by_input.dot(&policy.shift);
         self.residual = larger(self.residual, model.by_input.max_abs());
         self.lack += model.input_multiplier.tr_mul(&policy.shift);
         self.gramian -= model.input_multiplier.tr_mul(&policy.by_multiplier);
@@ -94,11 +95,6 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
         for j in 0..U {
             self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
         }
-    }
-
-    /// Twice what the correction with these δν takes from the price in the model.
-    pub fn decrement(&self, end: &End<T, D>, change: &SVector<T, D>) -> T {
-        self.decrement - change.dot(&(self.lack + end.lack * T::from_f64(2.0)))
     }
 }
 
@@ -118,10 +114,10 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         plan: &mut [Stage<S, D, U, C>],
         last: &S::Place,
         end: &End<S::Scalar, D>,
-        settings: &Settings<'_, S::Scalar, D>,
+        settings: &Settings<S::Scalar, D>,
     ) -> Result<Summary<S::Scalar, D, U>, Error> {
         let endpoint = self.system.endpoint_expanded(self.time_after(plan.len()), last);
-        let mut value = Value::of_end(&endpoint, end, settings.multipliers, settings.weight);
+        let mut value = Value::of_end(&endpoint, end, &settings.multipliers, &settings.weight);
         let mut summary = Summary::of_end(endpoint.price, end, value.costate);
         for (index, stage) in plan.iter_mut().enumerate().rev() {
             let t = self.time_after(index);
@@ -132,6 +128,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                 let bounds =
                     self.system.bounds_expanded(t, &stage.place, &stage.input, &(stage.multipliers * settings.bend));
                 let (force, stiffness) = settings.barrier.condense(stage);
+                let force = if settings.is_last { stage.multipliers } else { force };
                 model.add_bounds(&bounds, &force, &stiffness);
             }
             model.add_value(&step, &value);

@@ -98,13 +98,8 @@ impl<const U: usize> Group<U> {
         let off = sum(&moved, &constant(&Matrix3::identity()), -1.0);
         let log = sum(&off, &product(&off, &off), -0.5);
         core::array::from_fn(|i| {
-            let mut total = Jet::constant(0.0);
-            for r in 0..3 {
-                for c in 0..3 {
-                    total = total + log[r][c] * self.dual[i][(r, c)];
-                }
-            }
-            total
+            let entries = log.iter().flatten().zip(self.dual[i].transpose().iter().copied().collect::<Vec<f64>>());
+            entries.fold(Jet::constant(0.0), |total, (entry, dual)| total + *entry * dual)
         })
     }
 }

@@ -19,6 +19,17 @@ impl Jet {
     pub fn variable(value: f64, index: usize) -> Self {
         Self { slope: Vector6::ith(index, 1.0), ..Self::constant(value) }
     }
+
+    /// F(f) from F, F′ and F″ at f.
+    fn chain(self, value: f64, first: f64, second: f64) -> Self {
+        let curvature = self.curvature * first + self.slope * self.slope.transpose() * second;
+        Self { value, slope: self.slope * first, curvature }
+    }
+
+    pub fn sin(self) -> Self {
+        let (sin, cos) = self.value.sin_cos();
+        self.chain(sin, cos, -sin)
+    }
 }
 
 impl Add for Jet {

@@ -30,6 +30,12 @@ pub fn double_integrator<const C: usize>(h: f64) -> Linear<2, 1, C, 1> {
     }
 }
 
+/// The same with −1 ≤ u ≤ 1.
+pub fn bounded_integrator(h: f64) -> Linear<2, 1, 2, 1> {
+    let bound_input = SMatrix::<f64, 2, 1>::new(1.0, -1.0);
+    Linear { bound_input, bound: SVector::<f64, 2>::new(1.0, 1.0), ..double_integrator(h) }
+}
+
 impl<const D: usize, const U: usize, const C: usize, const M: usize> Controlled<D, U, C> for Linear<D, U, C, M> {
     type Scalar = f64;
     type Place = SVector<f64, D>;

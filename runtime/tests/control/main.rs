@@ -1,9 +1,11 @@
 //! Optimal control of systems written by hand, against closed forms and independent solutions.
 
+mod bounded;
 mod geodesics;
 mod group;
 mod jet;
 mod linear;
+mod pendulum;
 mod quadratic;
 
 use clebsch::BoundsExpansion;

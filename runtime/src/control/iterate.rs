@@ -1,0 +1,203 @@
+//! What is known between two sweeps, and what is decided by it.
+
+use super::barrier::Barrier;
+use super::end::End;
+use super::gramian::Gramian;
+use super::pivot::Curvature;
+use super::search::Made;
+use super::sweep::{Settings, Summary};
+use crate::Scalar;
+use crate::space::larger;
+use nalgebra::{SMatrix, SVector};
+
+/// Directions that may lack curvature, as those of a symmetry do, while the curvature of steps is counted in full.
+const FLAT: usize = 2;
+/// Corrections of this size are near enough a solution for the exact curvature and for a fixed weight of the target.
+const NEAR: (i64, i64) = (1, 100);
+
+/// A plan with its multipliers and with what the sweeps before have told.
+pub(super) struct Iterate<X, T, const D: usize> {
+    /// x_N
+    pub last: X,
+    pub settings: Settings<T, D>,
+    /// Whether the first barrier is still to be chosen.
+    pub is_open: bool,
+    pub damping: T,
+    /// Whether it is known that more weight of the target makes no curvature positive.
+    is_probed: bool,
+    /// The number of directions that inputs move the end in.
+    pub rank: usize,
+    /// The size of the correction before, and how often in a row that was round-off.
+    before: Option<T>,
+    stagnations: u32,
+    /// The largest price.
+    largest: T,
+    /// The smallest distance to the target.
+    pub nearest: T,
+    /// Steps in a row that were next to nothing.
+    pub stalls: u32,
+}
+
+/// What is done after a sweep.
+pub(super) enum Verdict {
+    Correct,
+    /// The plan is critical, but no first derivative leads to the target.
+    Stir,
+    /// The plan is critical for this barrier.
+    Tighten,
+    Done,
+}
+
+impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
+    /// Before the first sweep; a barrier is chosen after it where none is given.
+    pub fn new(last: X, multipliers: SVector<T, D>, barrier: Option<Barrier<T>>, distance: T) -> Self {
+        let zero = T::zero();
+        let settings = Settings {
+            multipliers,
+            weight: SMatrix::from_element(zero),
+            barrier: barrier.unwrap_or(Barrier { weight: zero }),
+            curvature: Curvature::Mirrored { damping: zero },
+            bend: T::one(),
+            is_last: false,
+        };
+        Self {
+            last,
+            settings,
+            is_open: barrier.is_none(),
+            damping: zero,
+            is_probed: false,
+            rank: D,
+            before: None,
+            stagnations: 0,
+            largest: zero,
+            nearest: distance,
+            stalls: 0,
+        }
+    }
+
+    /// Whether the sweep found enough positive curvature to go downhill; if not, the next one is made otherwise.
+    ///
+    /// First the critical point of the exact model tells whether more weight of the target helps; where it does not, the curvature of
+    /// the steps is counted less and less, down to that of the price alone.
+    pub fn goes_downhill<const U: usize>(
+        &mut self,
+        summary: &Summary<T, D, U>,
+        gramian: &Gramian<T, D>,
+        stiffer: &SMatrix<T, D, D>,
+    ) -> bool {
+        let is_bent = self.settings.bend > T::zero();
+        let is_whole = self.settings.bend >= T::one();
+        if self.settings.curvature == Curvature::Kept {
+            self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+            self.is_probed = true;
+            if index(summary.negative, self.rank, gramian) == 0 {
+                self.settings.weight = *stiffer;
+            } else if summary.negative > FLAT {
+                self.bend_less();
+            }
+            return false;
+        }
+        self.rank = gramian.rank();
+        if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
+            self.settings.curvature = Curvature::Kept;
+        } else if summary.negative > FLAT && is_bent {
+            self.bend_less();
+            self.is_probed = false;
+        } else {
+            return true;
+        }
+        false
+    }
+
+    fn bend_less(&mut self) {
+        let bend = self.settings.bend;
+        self.settings.bend = if bend > T::from_ratio(1, 10) { bend * T::from_ratio(1, 4) } else { T::zero() };
+    }
+
+    /// The size of prices, for a price that vanishes at the solution a small part of the largest.
+    pub fn magnitude<const U: usize>(&mut self, summary: &Summary<T, D, U>, decrement: T) -> T {
+        self.largest = larger(self.largest, summary.magnitude + decrement.abs());
+        summary.magnitude + T::EPSILON.sqrt() * self.largest
+    }
+
+    /// Whether the model is that of Newton's method.
+    pub fn is_exact(&self) -> bool {
+        self.damping == T::zero() && self.settings.bend >= T::one()
+    }
+
+    /// What is done after a sweep with a correction of this size, of which `unit` is round-off.
+    pub fn verdict(&mut self, end: &End<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
+        let seen = T::EPSILON.sqrt();
+        let stagnates = matches!(self.before, Some(before) if before <= seen && size > before * T::from_ratio(1, 8));
+        self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
+        let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
+        let is_critical = self.is_exact() && (size <= unit || size <= seen && stagnates) && is_decided;
+        if !is_critical {
+            Verdict::Correct
+        } else if !end.is_reached() {
+            Verdict::Stir
+        } else if self.settings.barrier.weight > last_barrier + last_barrier {
+            Verdict::Tighten
+        } else {
+            Verdict::Done
+        }
+    }
+
+    /// The next barrier, if it is another.
+    pub fn tighten(&mut self, bounds: T, price: T) {
+        let next = self.settings.barrier.next(bounds, price);
+        if next.weight < self.settings.barrier.weight * T::from_ratio(9, 10) {
+            self.settings.barrier = next;
+            self.before = None;
+        }
+    }
+
+    /// Goes on from a correction that was made, or not, after a sweep with so many pivots that are not positive.
+    pub fn advance(
+        &mut self,
+        made: Option<Made<X, T, D>>,
+        size: T,
+        negative: usize,
+        stiffer: SMatrix<T, D, D>,
+        distance: T,
+    ) {
+        let near = T::from_ratio(NEAR.0, NEAR.1);
+        let refused = made.as_ref().map_or(usize::MAX, |made| made.refused);
+        let fraction = made.as_ref().map_or(T::zero(), |made| made.fraction);
+        if let Some(made) = made {
+            self.last = made.last;
+            self.settings.multipliers += made.change * made.fraction;
+        }
+        if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
+            self.settings.weight = stiffer;
+        }
+        self.damping = adapted(self.damping, refused);
+        self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+        if refused <= 1 {
+            let more = larger(self.settings.bend * T::from_f64(4.0), T::from_ratio(1, 16));
+            self.settings.bend = if more < T::one() && size > near { more } else { T::one() };
+        }
+        self.is_probed &= negative > 0 && self.settings.bend >= T::one();
+        self.nearest = if distance < self.nearest { distance } else { self.nearest };
+        self.before = Some(size);
+        self.stalls = if fraction < T::from_f64(1e-6) { self.stalls + 1 } else { 0 };
+    }
+}
+
+/// The damping after a step: eight times less after one that was taken at once, eight times more after one that was refused often.
+fn adapted<T: Scalar>(damping: T, refused: usize) -> T {
+    let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
+    if refused == 0 {
+        if damping > least { damping / factor } else { T::zero() }
+    } else if refused > 2 {
+        larger(damping, least) * factor
+    } else {
+        damping
+    }
+}
+
+/// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
+/// of −Γ, less the number of conditions.
+pub(super) fn index<T: Scalar, const D: usize>(negative: usize, rank: usize, gramian: &Gramian<T, D>) -> usize {
+    (negative + gramian.positive()).saturating_sub(rank)
+}

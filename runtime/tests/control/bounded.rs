@@ -1,0 +1,140 @@
+//! Bounds: the box of an input, against the dual of the problem, and what is not possible.
+
+use crate::linear::{Linear, bounded_integrator};
+use clebsch::{Control, Controlled, Error, Optimum, Stage, Target};
+use nalgebra::{Matrix2, SMatrix, Vector2};
+use std::vec;
+use std::vec::Vec;
+
+type Bounded = Linear<2, 1, 2, 1>;
+
+/// From rest at 0 to rest at `distance`.
+fn rest_to_rest<R>(
+    h: f64,
+    steps: usize,
+    distance: f64,
+    look: impl Fn(&Optimum<'_, Bounded, 2, 1, 2>) -> R,
+) -> Result<R, Error> {
+    let control: Control<_, 2, 1, 2> = bounded_integrator(h).control(h)?;
+    let start = Vector2::zeros();
+    let mut plan: Vec<Stage<Bounded, 2, 1, 2>> = vec![control.stage(&start); steps];
+    let found = control.solve(&start, Target::Place(Vector2::new(distance, 0.0)), &mut plan)?;
+    Ok(look(&found))
+}
+
+/// The inputs clamp(b_k·ν/h) that lead to the goal: Newton's method for ν, from the dual of the problem.
+fn clamped(h: f64, steps: usize, goal: Vector2<f64>) -> (Vec<f64>, Vec<f64>) {
+    let columns: Vec<Vector2<f64>> =
+        (0..steps).map(|k| Vector2::new(h * h * (steps as f64 - k as f64 - 0.5), h)).collect();
+    let mut multiplier = Vector2::zeros();
+    let wanted = |multiplier: &Vector2<f64>| columns.iter().map(|b| b.dot(multiplier) / h).collect::<Vec<f64>>();
+    let dual = |multiplier: &Vector2<f64>| {
+        let price = |u: &f64| if u.abs() > 1.0 { u.abs() - 0.5 } else { u * u / 2.0 };
+        h * wanted(multiplier).iter().map(price).sum::<f64>() - goal.dot(multiplier)
+    };
+    for _ in 0..200 {
+        let inputs = wanted(&multiplier);
+        let (mut slope, mut lack) = (Matrix2::zeros(), goal);
+        for (u, b) in inputs.iter().zip(&columns) {
+            lack -= b * u.clamp(-1.0, 1.0);
+            if u.abs() <= 1.0 {
+                slope += b * b.transpose() / h;
+            }
+        }
+        let change = (slope + Matrix2::identity() * 1e-14).try_inverse().unwrap() * lack;
+        let mut fraction = 1.0;
+        while fraction > 1e-6 && dual(&(multiplier + change * fraction)) > dual(&multiplier) + 1e-15 {
+            fraction /= 2.0;
+        }
+        multiplier += change * fraction;
+    }
+    let inputs = wanted(&multiplier);
+    (inputs.iter().map(|u| u.clamp(-1.0, 1.0)).collect(), inputs)
+}
+
+#[test]
+fn the_box_is_kept_as_in_the_dual_solution() -> Result<(), Error> {
+    let (h, steps) = (0.1, 40);
+    for distance in [1.0, 2.5, 3.5, 3.9] {
+        let (expected, wanted) = clamped(h, steps, Vector2::new(distance, 0.0));
+        let price = expected.iter().map(|u| h * u * u / 2.0).sum::<f64>();
+        rest_to_rest(h, steps, distance, |found| {
+            assert!((found.price() - price).abs() < 1e-10 * price, "{found:?} after {price}");
+            for ((stage, u), wanted) in found.stages().iter().zip(&expected).zip(&wanted) {
+                assert!((stage.input()[0] - u).abs() < 1e-6, "{} after {u}", stage.input()[0]);
+                assert_eq!(stage.active(), [*wanted > 1.0, *wanted < -1.0], "{wanted}");
+                let multiplier = stage.multipliers()[0] - stage.multipliers()[1];
+                assert!((multiplier - h * (wanted - u)).abs() < 1e-6, "{multiplier} after {wanted}");
+            }
+            assert!(found.is_minimum() && found.gap() < 1e-12 && found.iterations() <= 40, "{found:?}");
+        })?;
+    }
+    Ok(())
+}
+
+/// In N steps of h, full thrust there and back goes (Nh)²/4 and no further.
+#[test]
+fn the_limit_is_full_thrust_there_and_back() -> Result<(), Error> {
+    rest_to_rest(0.1, 40, 4.0 - 1e-6, |found| {
+        for (k, stage) in found.stages().iter().enumerate() {
+            let side = if k < 20 { 1.0 } else { -1.0 };
+            assert!((stage.input()[0] - side).abs() < 2e-4, "{k}: {}", stage.input()[0]);
+        }
+        // the two inputs between give 10⁻⁶ = h² (1 − u) away
+        assert!((found.price() - (1.9 + 0.1 * 0.9999 * 0.9999)).abs() < 1e-10);
+    })?;
+    let error = rest_to_rest(0.1, 40, 4.0 + 1e-3, |_| ()).unwrap_err();
+    assert!(matches!(error, Error::TargetMissed { distance, .. } if distance < 0.1), "{error}");
+    let error = rest_to_rest(0.1, 40, 40.0, |_| ()).unwrap_err();
+    assert!(matches!(error, Error::TargetMissed { .. }), "{error}");
+    Ok(())
+}
+
+/// A guess that violates bounds, and one on them.
+#[test]
+fn guesses_need_not_keep_bounds() -> Result<(), Error> {
+    let (h, steps) = (0.1, 40);
+    let expected = rest_to_rest(h, steps, 3.5, |found| found.price())?;
+    let control: Control<_, 2, 1, 2> = bounded_integrator(h).control(h)?;
+    let (start, goal) = (Vector2::zeros(), Vector2::new(3.5, 0.0));
+    for guess in [7.0, 1.0, -1.0, 100.0] {
+        let stage = control.stage(&start).with_input(SMatrix::<f64, 1, 1>::new(guess));
+        let mut plan = vec![stage; steps];
+        let found = control.solve(&start, Target::Place(goal), &mut plan)?;
+        assert!((found.price() - expected).abs() < 1e-10, "{found:?} after {expected}");
+        let again = control.solve(&start, Target::Place(goal), &mut plan)?;
+        assert!(again.iterations() <= 2 && (again.price() - expected).abs() < 1e-10, "{again:?}");
+        let beside = Vector2::new(0.01, -0.02);
+        let near = control.solve(&beside, Target::Place(goal), &mut plan)?;
+        assert!(near.iterations() <= 20, "{near:?}");
+    }
+    Ok(())
+}
+
+/// A bound of the velocity, which is a bound of the place: it is passed at v = ½ for most of the time.
+#[test]
+fn bounds_of_the_place_are_kept() -> Result<(), Error> {
+    let (h, steps) = (0.1, 60);
+    let mut system = bounded_integrator(h);
+    system.bound_place = SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, -1.0);
+    system.bound_input = SMatrix::<f64, 2, 1>::new(0.0, 0.0);
+    system.bound = Vector2::new(0.5, 0.5);
+    let control: Control<_, 2, 1, 2> = system.control(h)?;
+    let start = Vector2::zeros();
+    let mut plan = vec![control.stage(&start); steps];
+    let found = control.solve(&start, Target::Place(Vector2::new(2.5, 0.0)), &mut plan)?;
+    let fastest = found.stages().iter().map(|stage| stage.place()[1]).fold(0.0, f64::max);
+    assert!((fastest - 0.5).abs() < 1e-8 && found.is_minimum(), "{fastest}");
+    // by symmetry in time, and with the inputs that the bound leaves alone falling linearly
+    let inputs: Vec<f64> = found.stages().iter().map(|stage| stage.input()[0]).collect();
+    for k in 0..steps / 2 {
+        assert!((inputs[k] + inputs[steps - 1 - k]).abs() < 1e-7);
+    }
+    let error = control.solve(&Vector2::new(0.0, 0.7), Target::Free, &mut plan).unwrap_err();
+    let expected = |violation: f64| (violation - 0.2).abs() < 1e-9;
+    assert!(
+        matches!(error, Error::Infeasible { stage: 0, bound: "the bound", violation } if expected(violation)),
+        "{error}"
+    );
+    Ok(())
+}
