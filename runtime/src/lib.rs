@@ -91,7 +91,7 @@ mod time;
 mod trajectory;
 mod variational;
 
-pub use boundary::{Boundary, Extremal, Guess, Node, States};
+pub use boundary::{Boundary, Extremal, Guess, Node, States, Way};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
 pub use control::{Control, Optimum, Stage, Target};
