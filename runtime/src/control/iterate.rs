@@ -140,8 +140,10 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
         self.calm = if size <= seen && self.damping <= T::one() { self.calm + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
-        let is_round_off = self.is_exact() && (size <= unit || size <= seen && stagnates) && is_decided;
-        let is_critical = is_round_off || self.calm > CALM;
+        let is_flat = size <= unit && self.damping == T::zero() || size <= seen && stagnates && self.is_exact();
+        // Where not all of the curvature is counted, corrections shrink by and by.
+        let patience = if self.is_exact() { CALM } else { 10 * CALM };
+        let is_critical = is_flat && is_decided || self.calm > patience;
         if !is_critical {
             Verdict::Correct
         } else if !end.is_reached() {
