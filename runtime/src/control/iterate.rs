@@ -131,9 +131,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let stagnates = matches!(self.before, Some(before) if before <= seen && size > before * T::from_ratio(1, 8));
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
-        // The slope does not depend on how much the curvature is counted: where it vanishes the plan is critical in either model.
-        let is_flat = size <= unit && self.damping == T::zero() || size <= seen && stagnates && self.is_exact();
-        let is_critical = is_flat && is_decided;
+        let is_critical = self.is_exact() && (size <= unit || size <= seen && stagnates) && is_decided;
         if !is_critical {
             Verdict::Correct
         } else if !end.is_reached() {
