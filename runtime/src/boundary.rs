@@ -5,18 +5,22 @@
 //! | file | what it does |
 //! |---|---|
 //! | `guess` | the path to start from |
+//! | `coarse` | the same with few edges, where there are many |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
 //! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
+//! | `several` | other ways between the same endpoints |
 //! | `end` | the gap to the target and the motions that fix it |
 
+mod coarse;
 mod end;
 mod extremal;
 mod guess;
 mod newton;
 mod node;
 mod pivot;
+mod several;
 mod sweep;
 mod vertex;
 
@@ -24,6 +28,7 @@ pub(crate) use end::shortest;
 pub use extremal::{Extremal, States};
 pub use guess::Guess;
 pub use node::Node;
+pub use several::Way;
 
 use crate::stepper::check_time;
 use crate::{Clebsch, Clock, Error, Scalar, Space, Stepper, Variational};
@@ -84,7 +89,8 @@ impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
     /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each edge is F⁻ℓd of the
     /// next and q_N is the target, both up to round-off; where motions fix the target, the last momentum vanishes on them.
     ///
-    /// Work: four to six linearisations from a good guess, each linear in the number of nodes; at most 200.
+    /// Work: three to six linearisations from a good guess, each linear in the number of nodes; at most 200. A long path from
+    /// [`Guess::Geodesic`] is begun with eight edges.
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for what was given;
@@ -102,19 +108,54 @@ impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
     where
         'a: 'p,
     {
-        self.check(start, target, &guess, path.len())?;
+        self.stepper.check_configuration(target)?;
+        self.extremal(start, Some(target), guess, path)
+    }
+
+    /// The path from `start` to wherever the action with the price of the end, Σ ℓd + φ(t_N, q_N), is critical: its last momentum is
+    /// −∂φ/∂q_N, 0 where no `endpoint` is declared.
+    ///
+    /// As [`solve`](Self::solve), but that [`Guess::Geodesic`] starts at rest. [`Extremal::action`] includes φ.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub fn solve_free<'p>(
+        &self,
+        start: &S::Configuration,
+        guess: Guess<S::Scalar, M>,
+        path: &'p mut [Node<S, M>],
+    ) -> Result<Extremal<'p, S, M>, Error>
+    where
+        'a: 'p,
+    {
+        self.extremal(start, None, guess, path)
+    }
+
+    fn extremal<'p>(
+        &self,
+        start: &S::Configuration,
+        target: Option<&S::Configuration>,
+        guess: Guess<S::Scalar, M>,
+        path: &'p mut [Node<S, M>],
+    ) -> Result<Extremal<'p, S, M>, Error>
+    where
+        'a: 'p,
+    {
+        self.check(start, &guess, path.len())?;
         let zero = S::Scalar::zero();
         let sign = if self.stepper.h < zero { -S::Scalar::one() } else { S::Scalar::one() };
-        let problem = Problem { stepper: self.stepper, time: self.time, start, target, sign };
+        let Stepper { system, h, constants } = self.stepper;
+        let problem = Problem { system, h: *h, constants, time: self.time, start, target, sign };
         let end = problem.prepare(path, &guess)?;
         let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
+        let gap = target.map_or(zero, |target| solved.end.distance_squared(target).sqrt());
         Ok(Extremal {
             stepper: self.stepper,
             path,
             time: self.time,
             action: solved.summary.action,
             residual: solved.summary.residual_squared.sqrt(),
-            gap: solved.end.distance_squared(target).sqrt(),
+            gap,
             negative: solved.summary.negative,
             iterations: solved.sweeps,
             end: solved.end,
@@ -122,20 +163,13 @@ impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
         })
     }
 
-    /// Endpoints and guess are finite, endpoints on the declared space, nodes those of whole steps.
-    fn check(
-        &self,
-        start: &S::Configuration,
-        target: &S::Configuration,
-        guess: &Guess<S::Scalar, M>,
-        nodes: usize,
-    ) -> Result<(), Error> {
+    /// Start and guess are finite, the start on the declared space, nodes those of whole steps.
+    fn check(&self, start: &S::Configuration, guess: &Guess<S::Scalar, M>, nodes: usize) -> Result<(), Error> {
         let per_step = S::EDGES.max(1);
         if nodes == 0 || !nodes.is_multiple_of(per_step) {
             return Err(Error::PathLength { nodes, per_step });
         }
         self.stepper.check_configuration(start)?;
-        self.stepper.check_configuration(target)?;
         match guess {
             Guess::Velocity(velocity) if !velocity.is_finite() => {
                 Err(Error::NotFinite { name: "the guessed velocity" })

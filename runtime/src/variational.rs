@@ -1,6 +1,6 @@
 //! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
 
-use crate::{Clebsch, Error};
+use crate::{Clebsch, EndpointExpansion, Error};
 use nalgebra::{SMatrix, SVector};
 
 /// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
@@ -16,9 +16,16 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1.
     const EDGES: usize;
 
-    /// The increment of τ(η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map or the
-    /// exponential.
-    fn retraction(&self, eta: &Self::Momentum) -> Self::Element;
+    /// The increments of τ(η) and of τ(−η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map
+    /// or the exponential. They have most of their terms in common.
+    fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2];
+
+    /// The increment of τ(η).
+    #[inline]
+    fn retraction(&self, eta: &Self::Momentum) -> Self::Element {
+        let [ahead, _] = self.retractions(eta);
+        ahead
+    }
 
     /// The increment of the motion by `d` and after it by `second`, of both as increments.
     fn compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element;
@@ -53,6 +60,19 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         u: &Self::Input,
     ) -> Edge<Self::Scalar, M>;
 
+    /// [`edge`](Self::edge) without derivatives of the momenta.
+    #[allow(clippy::too_many_arguments)]
+    fn momenta(
+        &self,
+        constants: &Self::Constants,
+        edge: usize,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Momenta<Self::Scalar, M>;
+
     /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
     /// Together they say everything, and nothing of the size of inertia/h cancels.
     #[allow(clippy::too_many_arguments)]
@@ -66,6 +86,12 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> Carried<Self::Scalar, M>;
+
+    /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
+    #[inline]
+    fn endpoint(&self, _t: Self::Scalar, _q: &Self::Configuration) -> EndpointExpansion<Self::Scalar, M> {
+        crate::steered::no_endpoint()
+    }
 
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.
     fn infinitesimal_motion(&self, q: &Self::Configuration, xi: &Self::Momentum) -> Self::Configuration;
@@ -98,6 +124,17 @@ pub struct Edge<T, const M: usize> {
     pub after_by_start: SMatrix<T, M, M>,
     /// ∂F⁺ℓd/∂η′
     pub after_by_end: SMatrix<T, M, M>,
+}
+
+/// The discrete Lagrangian ℓd of an edge with its Legendre transforms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Momenta<T, const M: usize> {
+    /// ℓd(t, h, q, F)
+    pub lagrangian: T,
+    /// F⁻ℓd, the momentum at the start.
+    pub before: SVector<T, M>,
+    /// F⁺ℓd, the momentum at the end.
+    pub after: SVector<T, M>,
 }
 
 /// An edge with the derivatives of its momenta along the motions of its start that carry its end along.

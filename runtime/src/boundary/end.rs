@@ -2,7 +2,7 @@
 
 use crate::eigen::Spectrum;
 use crate::space::larger;
-use crate::{Scalar, Space, Variational};
+use crate::{EndpointExpansion, Scalar, Space, Variational};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -19,6 +19,12 @@ pub(super) struct End<T, const M: usize> {
     pub along: T,
     /// The numbers that the gap is compared with: the largest entry of both configurations.
     pub scale: T,
+    /// φ, the price of a free end.
+    pub price: T,
+    /// ∂φ/∂η
+    pub slope: SVector<T, M>,
+    /// ∂²φ/∂η²; `None` where the end is not free.
+    pub curvature: Option<SMatrix<T, M, M>>,
 }
 
 impl<T: Scalar, const M: usize> End<T, M> {
@@ -36,17 +42,48 @@ impl<T: Scalar, const M: usize> End<T, M> {
         // Rounding makes the square of 0 negative.
         let along = larger(T::zero(), closing.dot(&approach)).sqrt();
         let scale = larger(target.max_abs(), q.max_abs());
-        let mut end = Self { closing, kernel, distance: q.distance_squared(target).sqrt(), along, scale };
+        let distance = q.distance_squared(target).sqrt();
+        let (price, slope) = (T::zero(), SVector::from_element(T::zero()));
+        let mut end = Self { closing, kernel, distance, along, scale, price, slope, curvature: None };
         if along <= T::from_f64(4.0) * T::EPSILON * scale {
             end.closing = SVector::from_element(T::zero());
         }
         end
     }
 
+    /// The end of a path that may end anywhere: all motions are free, and there is no gap.
+    pub fn free(endpoint: &EndpointExpansion<T, M>, scale: T) -> Self {
+        let zero = T::zero();
+        Self {
+            closing: SVector::from_element(zero),
+            kernel: Some(SMatrix::from_fn(|i, j| if i == j { T::one() } else { zero })),
+            distance: zero,
+            along: zero,
+            scale,
+            price: endpoint.price,
+            slope: endpoint.slope,
+            curvature: Some(endpoint.curvature),
+        }
+    }
+
+    /// The derivative of the momentum at the end, with that of the price.
+    pub fn bent(&self, momentum: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
+        match &self.curvature {
+            Some(curvature) => SMatrix::from_fn(|i, j| momentum[(i, j)] + curvature[(i, j)]),
+            None => *momentum,
+        }
+    }
+
     /// Whether nothing is left that motions along the orbit can close.
     #[inline]
     pub fn is_closed(&self) -> bool {
         self.closing.iter().all(|x| *x == T::zero())
+    }
+
+    /// Whether the gap is closed or below `enough` of the size of the configuration.
+    #[inline]
+    pub fn is_near(&self, enough: T) -> bool {
+        self.is_closed() || self.distance <= enough * self.scale
     }
 
     /// Whether the gap is none to a person: below √ε.
@@ -149,6 +186,9 @@ mod tests {
                 distance: 2.0 * radius * (angle / 2.0).sin(),
                 along: radius * angle.sin(),
                 scale: radius,
+                price: 0.0,
+                slope: Vector3::zeros(),
+                curvature: None,
             };
             assert!((end.arc().x * angle.sin() - angle).abs() < 1e-12, "{angle}");
         }

@@ -28,7 +28,7 @@ impl<'a, S: Variational<M>, const M: usize> Extremal<'a, S, M> {
         self.action
     }
 
-    /// The number of linearisations that were made.
+    /// The number of linearisations of the path that were made, without those of a path of few edges that it was begun with.
     pub fn iterations(&self) -> u32 {
         self.iterations
     }
@@ -44,7 +44,7 @@ impl<'a, S: Variational<M>, const M: usize> Extremal<'a, S, M> {
     }
 
     /// The Morse index, the number of independent variations that make the action smaller: 0 on a strict local minimum, where no
-    /// vertex is conjugate to the target. For a negative step size, those that make it larger.
+    /// vertex is conjugate to the target. Counted in the last linearisation, within √ε of the path. For a negative step size, those that make it larger.
     pub fn negative(&self) -> usize {
         self.negative
     }

@@ -1,7 +1,7 @@
 //! The path that Newton's method starts from.
 
 use super::Node;
-use super::end::End;
+use super::coarse::interpolated;
 use super::newton::unreachable;
 use super::sweep::Problem;
 use crate::{Error, Scalar, Variational};
@@ -12,7 +12,7 @@ use num_traits::{One, Zero};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess<T, const M: usize> {
     /// A path that moves by the same group element in every edge, the shortest way to the target. A minimum is looked
-    /// for.
+    /// for. Where no target is given, the path starts at rest.
     Geodesic,
     /// The same with this velocity ξ in 𝔤 to start with, for other windings and directions. It need not lead to the target: the
     /// velocity near it that does is taken. An extremal is found that may be no minimum.
@@ -31,23 +31,28 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// # Errors
     /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
     pub fn prepare(&self, path: &mut [Node<S, M>], guess: &Guess<S::Scalar, M>) -> Result<S::Configuration, Error> {
-        match guess {
-            Guess::Geodesic => {
-                let end = End::of(&self.stepper.system, self.start, self.target);
-                if end.is_orthogonal() {
-                    return Err(Error::UndeterminedDirection { distance: end.distance.to_f64() });
-                }
+        let end = match guess {
+            Guess::Geodesic if self.target.is_none() => {
                 self.fill(path, SVector::from_element(S::Scalar::zero()));
+                self.roll_out(path)
+            }
+            Guess::Geodesic => {
+                let gap = self.end(self.start, path.len());
+                if gap.is_orthogonal() {
+                    return Err(Error::UndeterminedDirection { distance: gap.distance.to_f64() });
+                }
+                let eta = self.fill(path, SVector::from_element(S::Scalar::zero()));
+                self.refined(path, &eta)
             }
             Guess::Velocity(velocity) => {
                 let edges = S::Scalar::from_f64(S::EDGES.max(1) as f64);
-                self.fill(path, velocity * (self.stepper.h / edges));
+                self.fill(path, velocity * (self.h / edges));
+                self.roll_out(path)
             }
-            Guess::Path => {}
-        }
-        let end = self.roll_out(path);
+            Guess::Path => self.roll_out(path),
+        };
         let end = self.close(path, end, S::Scalar::from_ratio(1, 8));
-        let gap = End::of(&self.stepper.system, &end, self.target);
+        let gap = self.end(&end, path.len());
         if !(gap.distance.is_finite() && gap.along.is_finite()) {
             return Err(Error::NotFinite { name: "the end of the guessed path" });
         }
@@ -57,18 +62,18 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// Fills the nodes with the same group element τ(η), after corrections of η that bring the end to the target.
     ///
     /// Each correction is the arc over the gap, divided by the number of edges. It is exact where all motions commute and along the
-    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close).
-    fn fill(&self, path: &mut [Node<S, M>], eta: SVector<S::Scalar, M>) {
-        let system = &self.stepper.system;
+    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close). Returns η.
+    pub fn fill(&self, path: &mut [Node<S, M>], eta: SVector<S::Scalar, M>) -> SVector<S::Scalar, M> {
+        let system = self.system;
         let edges = S::Scalar::from_f64(path.len() as f64);
         let end_of = |eta: &SVector<S::Scalar, M>| {
             let q = system.advance(self.start, &self.power(eta, path.len()));
-            End::of(system, &q, self.target)
+            self.end(&q, path.len())
         };
         let mut eta = eta;
         let mut end = end_of(&eta);
         for _ in 0..PASSES {
-            if end.is_closed() || end.is_orthogonal() {
+            if end.is_near(S::Scalar::from_ratio(1, 256)) || end.is_orthogonal() {
                 break;
             }
             let next = eta + end.arc() / edges;
@@ -82,11 +87,27 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         }
         let increment = system.retraction(&eta);
         path.iter_mut().for_each(|node| node.increment = increment);
+        eta
+    }
+
+    /// Moves the vertices of a path of equal edges τ(η) to where a path of few edges finds them. Returns q_N.
+    fn refined(&self, path: &mut [Node<S, M>], eta: &SVector<S::Scalar, M>) -> S::Configuration {
+        let edges = path.len();
+        let Some(increment) = path.last().map(|node| node.increment) else { return *self.start };
+        let motions = self.coarse(path, eta);
+        path.iter_mut().for_each(|node| node.increment = increment);
+        match motions {
+            Some(motions) => {
+                let mut motion = interpolated(&motions, edges);
+                self.displace(path, |index, _| motion(index + 1))
+            }
+            None => self.roll_out(path),
+        }
     }
 
     /// The increment of τ(η)ⁿ, by squaring.
     fn power(&self, eta: &SVector<S::Scalar, M>, exponent: usize) -> S::Element {
-        let system = &self.stepper.system;
+        let system = self.system;
         let mut square = system.retraction(eta);
         let mut power = system.retraction(&SVector::from_element(S::Scalar::zero()));
         let mut rest = exponent;
@@ -104,18 +125,16 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// it smaller. Returns q_N.
     #[cold]
     pub fn close(&self, path: &mut [Node<S, M>], end: S::Configuration, enough: S::Scalar) -> S::Configuration {
-        let system = &self.stepper.system;
         let edges = S::Scalar::from_f64(path.len() as f64);
-        let (mut q, mut gap) = (end, End::of(system, &end, self.target));
+        let (mut q, mut gap) = (end, self.end(&end, path.len()));
         let mut fraction = S::Scalar::one();
         for _ in 0..PASSES {
-            let near = gap.is_closed() || gap.distance <= enough * gap.scale;
-            if near || gap.is_orthogonal() || !gap.distance.is_finite() {
+            if gap.is_near(enough) || gap.is_orthogonal() || !gap.distance.is_finite() {
                 break;
             }
             let motion = gap.arc() * fraction;
             let next = self.displace(path, |index, _| motion * (S::Scalar::from_f64((index + 1) as f64) / edges));
-            let next_gap = End::of(system, &next, self.target);
+            let next_gap = self.end(&next, path.len());
             // Written so that NaN is taken back.
             if next_gap.distance < gap.distance {
                 (q, gap) = (next, next_gap);

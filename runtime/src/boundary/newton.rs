@@ -52,7 +52,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let mut curvature = Curvature::Kept;
         let mut size = S::Scalar::zero();
         for sweeps in 1..=SWEEPS {
-            let gap = End::of(&self.stepper.system, &end, self.target);
+            let gap = self.end(&end, path.len());
             let summary = self.eliminate(path, &end, &gap, curvature);
             size = summary.size();
             if !summary.action.is_finite() && (sweeps == 1 || curvature != Curvature::Kept) {
@@ -80,6 +80,11 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
                 }
             } else if self.is_progress(&summary, before.as_ref(), any_index) {
                 end = self.correct(path, S::Scalar::one());
+                if is_last(&summary, before.as_ref())
+                    && let Some(summary) = self.found(path, &end, &summary)
+                {
+                    return Ok(Solved { summary, end, sweeps });
+                }
             } else {
                 if before.is_some() {
                     end = self.take_back(path);
@@ -91,6 +96,21 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
         }
         Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
+    }
+
+    /// What is known of a path after its last correction, if that is what it was: if the gap is closed and the residual is round-off.
+    #[inline]
+    fn found(
+        &self,
+        path: &mut [Node<S, M>],
+        end: &S::Configuration,
+        before: &Summary<S::Scalar, M>,
+    ) -> Option<Summary<S::Scalar, M>> {
+        let gap = self.end(end, path.len());
+        let summary = self.measure(path, end, &gap, before);
+        let unit = S::Scalar::from_f64(4.0) * S::Scalar::EPSILON * summary.edges.sqrt();
+        (gap.along <= unit * gap.scale && gap.is_reached() && summary.is_stationary(S::Scalar::from_f64(16.0)))
+            .then_some(summary)
     }
 
     /// Whether a full step is made next. Comparisons are written so that NaN is none.
@@ -176,6 +196,15 @@ fn has_converged<T: Scalar, const M: usize>(
             Some(before) if size > before.size * T::from_ratio(1, 8) => true,
             _ => closed && summary.is_stationary(T::from_f64(16.0)),
         }
+}
+
+/// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
+#[inline]
+fn is_last<T: Scalar, const M: usize>(summary: &Summary<T, M>, before: Option<&Progress<T>>) -> bool {
+    let size = summary.size();
+    let contraction = |before: &Progress<T>| size / before.size;
+    size <= T::EPSILON.sqrt()
+        && before.is_some_and(|before| size * contraction(before) * contraction(before) <= T::EPSILON)
 }
 
 /// The gap that is left where none of it can be closed.

@@ -54,6 +54,8 @@ impl<S: Clebsch, const M: usize> Node<S, M> {
     /// The matrix K of optimal feedback: where q_k is found at Φ_{exp η}(q_k), the extremal from there to the target passes
     /// Φ_{exp η′}(q_{k+1}) with η′ = −Kη + O(η²).
     ///
+    /// It is of the last linearisation, from which the path may have moved by √ε of its size: K is known to as much.
+    ///
     /// Shape M×M. For the last edge η′ has only motions that fix the target: K = 0 where the action is free.
     #[inline]
     pub fn gain(&self) -> &SMatrix<S::Scalar, M, M> {

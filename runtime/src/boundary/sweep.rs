@@ -13,24 +13,41 @@
 
 use super::Node;
 use super::end::End;
-use super::pivot::Curvature;
+use super::pivot::{Curvature, Feedback};
 use super::vertex::{Pending, Summary};
-use crate::{Edge, Scalar, Space, Stepper, Variational};
+use crate::{Edge, Momenta, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;
 
-/// Fixed endpoints for a stepper.
+/// Fixed endpoints for a system and a step size.
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a, S: Variational<M>, const M: usize> {
-    pub stepper: &'a Stepper<S>,
+    pub system: &'a S,
+    pub h: S::Scalar,
+    pub constants: &'a S::Constants,
     /// The time of the start.
     pub time: S::Scalar,
     pub start: &'a S::Configuration,
-    pub target: &'a S::Configuration,
+    /// The last configuration; `None` where it is free, at the price of the end.
+    pub target: Option<&'a S::Configuration>,
     /// The sign of the step size: that of the Hessian at a minimum.
     pub sign: S::Scalar,
 }
 
 impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+    /// What is known of a path of so many edges that ends at `q`.
+    #[inline]
+    pub fn end(&self, q: &S::Configuration, edges: usize) -> End<S::Scalar, M> {
+        match self.target {
+            Some(target) => End::of(self.system, q, target),
+            None => End::free(&self.system.endpoint(self.time_of_end(edges), q), q.max_abs()),
+        }
+    }
+
+    fn time_of_end(&self, edges: usize) -> S::Scalar {
+        time_after::<S, M>(self.time, self.h, edges / S::EDGES.max(1))
+    }
+
     /// Linearises and eliminates a path that ends at `last_vertex`: fills momenta, gains and shifts of the nodes.
     #[inline]
     pub fn eliminate(
@@ -42,21 +59,56 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     ) -> Summary<S::Scalar, M> {
         let mut summary = Summary::of_nothing(path.len());
         let Some((last, rest)) = path.split_last_mut() else { return summary };
-        let edge = self.edge(rest.len(), &last.configuration, &last.increment, last_vertex);
-        summary.count(&edge);
-        let solution = summary.eliminate_end(&edge, end, self.sign, curvature);
-        let mut pending = Pending::behind(&edge, &solution);
-        (last.momentum, last.gain, last.shift) = (edge.before, solution.gain, solution.shift);
+        let mut pending = self.eliminate_end(rest.len(), last, last_vertex, end, curvature, &mut summary);
         let mut next = &last.configuration;
         for (index, node) in rest.iter_mut().enumerate().rev() {
             let edge = self.edge(index, &node.configuration, &node.increment, next);
             summary.count(&edge);
-            let solution = summary.eliminate(&edge, &pending, self.sign, curvature);
+            let feedback = Feedback { gain: &mut node.gain, shift: &mut node.shift };
+            let solution = summary.eliminate(&edge, &pending, self.sign, curvature, feedback);
             pending = Pending::behind(&edge, &solution);
-            (node.momentum, node.gain, node.shift) = (edge.before, solution.gain, solution.shift);
+            node.momentum = edge.before;
             next = &node.configuration;
         }
         summary
+    }
+
+    /// The last edge and the vertex where it ends, apart from the loop over the others.
+    #[inline(never)]
+    fn eliminate_end(
+        &self,
+        index: usize,
+        last: &mut Node<S, M>,
+        last_vertex: &S::Configuration,
+        end: &End<S::Scalar, M>,
+        curvature: Curvature<S::Scalar>,
+        summary: &mut Summary<S::Scalar, M>,
+    ) -> Pending<S::Scalar, M> {
+        let edge = self.edge(index, &last.configuration, &last.increment, last_vertex);
+        summary.count(&edge);
+        let feedback = Feedback { gain: &mut last.gain, shift: &mut last.shift };
+        let solution = summary.eliminate_end(&edge, end, self.sign, curvature, feedback);
+        last.momentum = edge.before;
+        Pending::behind(&edge, &solution)
+    }
+
+    /// Momenta, action and residual of a path that ends at `last_vertex`, without second derivatives: gains and shifts of the nodes stay
+    /// those of the sweep that `before` tells of.
+    pub fn measure(
+        &self,
+        path: &mut [Node<S, M>],
+        last_vertex: &S::Configuration,
+        end: &End<S::Scalar, M>,
+        before: &Summary<S::Scalar, M>,
+    ) -> Summary<S::Scalar, M> {
+        let mut next = last_vertex;
+        let edges = path.iter_mut().enumerate().rev().map(|(index, node)| {
+            let momenta = self.momenta(index, &node.configuration, &node.increment, next);
+            node.momentum = momenta.before;
+            next = &node.configuration;
+            momenta
+        });
+        before.measured(edges, end)
     }
 
     /// Moves the vertices by `fraction` of Newton's correction. Returns q_N.
@@ -83,16 +135,18 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         path: &mut [Node<S, M>],
         mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<S::Scalar, M>,
     ) -> S::Configuration {
-        let system = &self.stepper.system;
-        let (mut q, mut back) = (*self.start, SVector::from_element(S::Scalar::zero()));
+        let system = self.system;
+        let mut q = *self.start;
+        let mut back = system.retraction(&SVector::from_element(S::Scalar::zero()));
         for (index, node) in path.iter_mut().enumerate() {
             let next = motion(index, node);
-            let behind = system.compose(&system.retraction(&back), &node.increment);
-            node.increment = system.compose(&behind, &system.retraction(&next));
+            let behind = system.compose(&back, &node.increment);
+            let [ahead, inverse] = system.retractions(&next);
+            node.increment = system.compose(&behind, &ahead);
             node.configuration = q;
             node.motion = next;
             q = system.advance(&q, &node.increment);
-            back = -next;
+            back = inverse;
         }
         q
     }
@@ -100,7 +154,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// The action after `fraction` of Newton's correction.
     #[cold]
     pub fn action_after(&self, path: &[Node<S, M>], fraction: S::Scalar) -> S::Scalar {
-        let system = &self.stepper.system;
+        let system = self.system;
         let zero = SVector::<S::Scalar, M>::from_element(S::Scalar::zero());
         let (mut q, mut motion, mut action) = (*self.start, zero, S::Scalar::zero());
         for (index, node) in path.iter().enumerate() {
@@ -108,26 +162,46 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             motion = -node.shift - node.gain * motion;
             let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
             let next = system.advance(&q, &increment);
-            action += self.edge(index, &q, &increment, &next).lagrangian;
+            action += self.momenta(index, &q, &increment, &next).lagrangian;
             q = next;
         }
-        action
+        match self.target {
+            Some(_) => action,
+            None => action + self.system.endpoint(self.time_of_end(path.len()), &q).price,
+        }
     }
 
     /// The configurations that the increments lead to. Returns q_N.
     pub fn roll_out(&self, path: &mut [Node<S, M>]) -> S::Configuration {
         path.iter_mut().fold(*self.start, |q, node| {
             node.configuration = q;
-            self.stepper.system.advance(&q, &node.increment)
+            self.system.advance(&q, &node.increment)
         })
     }
 
-    /// Not inlined: the elimination beside it needs the registers.
-    #[inline(never)]
+    #[inline(always)]
     fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
+        let (t, edge) = self.place(index);
+        self.system.edge(self.constants, edge, t, q, d, next, &S::Input::origin())
+    }
+
+    #[inline]
+    fn momenta(
+        &self,
+        index: usize,
+        q: &S::Configuration,
+        d: &S::Element,
+        next: &S::Configuration,
+    ) -> Momenta<S::Scalar, M> {
+        let (t, edge) = self.place(index);
+        self.system.momenta(self.constants, edge, t, q, d, next, &S::Input::origin())
+    }
+
+    /// The time at which the step of an edge starts, and the number of the edge in it.
+    #[inline]
+    fn place(&self, index: usize) -> (S::Scalar, usize) {
         let per_step = S::EDGES.max(1);
-        let t = time_after::<S, M>(self.time, self.stepper.h, index / per_step);
-        self.stepper.system.edge(&self.stepper.constants, index % per_step, t, q, d, next, &S::Input::origin())
+        (time_after::<S, M>(self.time, self.h, index / per_step), index % per_step)
     }
 }
 

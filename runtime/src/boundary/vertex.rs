@@ -1,10 +1,10 @@
 //! One vertex in the backward sweep: its block of the Hessian, its elimination, and the sums over all of them.
 
 use super::end::End;
-use super::pivot::{Curvature, Solution, solve};
+use super::pivot::{Curvature, Feedback, Solution, solve};
 use crate::linear::rows;
 use crate::space::larger;
-use crate::{Edge, Scalar};
+use crate::{Edge, Momenta, Scalar};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -75,6 +75,29 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         }
     }
 
+    /// Action, momenta and residual of another path near this one, from its last edge to its first.
+    #[inline]
+    pub fn measured(&self, edges: impl Iterator<Item = Momenta<T, M>>, end: &End<T, M>) -> Self {
+        let mut summary = Self { action: T::zero(), momenta: T::zero(), residual_squared: T::zero(), ..*self };
+        let mut later: Option<SVector<T, M>> = None;
+        for Momenta { lagrangian, before, after } in edges {
+            let residual = match (later, &end.kernel) {
+                (Some(later), _) => after - later,
+                (None, Some(kernel)) => kernel * (after + end.slope),
+                (None, None) => SVector::from_element(T::zero()),
+            };
+            if later.is_none() {
+                summary.after = after;
+            }
+            summary.action += lagrangian;
+            summary.momenta += before.dot(&before);
+            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
+            later = Some(before);
+        }
+        summary.action += end.price;
+        summary
+    }
+
     /// Adds up what scales the correction.
     #[inline]
     pub fn count(&mut self, edge: &Edge<T, M>) {
@@ -85,20 +108,21 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
     }
 
     #[inline]
-    fn count_vertex(&mut self, residual: &SVector<T, M>, gradient: &SVector<T, M>, solution: &Solution<T, M>) {
+    fn count_vertex(&mut self, residual: &SVector<T, M>, solution: &Solution<T, M>) {
         self.residual_squared = larger(self.residual_squared, residual.dot(residual));
-        self.decrement += solution.shift.dot(gradient);
+        self.decrement += solution.decrement;
         self.negative += solution.negative;
     }
 
     /// The interior vertex where `edge` ends.
-    #[inline]
+    #[inline(always)]
     pub fn eliminate(
         &mut self,
         edge: &Edge<T, M>,
         pending: &Pending<T, M>,
         sign: T,
         curvature: Curvature<T>,
+        feedback: Feedback<'_, T, M>,
     ) -> Solution<T, M> {
         let mut pivot = lower_half(&edge.after_by_end);
         for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
@@ -108,8 +132,8 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
             damp(&mut pivot, edge, self.edges, damping * sign);
         }
         let gradient = pending.gradient + edge.after;
-        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature);
-        self.count_vertex(&(edge.after - pending.before), &gradient, &solution);
+        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature, feedback);
+        self.count_vertex(&(edge.after - pending.before), &solution);
         solution
     }
 
@@ -123,34 +147,35 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         end: &End<T, M>,
         sign: T,
         curvature: Curvature<T>,
+        feedback: Feedback<'_, T, M>,
     ) -> Solution<T, M> {
+        let Feedback { gain, shift } = feedback;
         self.after = edge.after;
+        self.action += end.price;
+        self.magnitude += end.price.abs();
         self.decrement += end.closing.dot(&(edge.after_by_end * end.closing)).abs();
         let Some(kernel) = &end.kernel else {
+            (*gain, *shift) = (SMatrix::from_element(T::zero()), -end.closing);
             return Solution {
-                gain: SMatrix::from_element(T::zero()),
-                shift: -end.closing,
                 hessian: [[T::zero(); M]; M],
                 gradient: edge.before_by_end * end.closing,
+                decrement: T::zero(),
                 negative: 0,
             };
         };
-        let gradient = kernel * (edge.after + edge.after_by_end * end.closing);
+        let gradient = kernel * (edge.after + end.slope + edge.after_by_end * end.closing);
         let size = edge.after_by_end.trace().abs() * sign;
-        let pivot = kernel * edge.after_by_end * kernel + (SMatrix::identity() - kernel) * size;
+        let pivot = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
         let coupling = -kernel * edge.before_by_end.transpose();
         let mut pivot = lower_half(&pivot);
         if let Curvature::Mirrored { damping } = curvature {
             damp(&mut pivot, edge, self.edges, damping * sign);
         }
-        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature);
-        self.count_vertex(&(kernel * edge.after), &gradient, &solution);
-        Solution {
-            gain: kernel * solution.gain,
-            shift: kernel * solution.shift - end.closing,
-            gradient: solution.gradient + edge.before_by_end * end.closing,
-            ..solution
-        }
+        let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
+        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature, feedback);
+        self.count_vertex(&(kernel * (edge.after + end.slope)), &solution);
+        (*gain, *shift) = (kernel * *gain, kernel * *shift - end.closing);
+        Solution { gradient: solution.gradient + edge.before_by_end * end.closing, ..solution }
     }
 }
 
@@ -190,9 +215,10 @@ fn lower_half<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
     let half = T::from_ratio(1, 2);
     let mut lower = [[T::zero(); M]; M];
     for (i, row) in lower.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().take(i + 1).enumerate() {
+        for (j, entry) in row.iter_mut().take(i).enumerate() {
             *entry = (a[(i, j)] + a[(j, i)]) * half;
         }
+        row[i] = a[(i, i)];
     }
     lower
 }

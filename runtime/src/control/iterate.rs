@@ -82,8 +82,8 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
 
     /// Whether the sweep found enough positive curvature to go downhill; if not, the next one is made otherwise.
     ///
-    /// First the critical point of the exact model tells whether more weight of the target helps; where it does not, the curvature of
-    /// the steps is counted less and less, down to that of the price alone.
+    /// First the critical point of the exact model is gone to, where it is near, or tells whether more weight of the target helps; else
+    /// the curvature of the steps is counted less and less, down to that of the price alone.
     pub fn goes_downhill<const U: usize>(
         &mut self,
         summary: &Summary<T, D, U>,
@@ -92,6 +92,10 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
     ) -> bool {
         let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
         if self.settings.curvature == Curvature::Kept {
+            let is_near = matches!(self.before, Some(before) if before <= T::from_ratio(NEAR.0, NEAR.1));
+            if summary.negative <= FLAT && is_near && self.is_exact() {
+                return true;
+            }
             self.settings.curvature = Curvature::Mirrored { damping: self.damping };
             self.is_probed = true;
             if index(summary.negative, self.rank, gramian) == 0 {
@@ -136,8 +140,10 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
         self.calm = if size <= seen && self.damping <= T::one() { self.calm + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
-        let is_round_off = self.is_exact() && (size <= unit || size <= seen && stagnates) && is_decided;
-        let is_critical = is_round_off || self.calm > CALM;
+        let is_flat = size <= unit && self.damping == T::zero() || size <= seen && stagnates && self.is_exact();
+        // Where not all of the curvature is counted, corrections shrink by and by.
+        let patience = if self.is_exact() { CALM } else { 10 * CALM };
+        let is_critical = is_flat && is_decided || self.calm > patience;
         if !is_critical {
             Verdict::Correct
         } else if !end.is_reached() {

@@ -187,11 +187,12 @@ const _: () = {
     impl ::clebsch::Variational<3> for DrivenPendulum {
         const EDGES: usize = 1;
 
-        /// cay(η) − I = (η^ + ½ η^²)/(1 + ¼|η|²)
+        /// cay(±η) − I = (±η^ + ½ η^²)/(1 + ¼|η|²)
         #[inline]
-        fn retraction(&self, eta: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+        fn retractions(&self, eta: &SVector<f64, 3>) -> [SMatrix<f64, 3, 3>; 2] {
             let a = eta.cross_matrix();
-            (a + a * a * 0.5) / (1.0 + 0.25 * eta.norm_squared())
+            let even = a * a * 0.5;
+            [even + a, even - a].map(|a| a / (1.0 + 0.25 * eta.norm_squared()))
         }
 
         /// F₂F₁ − I
@@ -253,6 +254,27 @@ const _: () = {
                 before_by_end: turning,
                 after_by_start: -turning.transpose(),
                 after_by_end: turning - next * g_next.transpose() + identity * next.dot(&g_next),
+            }
+        }
+
+        /// ℓd, N and N⁺ of the edge.
+        #[inline]
+        fn momenta(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            t: f64,
+            q: &SVector<f64, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SVector<f64, 3>,
+            _u: &(),
+        ) -> ::clebsch::Momenta<f64, 3> {
+            let (c, half_h) = (0.5 / constants.h_by_inertia, constants.half_h);
+            let height = (gradient(self, t).dot(q) + gradient(self, t + constants.h).dot(next)) * half_h;
+            ::clebsch::Momenta {
+                lagrangian: d.norm_squared() * (0.5 * c) - height,
+                before: components(d) * c + moment(self, t, q) * half_h,
+                after: components(d) * c - moment(self, t + constants.h, next) * half_h,
             }
         }
 

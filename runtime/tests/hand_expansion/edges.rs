@@ -5,7 +5,7 @@ use crate::{HeavyTop, assert_near, attitude, top};
 use clebsch::{Clebsch, Edge, Error, Variational};
 use nalgebra::{Matrix3, Vector3};
 
-/// The edge after motions of its ends.
+/// The edge after motions of its ends; its momenta alone are the same.
 fn moved<S>(
     system: &S,
     h: f64,
@@ -20,7 +20,13 @@ where
     let constants = system.constants(h).expect("a good step size");
     let q = system.advance(q, &system.retraction(&start));
     let d = system.compose(&system.compose(&system.retraction(&-start), d), &system.retraction(&end));
-    system.edge(&constants, 0, 0.3, &q, &d, &system.advance(&q, &d), &())
+    let next = system.advance(&q, &d);
+    let edge = system.edge(&constants, 0, 0.3, &q, &d, &next, &());
+    let momenta = system.momenta(&constants, 0, 0.3, &q, &d, &next, &());
+    assert!((momenta.lagrangian - edge.lagrangian).abs() < 1e-14);
+    assert_near!(momenta.before, edge.before, 1e-14);
+    assert_near!(momenta.after, edge.after, 1e-14);
+    edge
 }
 
 fn check_edge<S>(system: &S, q: &S::Configuration, d: &S::Element)

@@ -211,10 +211,11 @@ const _: () = {
     impl ::clebsch::Variational<3> for HeavyTop {
         const EDGES: usize = 1;
 
-        /// cay(η) − I
+        /// cay(η) − I, cay(−η) − I
         #[inline]
-        fn retraction(&self, eta: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
-            increment(&(eta * 0.5))
+        fn retractions(&self, eta: &SVector<f64, 3>) -> [SMatrix<f64, 3, 3>; 2] {
+            let c = eta * 0.5;
+            [increment(&c), increment(&-c)]
         }
 
         /// F₁F₂ − I
@@ -281,6 +282,28 @@ const _: () = {
                 after_by_start: -before_by_end.transpose(),
                 after_by_end: (trace - self.mass_matrix - turning.transpose()) * by_h + identity * gamma_next.dot(m)
                     - gamma_next * m.transpose(),
+            }
+        }
+
+        /// ℓd, N and N⁺ of the edge.
+        #[inline]
+        fn momenta(
+            &self,
+            constants: &Constants,
+            _edge: usize,
+            _t: f64,
+            r: &SMatrix<f64, 3, 3>,
+            d: &SMatrix<f64, 3, 3>,
+            next: &SMatrix<f64, 3, 3>,
+            _u: &(),
+        ) -> ::clebsch::Momenta<f64, 3> {
+            let (by_h, m) = (1.0 / constants.h, &constants.moment);
+            let turned = d * self.mass_matrix;
+            let height = (r + next).row(2).transpose().dot(m);
+            ::clebsch::Momenta {
+                lagrangian: d.dot(&turned) * (0.5 * by_h) - height,
+                before: components(&turned) * by_h - torque(m, r),
+                after: components(&(self.mass_matrix * d)) * by_h + torque(m, next),
             }
         }
 

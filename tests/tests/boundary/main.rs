@@ -1,6 +1,10 @@
 //! Fixed endpoints by the generated code: against published optima, closed forms, the stepper and the first-order conditions.
 
+mod free_ends;
+mod limits;
+mod pairs;
 mod systems;
+mod ways;
 
 use clebsch::{Clebsch, Error, Extremal, Guess, Node, Stepper, Variational};
 use clebsch_tests::oracle::near::assert_near;
@@ -157,4 +161,20 @@ fn straight_lines() -> Result<(), Error> {
     assert_near(extremal.momentum(), &((target - start) * (2.0 / 0.8)), 1e-13, "momentum of a straight line");
     assert!((extremal.action() - (target - start).norm_squared() / 0.8).abs() < 1e-13);
     Ok(())
+}
+
+/// All but one of a thousand pairs away from the cut locus are joined by a path at least; the others are told by an error of their own.
+///
+/// `CLEBSCH_RANDOM=10000` takes as many pairs of each system, and `-- --nocapture` shows what became of them.
+#[test]
+fn random_endpoints() {
+    let count = std::env::var("CLEBSCH_RANDOM").map_or(500, |count| count.parse().expect("a count of pairs"));
+    for line in pairs::lines(count) {
+        let pairs::Line { system, away, solved, near, solved_near, no_minimum, iterations, most, errors } = &line;
+        println!(
+            "{system}: {solved} of {away} and near the cut locus {solved_near} of {near}, {no_minimum} no minimum; {iterations} \
+             linearisations, {most} at most; {errors:?}"
+        );
+        assert!(line.share() >= 0.999, "{system}: {solved} of {away}, {errors:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! The systems between fixed endpoints: each takes another way through the compiler.
 
-use clebsch::Clebsch;
-use nalgebra::Vector3;
+use clebsch::{Clebsch, Scalar};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
@@ -104,3 +104,76 @@ pub struct Chain {
 pub struct Point {
     pub mass: f64,
 }
+
+/// The top by unit quaternions.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SU<2>, Q: SU<2>| Q * F,
+    cost      = |h, F| 2 * F.imag().dot(&self.inertia.component_mul(&F.imag())) / h,
+    potential = |Q| self.weight * (Q * Vector3::new(0, 0, 1)).z,
+    emit      = [boundary],
+)]
+pub struct QuaternionTop {
+    pub inertia: Vector3<f64>,
+    pub weight: f64,
+}
+
+/// The top over any scalar.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| (Matrix3::from_diagonal(&self.mass) * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| self.weight * R[(2, 2)],
+    emit      = [boundary],
+)]
+pub struct AnyTop<T: Scalar> {
+    pub mass: Vector3<T>,
+    pub weight: T,
+}
+
+/// A point that turns about the origin at any distance from it.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, x: Vector3| F * x,
+    cost   = |h, F| self.inertia * (F - I).norm_squared() / (4 * h),
+    emit   = [boundary],
+)]
+pub struct Swivel {
+    pub inertia: f64,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action   = |a: Translation<2>, x: Vector2| x + a,
+    cost     = |h, a| self.mass * a.norm_squared() / (2 * h),
+    endpoint = |x| self.stiffness * (x - self.goal).norm_squared() / 2,
+    emit     = [boundary],
+)]
+pub struct Spring {
+    pub mass: f64,
+    pub stiffness: f64,
+    pub goal: Vector2<f64>,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| (Matrix3::from_diagonal(&self.mass_matrix) * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| (R * self.weight).z,
+    endpoint  = |R| -self.stiffness * (R.transpose() * self.goal).trace(),
+    emit      = [boundary],
+)]
+pub struct Catch {
+    pub mass_matrix: Vector3<f64>,
+    pub weight: Vector3<f64>,
+    pub stiffness: f64,
+    pub goal: Matrix3<f64>,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    emit   = [boundary],
+)]
+pub struct Bead;

@@ -177,7 +177,7 @@ impl Scope<'_, '_> {
     }
 
     /// Whether a leaf of a nesting is a quaternion.
-    fn is_quaternion(&self, nesting: Nesting, leaf: usize) -> bool {
+    pub fn is_quaternion(&self, nesting: Nesting, leaf: usize) -> bool {
         match nesting {
             Nesting::Configuration => self.model.configurations[leaf].is_quaternion,
             Nesting::Element => self.model.factors[leaf].group == Group::UnitQuaternions,

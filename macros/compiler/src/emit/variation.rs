@@ -17,7 +17,6 @@ impl Emitter<'_, '_> {
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let edges = Literal::usize_unsuffixed(variations.edges.len());
         let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
-        let carried = self.carried();
         let scalar = &self.paths.scalar;
         let end = self.endpoint_expanded().map(|body| {
             quote! {
@@ -35,7 +34,6 @@ impl Emitter<'_, '_> {
                 #motions
                 #drift
                 #edge
-                #carried
                 #end
             }
         }
@@ -55,13 +53,6 @@ impl Emitter<'_, '_> {
                 }
             }
         };
-        let retraction = method(
-            "The increment τ(η) − I of a small motion.",
-            quote!(retraction(&self, eta: &Self::Momentum) -> Self::Element),
-            &variations.retraction,
-            Some(Nesting::Element),
-            self.chart_coordinates(&variations.slopes),
-        );
         let compose = method(
             "The increment of the motion by I + d and after it by I + second.",
             quote!(compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element),
@@ -83,6 +74,7 @@ impl Emitter<'_, '_> {
             Some(Nesting::Configuration),
             quote!(),
         );
+        let retractions = self.retractions(variations);
         let (matrix, orbit_metric) = (self.block_type(), &variations.orbit_metric);
         let metric = method(
             "GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).",
@@ -94,7 +86,7 @@ impl Emitter<'_, '_> {
         let difference = code::combined(self.model, &quote!(target), quote!(-), &quote!(q), &self.paths);
         let krate = &self.paths.krate;
         quote! {
-            #retraction
+            #retractions
             #compose
             #advance
             #motion
@@ -103,6 +95,29 @@ impl Emitter<'_, '_> {
             #[inline]
             fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum {
                 #krate::Clebsch::momentum_map(self, q, &(#difference))
+            }
+        }
+    }
+
+    /// τ(η) and τ(−η), side by side.
+    fn retractions(&self, variations: &VariationKernels) -> TokenStream {
+        let (kernel, scope) = (&variations.retractions, self.scope_of_system());
+        let (coordinates, locals) = (self.chart_coordinates(&variations.slopes), code::locals(&scope, kernel));
+        let [ahead, back] = [0, kernel.outputs.len() / 2].map(|first| {
+            code::nested(&self.model.element, &mut |leaf| {
+                let (shape, entries) = &kernel.outputs[first + leaf];
+                code::grid(&scope, *shape, entries, scope.is_quaternion(Nesting::Element, leaf))
+            })
+        });
+        let documentation =
+            docs::formulas("The increments τ(η) − I and τ(−η) − I of a small motion.", &[], Some(kernel));
+        quote! {
+            #documentation
+            #[inline]
+            fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2] {
+                #coordinates
+                #locals
+                [#ahead, #back]
             }
         }
     }
@@ -160,45 +175,28 @@ impl Emitter<'_, '_> {
 
     /// The edges, handed to the type `Step`.
     fn edge(&self) -> TokenStream {
-        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
-        let (time, input) = (self.time_argument(), self.input_argument());
-        let dimension = Literal::usize_unsuffixed(self.dimension());
-        let call = self.on_edge(&|suffix| {
-            let edge = format_ident!("edge{suffix}");
-            quote!(step.#edge(#time q, d, next, #input))
-        });
-        quote! {
-            /// An edge with its second derivatives.
-            #[inline]
-            fn edge(
-                &self,
-                constants: &Self::Constants,
-                edge: ::core::primitive::usize,
-                t: #scalar,
-                q: &Self::Configuration,
-                d: &Self::Element,
-                next: &Self::Configuration,
-                u: &Self::Input,
-            ) -> #krate::Edge<#scalar, #dimension> {
-                let step = #step { system: self, constants };
-                #call
-            }
-        }
+        let edge = self.handed("edge", "Edge", "An edge with its second derivatives.");
+        let momenta = self.handed("momenta", "Momenta", "An edge with its first derivatives.");
+        let carried =
+            self.handed("carried", "Carried", "The derivatives of an edge along motions that leave F as it is.");
+        quote!(#edge #momenta #carried)
     }
 
-    /// What is carried along, handed to the type `Step`.
-    fn carried(&self) -> TokenStream {
+    /// A method that the type `Step` has for each edge.
+    fn handed(&self, name: &str, answer: &str, documentation: &str) -> TokenStream {
         let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
         let (time, input) = (self.time_argument(), self.input_argument());
         let dimension = Literal::usize_unsuffixed(self.dimension());
+        let (method, answer) = (format_ident!("{name}"), format_ident!("{answer}"));
+        let documentation = format!(" {documentation}");
         let call = self.on_edge(&|suffix| {
-            let carried = format_ident!("carried{suffix}");
-            quote!(step.#carried(#time q, d, next, #input))
+            let method = format_ident!("{name}{suffix}");
+            quote!(step.#method(#time q, d, next, #input))
         });
         quote! {
-            /// The derivatives of an edge along motions that leave F as it is.
+            #[doc = #documentation]
             #[inline]
-            fn carried(
+            fn #method(
                 &self,
                 constants: &Self::Constants,
                 edge: ::core::primitive::usize,
@@ -207,7 +205,7 @@ impl Emitter<'_, '_> {
                 d: &Self::Element,
                 next: &Self::Configuration,
                 u: &Self::Input,
-            ) -> #krate::Carried<#scalar, #dimension> {
+            ) -> #krate::#answer<#scalar, #dimension> {
                 let step = #step { system: self, constants };
                 #call
             }
@@ -274,8 +272,9 @@ impl Emitter<'_, '_> {
     pub(super) fn edges(&self) -> TokenStream {
         let Some(variations) = &self.program.variations else { return TokenStream::new() };
         let edges = variations.edges.iter().enumerate().map(|(index, edge)| {
-            let (drift, edge_with_slopes) = (self.drift_of(index), self.edge_of(index, edge));
-            quote!(#drift #edge_with_slopes)
+            let (drift, momenta, edge_with_slopes) =
+                (self.drift_of(index), self.momenta_of(index, edge), self.edge_of(index, edge));
+            quote!(#drift #momenta #edge_with_slopes)
         });
         quote!(#(#edges)*)
     }
@@ -296,6 +295,26 @@ impl Emitter<'_, '_> {
                 #pushed
                 let x = self.#solve(#place &mu)?;
                 ::core::result::Result::Ok(self.increment(&x))
+            }
+        }
+    }
+
+    fn momenta_of(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
+        let (krate, scalar, kernel) = (&self.paths.krate, &self.paths.scalar, &kernels.momenta);
+        let (configuration, element, time) = (self.configuration_type(), self.element_type(), self.time_parameter());
+        let (input, dimension) = (self.input_parameter(), Literal::usize_unsuffixed(self.dimension()));
+        let scope = self.scope_of_step();
+        let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+        let [before, after] =
+            [1, 2].map(|index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false));
+        let documentation = docs::formulas("ℓd with both Legendre transforms.", &[], Some(kernel));
+        let name = format_ident!("momenta{}", self.program.suffix(index));
+        quote! {
+            #documentation
+            #[inline]
+            fn #name(&self, #time q: &#configuration, d: &#element, next: &#configuration, #input) -> #krate::Momenta<#scalar, #dimension> {
+                #locals
+                #krate::Momenta { lagrangian: #lagrangian, before: #before, after: #after }
             }
         }
     }

@@ -130,7 +130,7 @@ impl Program<'_> {
 
     fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {
         let mut kernels = vec![
-            ("retraction".to_string(), &variations.retraction),
+            ("retractions".to_string(), &variations.retractions),
             ("compose".to_string(), &variations.compose),
             ("infinitesimal_motion".to_string(), &variations.generator),
             ("orbit_metric".to_string(), &variations.orbit_metric),
@@ -138,6 +138,7 @@ impl Program<'_> {
         for (index, edge) in variations.edges.iter().enumerate() {
             let suffix = self.suffix(index);
             kernels.push((format!("edge{suffix}"), &edge.edge));
+            kernels.push((format!("momenta{suffix}"), &edge.momenta));
             kernels.push((format!("carried{suffix}"), &edge.carried));
             kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
         }

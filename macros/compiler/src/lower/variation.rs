@@ -10,8 +10,8 @@ use crate::model::Side;
 
 /// The kernels that variations need beside those of the step.
 pub struct VariationKernels {
-    /// τ(x) − I of each factor, from chart coordinates.
-    pub retraction: Kernel,
+    /// τ(x) − I of each factor, from chart coordinates, then τ(−x) − I of each.
+    pub retractions: Kernel,
     /// For each component of ξ, the chart coordinate of exp ξ to first order.
     pub slopes: Vec<(i64, i64)>,
     /// The increment of a motion by F and then by another.
@@ -28,6 +28,8 @@ pub struct VariationKernels {
 pub struct EdgeKernels {
     /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ.
     pub edge: Kernel,
+    /// ℓd, F⁻ℓd, F⁺ℓd.
+    pub momenta: Kernel,
     /// F⁺ℓd; Ad, ∂F⁻ℓd and ∂F⁺ℓd for motions that leave F as it is; ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
     pub carried: Kernel,
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
@@ -45,7 +47,7 @@ pub(super) fn variations(
     }
     let edges = formulas.substeps.iter().take(formulas.parts).filter_map(|substep| substep.variation.as_ref());
     Some(VariationKernels {
-        retraction: retraction(formulas, scalars),
+        retractions: retractions(formulas, scalars),
         slopes: slopes(formulas),
         compose: compose(formulas, scalars),
         generator: plain(scalars, &formulas.generator),
@@ -54,13 +56,17 @@ pub(super) fn variations(
     })
 }
 
-fn retraction(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let increment = |k: usize| {
+fn retractions(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+    let increment = |k: usize, forward: bool| {
         let group = formulas.model.factors[k].group;
-        let (numerator, denominator) = formulas.retraction(k).increment(group, &formulas.symbols.coordinates(k));
+        let coordinates = formulas.symbols.coordinates(k).into_iter();
+        let coordinates: Vec<_> = coordinates.map(|x| if forward { x } else { -x }).collect();
+        let (numerator, denominator) = formulas.retraction(k).increment(group, &coordinates);
         numerator / denominator
     };
-    let increments: Vec<_> = (0..formulas.model.factors.len()).map(increment).collect();
+    let factors = 0..formulas.model.factors.len();
+    let increments = [true, false].into_iter().flat_map(|forward| factors.clone().map(move |k| (k, forward)));
+    let increments: Vec<_> = increments.map(|(k, forward)| increment(k, forward)).collect();
     plain(scalars, &increments)
 }
 
@@ -134,6 +140,7 @@ fn edge<'g>(
     let values = [variation.lagrangian, variation.before, variation.after];
     let values = values.map(|value| inserted(value, &elements));
     let mut outputs = grids(scalars, &values);
+    let momenta = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
     let blocks = [&variation.before_by_start, &variation.before_by_end, &variation.after_by_end];
     for block in blocks.into_iter().chain(&variation.after_by_start) {
         outputs.push(columns(block, scalars));
@@ -148,7 +155,7 @@ fn edge<'g>(
         let outputs = [columns(&slopes.before, scalars), columns(&slopes.after, scalars)];
         kernel(scalars, &outputs, Hoisting::Constants(hoisted))
     });
-    EdgeKernels { edge, carried, slopes }
+    EdgeKernels { edge, momenta, carried, slopes }
 }
 
 /// The replacements of F by I + D, and of inverses of configurations by the formulas of their groups.

@@ -1,0 +1,70 @@
+//! Fixed endpoints and derivatives of steps: `cargo bench -p clebsch-tests --bench boundary`.
+//!
+//! Solutions of P5 and P5v, cold and warm, beside Newton's method by hand, timed in turn in the same run, with time and bytes of each
+//! edge of paths of any length; the share of random endpoints that is solved; then derivatives of steps as multiples of the step.
+
+mod hand;
+#[path = "../../tests/boundary/pairs.rs"]
+mod pairs;
+mod slews;
+mod systems;
+mod tangents;
+#[path = "../steps/timing.rs"]
+mod timing;
+
+fn main() {
+    println!(
+        "Fixed endpoints: time of a solution, µs; of each edge of it, ns; ratio to the same by hand; bytes of the path, of an edge\n"
+    );
+    println!(
+        "{:8} {:>6} {:14} {:>10} {:>10} {:>7} {:>6} {:>5} {:>9} {:>5} {:>14} {:>9}",
+        "problem", "edges", "", "least", "median", "edge", "ratio", "iter.", "bytes", "edge", "action", "residual"
+    );
+    for edges in [50, 10, 100, 1000, 10_000] {
+        for lines in slews::lines(edges).chunk_by(|a, b| a.problem == b.problem) {
+            for line in lines {
+                let [least, median] = [line.time.least, line.time.median].map(|time| time / 1e3);
+                let (per_edge, bytes_per_edge) = (line.time.least / line.edges as f64, line.bytes / line.edges);
+                let ratio = line.time.least / lines[2].time.least;
+                println!(
+                    "{:8} {:6} {:14} {least:10.2} {median:10.2} {per_edge:7.1} {ratio:6.2} {:5} {:9} {bytes_per_edge:5} {:14.10} {:9.1e}",
+                    line.problem, line.edges, line.peer, line.iterations, line.bytes, line.action, line.residual
+                );
+            }
+        }
+    }
+    println!(
+        "\nRandom endpoints: solved to 1e-12 away from the cut locus, near it; linearisations; what was said of the others\n"
+    );
+    println!(
+        "{:14} {:>6} {:>6} {:>8} {:>5} {:>5} {:>7} {:>5}",
+        "system", "away", "solved", "share", "near", "solved", "iter.", "most"
+    );
+    for line in pairs::lines(10_000) {
+        let mean = line.iterations as f64 / (line.away + line.near) as f64;
+        println!(
+            "{:14} {:6} {:6} {:7.3}% {:5} {:6} {mean:7.2} {:5} {:?}",
+            line.system,
+            line.away,
+            line.solved,
+            100.0 * line.share(),
+            line.near,
+            line.solved_near,
+            line.most,
+            line.errors
+        );
+    }
+    println!("\nDerivatives: time of a step, ns, and multiples of it with the tangent map, with sensitivities too\n");
+    println!("{:20} {:>3} {:>3} {:>8} {:>8} {:>12}", "system", "M", "P", "step", "tangent", "sensitivity");
+    for line in tangents::lines() {
+        let [step, tangent, sensitivity] = [0, 1, 2].map(|k: usize| line.times[k].least);
+        println!(
+            "{:20} {:3} {:3} {step:8.1} {:8.2} {:12.2}",
+            line.system,
+            line.dimension,
+            line.quantities,
+            tangent / step,
+            sensitivity / step
+        );
+    }
+}
