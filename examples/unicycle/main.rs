@@ -5,6 +5,7 @@
 //! nothing is a kick.
 
 mod bounded;
+mod conjugate;
 mod declaration;
 mod figure;
 mod geodesic;

@@ -39,8 +39,8 @@ pub fn aim(guess: &Vector3<f64>, defect: impl Fn(&Vector3<f64>) -> Option<Vector
     None
 }
 
-/// Central differences of fourth order.
-fn slope(
+/// The derivative by central differences of fourth order.
+pub fn slope(
     costate: &Vector3<f64>,
     step: f64,
     defect: &impl Fn(&Vector3<f64>) -> Option<Vector3<f64>>,

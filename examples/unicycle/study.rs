@@ -1,5 +1,6 @@
 //! A problem solved with steps of h, h/2 and h/4 beside the closed form.
 
+use crate::conjugate;
 use crate::declaration::Free;
 use crate::geodesic::{Geodesic, Moment};
 use crate::place::apart;
@@ -115,7 +116,7 @@ impl Study {
             claims.round_off(&name("the plan arrives"), plan.gap, plan.steps() as u64, 1.0);
         }
         claims.round_off(&name("(λx, λy) is constant in space"), moved, plan.steps() as u64, size);
-        claims.holds(&name("it is a minimum"), plan.index == 0, &format!("index {}", plan.index));
+        self.claim_index(claims);
         self.claim_shooting(claims);
         let order = |part: &str, value: fn(&Off) -> f64, claims: &mut Claims| {
             let name = name(&format!("the order of {part}"));
@@ -130,6 +131,21 @@ impl Study {
         order("inputs", |off| off.input, claims);
         order("costates", |off| off.costate, claims);
         order("the price", |off| off.price, claims);
+    }
+
+    /// The index is that of the closed form where both ends are given, and 0 where one is free.
+    fn claim_index(&self, claims: &mut Claims) {
+        let indices = self.plans.each_ref().map(|plan| plan.index);
+        let Target::Place(_) = self.problem.target else {
+            let name = format!("{}: it is a minimum", self.name);
+            return claims.holds(&name, indices == [0; 3], &format!("indices {indices:?}"));
+        };
+        let name = format!("{}: the index is the number of conjugate points", self.name);
+        let count = |geodesic| conjugate::points(&geodesic, self.problem.car.turn_price, self.problem.duration);
+        match self.geodesic.and_then(count) {
+            Some(count) => claims.holds(&name, indices == [count; 3], &format!("{count}; indices {indices:?}")),
+            None => claims.skip(&name, "no geodesic of the closed form is near, or its end is a conjugate point"),
+        }
     }
 
     /// The costate that the target was made with is found again, unless there is a better way.
