@@ -14,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 const BOUNDS: [&str; 3] = ["turns right at most", "turns left at most", "stands still"];
 
 /// What a barrier may leave of inputs and places, relative.
-const BARRIER: f64 = 1e-9;
+const BARRIER: f64 = 1e-8;
 
 /// A plan that keeps the bounds.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@
 use crate::geodesic::Geodesic;
 use crate::place::apart;
 use crate::shooting::slope;
+use clebsch_examples::claims::Claims;
 use nalgebra::Vector3;
 
 /// Times at which the determinant is looked at.
@@ -28,4 +29,13 @@ pub fn points(geodesic: &Geodesic, turn_price: f64, duration: f64) -> Option<usi
     let largest = determinants.iter().fold(0.0, |largest: f64, determinant| largest.max(determinant.abs()));
     let clear = determinants.last().is_some_and(|last| last.abs() > SMALL * largest);
     clear.then(|| determinants.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count())
+}
+
+/// The index of a plan is the number of conjugate points.
+pub fn claim(name: &str, index: usize, points: Option<usize>, claims: &mut Claims) {
+    let name = format!("{name}: the index is the number of conjugate points");
+    match points {
+        Some(points) => claims.holds(&name, index == points, &format!("index {index}, {points} by the closed form")),
+        None => claims.skip(&name, "no geodesic of the closed form is near, or its end is a conjugate point"),
+    }
 }

@@ -13,6 +13,8 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 const SWEEPS: usize = 200;
 /// Relative change of a costate, to see how it grows.
 const CHANGE: f64 = 1e-6;
+/// Rates below this, rad/s and m/s, are rest.
+const REST: f64 = 1e-9;
 
 /// A unicycle with steps of h.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +107,7 @@ impl Steps {
 
 /// The largest distance of two paths: places in rad and m, inputs relative to the largest.
 fn apart(a: &[Moment], b: &[Moment]) -> f64 {
-    let fastest = largest(a.iter().map(|moment| moment.input.norm())).max(f64::MIN_POSITIVE);
+    let fastest = largest(a.iter().map(|moment| moment.input.norm())).max(REST);
     let distance =
         |(a, b): (&Moment, &Moment)| [place::apart(&a.place, &b.place).norm(), (a.input - b.input).norm() / fastest];
     largest(a.iter().zip(b).flat_map(distance))
