@@ -60,7 +60,11 @@ where
     };
     let warm = || solve(&mut plan.borrow_mut());
     let ((first, price), (again, _)) = (cold(), warm());
-    let often = |times: u64, run: &dyn Fn() -> (u32, f64)| (0..times).for_each(|_| drop(black_box(run())));
+    let often = |times: u64, run: &dyn Fn() -> (u32, f64)| {
+        for _ in 0..times {
+            black_box(run());
+        }
+    };
     let runs: [Run<'_>; 2] = [Box::new(|times| often(times, &cold)), Box::new(|times| often(times, &warm))];
     let times = interleaved(&runs);
     let held = plan.borrow().iter().filter(|stage| stage.active().contains(&true)).count();
