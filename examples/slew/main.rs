@@ -9,11 +9,12 @@
 mod attitude;
 mod body;
 mod least_action;
+mod least_effort;
 
 use body::{Body, Craft};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use clebsch_examples::claims::Claims;
-use clebsch_examples::flags::{Run, Scene, finite_list, parse, positive};
+use clebsch_examples::flags::{Run, Scene, finite, finite_list, parse, positive};
 use clebsch_examples::scene::{Failure, conclude};
 use least_action::Discretization;
 use nalgebra::Matrix3;
@@ -29,7 +30,16 @@ const SCENE: Scene = Scene {
     columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s)",
 };
 
-/// A spacecraft turned from one attitude to another at least action: fixed endpoints, checked by shooting
+/// What is to be least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Least {
+    /// ∫ ½ Ω·JΩ dt; nothing acts on the way
+    Action,
+    /// ∫ ½ |u|² dt of the torques u; from rest to rest
+    Effort,
+}
+
+/// A spacecraft turned from one attitude to another at least action, or by bounded torques at least effort: fixed endpoints, checked by shooting
 #[derive(Parser, Debug)]
 pub struct Flags {
     /// The spacecraft
@@ -50,7 +60,19 @@ pub struct Flags {
     /// Duration, seconds, in place of a step size
     #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "step_size")]
     time: Option<f64>,
-    /// How velocities are made of group elements
+    /// What is to be least: the action of a free motion, or the effort of bounded torques from rest to rest
+    #[arg(long, value_enum, default_value = "action")]
+    least: Least,
+    /// The largest torque about each axis of the body, N m [default: 80 % of what the smoothest turn about the fixed axis needs]
+    #[arg(long, value_name = "U", value_parser = positive, allow_hyphen_values = true)]
+    torque: Option<f64>,
+    /// Flown: by which part of it the inertia is larger than planned
+    #[arg(long, value_name = "PART", value_parser = finite, allow_hyphen_values = true, default_value = "0.02")]
+    heavier: f64,
+    /// Flown: by which angle the attitude at the start is not as planned, degrees
+    #[arg(long, value_name = "ANGLE", value_parser = finite, allow_hyphen_values = true, default_value = "2")]
+    tilted: f64,
+    /// How velocities are made of group elements, for the least action
     #[arg(long, value_enum, default_value = "moser-veselov")]
     discretization: Discretization,
     #[command(flatten)]
@@ -66,5 +88,9 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    least_action::run(flags, Body::new(flags)?)
+    let body = Body::new(flags)?;
+    match flags.least {
+        Least::Action => least_action::run(flags, body),
+        Least::Effort => least_effort::run(flags, body),
+    }
 }
