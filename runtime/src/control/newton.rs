@@ -88,6 +88,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
             match now.verdict(&end, size, unit, Barrier::last(bounds, magnitude).weight) {
                 Verdict::Done => {
                     self.settle(plan, &change, now.settings.barrier)?;
+                    now.settings.multipliers += change;
                     return self.finish(plan, now, sweeps);
                 }
                 Verdict::Tighten => {
