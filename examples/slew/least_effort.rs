@@ -38,7 +38,7 @@ use problem::Problem;
 use refinement::Refinement;
 
 /// How many times wider the bounds of the plan are that none of them holds back.
-const WIDE: f64 = 100.0;
+const WIDE: f64 = 4.0;
 
 /// Plans, shoots, compares, flies, claims, writes and draws.
 ///

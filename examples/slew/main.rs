@@ -1,10 +1,12 @@
 //! A spacecraft turned from one attitude to another in a given time: which motion costs least?
 //!
-//! Here the cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at the
-//! end is not asked, orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
+//! Two answers. The cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at
+//! the end is not asked. Or it starts and ends at rest, torques turn it, and the cost is their square; that each of them is bounded, and by
+//! how much, is a plain assumption, for which `--torque` takes another. Orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
 //! sources are in `body`. Geodesics of rotation groups and their conjugate points: Arnold, *Mathematical Methods of Classical Mechanics*
 //! (1989), appendix 2; Milnor, *Morse Theory* (1963), §15. Fixed endpoints of a free body by discrete Clebsch optimal control: Nordkvist,
-//! Crouch and Bloch, *Discrete Clebsch Optimal Control*.
+//! Crouch and Bloch, *Discrete Clebsch Optimal Control*. Torques: Pontryagin and others, *The Mathematical Theory of Optimal Processes*
+//! (1962), chapter 1.
 
 mod attitude;
 mod body;
@@ -26,8 +28,8 @@ const SCENE: Scene = Scene {
     time_unit: "seconds",
     steps: "180",
     order: "2",
-    order_note: "nothing kicks a free body, so both are the same steps",
-    columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s)",
+    order_note: "no potential kicks this body, so both are the same steps",
+    columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s); with --least effort also the torques u1,u2,u3 from there on (body frame, N m)",
 };
 
 /// What is to be least.
