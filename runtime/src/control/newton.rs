@@ -8,6 +8,7 @@ use super::iterate::{Iterate, Verdict, index};
 use super::pivot::Curvature;
 use super::search::{Descent, Evidence};
 use super::sweep::{Problem, Settings, Summary};
+use crate::space::larger;
 use crate::{Controlled, Error, Scalar, Space};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -63,7 +64,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         let mut now = self.start_from(plan)?;
         let (mut size, mut stirs) = (zero, 0);
         for sweeps in 1..=SWEEPS {
-            let end = self.goal.end(self.system, &now.last);
+            let end = self.end(plan, &now.last);
             let summary = self.eliminate(plan, &now.last, &end, &now.settings)?;
             let gramian = Gramian::of(&summary.gramian);
             let descent = Descent::of(&summary, &end, &gramian, &now.settings);
@@ -118,14 +119,14 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                 now.tighten(bounds, magnitude);
             }
         }
-        let end = self.goal.end(self.system, &now.last);
+        let end = self.end(plan, &now.last);
         Err(self.failure(plan, &end, size, SWEEPS))
     }
 
     /// The plan that the inputs make, with the multipliers that the stages hold.
     fn start_from(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<Iterate<S::Place, S::Scalar, D>, Error> {
         let last = self.follow(plan)?;
-        let end = self.goal.end(self.system, &last);
+        let end = self.end(plan, &last);
         let slope = self.system.endpoint_expanded(self.time_after(plan.len()), &last).slope;
         let multipliers = match plan.last().map(|stage| stage.next_costate) {
             Some(costate) if costate.is_finite() && costate.max_abs() > S::Scalar::zero() => {
@@ -141,6 +142,12 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         Ok(Iterate::new(last, multipliers, barrier, end.distance))
     }
 
+    /// The end of a plan; round-off of its gap is relative to the largest place.
+    fn end(&self, plan: &[Stage<S, D, U, C>], last: &S::Place) -> End<S::Scalar, D> {
+        let end = self.goal.end(self.system, last);
+        End { scale: plan.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
+    }
+
     /// The last sweep: exact second derivatives as they are, for gains and the index.
     fn finish(
         &self,
@@ -148,7 +155,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         now: Iterate<S::Place, S::Scalar, D>,
         sweeps: u32,
     ) -> Result<Solved<S, D, U, C>, Error> {
-        let end = self.goal.end(self.system, &now.last);
+        let end = self.end(plan, &now.last);
         let settings = Settings { curvature: Curvature::Kept, is_last: true, ..now.settings };
         let summary = self.eliminate(plan, &now.last, &end, &settings)?;
         let negative = index(summary.negative, now.rank, &Gramian::of(&summary.gramian));

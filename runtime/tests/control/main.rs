@@ -7,6 +7,8 @@ mod jet;
 mod linear;
 mod pendulum;
 mod quadratic;
+mod refused;
+mod single;
 
 use clebsch::BoundsExpansion;
 use nalgebra::{SMatrix, SVector};

@@ -228,3 +228,15 @@ fn one_step_reaches_what_it_can() -> Result<(), Error> {
     assert!(matches!(error, Error::Uncontrollable { distance } if distance < 1.0), "{error}");
     Ok(())
 }
+
+/// Round-off of a gap is relative to the places that are passed, not to a target that is the origin.
+#[test]
+fn the_origin_is_reached() -> Result<(), Error> {
+    let control = double_integrator::<0>(0.1).control(0.1)?;
+    for start in [Vector2::new(1.3, -0.7), Vector2::new(1e6, 0.3), Vector2::new(-1e-6, 0.0), Vector2::zeros()] {
+        let mut plan = vec![control.stage(&start); 25];
+        let found = control.solve(&start, Target::Place(Vector2::zeros()), &mut plan)?;
+        assert!(found.gap() <= 1e-13 * start.amax() && found.iterations() <= 3, "{found:?}");
+    }
+    Ok(())
+}

@@ -2,7 +2,10 @@
 
 use clebsch::{Controlled, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
-use nalgebra::{Matrix2, Vector2};
+use clebsch_tests::fixtures::steered_body::SteeredBody;
+use clebsch_tests::fixtures::unicycle::Unicycle;
+use clebsch_tests::oracle::random::Random;
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// The Riccati recursion P = Q + Aᵀ(P − PB(R + BᵀPB)⁻¹BᵀP)A, written out.
 #[test]
@@ -24,4 +27,70 @@ fn a_regulator_has_the_gains_of_riccati() {
     }
     assert!((optimum.price() - (start.transpose() * p * start)[0] / 2.0).abs() < 1e-13);
     assert!(optimum.is_minimum() && optimum.iterations() <= 2);
+}
+
+fn unicycle() -> Unicycle {
+    Unicycle { turn_price: 1.0, top_turn: 4.0, time_price: 0.0, miss_price: 0.0, goal: Vector2::zeros() }
+}
+
+fn place(angle: f64, x: f64, y: f64) -> Matrix3<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Matrix3::new(cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0)
+}
+
+/// What many problems took: the sum and the largest number of linearisations.
+#[derive(Default, Debug)]
+struct Census {
+    sum: u32,
+    most: u32,
+}
+
+impl Census {
+    fn count(&mut self, iterations: u32) {
+        self.sum += iterations;
+        self.most = self.most.max(iterations);
+    }
+}
+
+/// It never drives back: quarter turns, half turns and any others, in few steps and many.
+#[test]
+fn a_unicycle_drives_anywhere() {
+    let mut random = Random::new(11);
+    let mut census = Census::default();
+    let start = Matrix3::identity();
+    let mut targets = vec![(50, place(core::f64::consts::FRAC_PI_2, 1.0, 1.0))];
+    targets.extend((0..100).map(|k| {
+        let angle = random.number() * 2.0;
+        ([20, 50, 90][k % 3], place(angle, random.between(0.3, 2.0), random.number()))
+    }));
+    for (k, (steps, target)) in targets.into_iter().enumerate() {
+        let control = unicycle().control(1.0 / steps as f64).expect("regular");
+        let mut plan = vec![control.stage(&start); steps];
+        let found = control.solve(&start, Target::Place(target), &mut plan);
+        let found = found.unwrap_or_else(|error| panic!("{k}: {error}"));
+        census.count(found.iterations());
+        assert!(found.gap() < 1e-11 && found.is_minimum(), "{k}: {found:?}");
+        assert!(found.stages().iter().all(|s| s.input()[1] > -1e-12 && s.input()[0].abs() <= 4.0));
+    }
+    assert!(census.sum < 30 * 101 && census.most < 200, "{census:?}");
+}
+
+/// From rest to rest, at any attitude.
+#[test]
+fn a_body_is_steered_to_any_attitude() {
+    let mut random = Random::new(12);
+    let mut census = Census::default();
+    let system = SteeredBody { inertia: Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)), damping: 0.0, top: 20.0 };
+    let control = system.control(0.02).expect("regular");
+    let start = (Matrix3::identity(), Vector3::zeros());
+    for k in 0..60 {
+        let turn = if k == 0 { Vector3::new(0.6, 1.3, 2.0) } else { random.unit::<3>() * random.between(0.1, 2.9) };
+        let target = (*nalgebra::Rotation3::from_scaled_axis(turn).matrix(), Vector3::zeros());
+        let mut plan = vec![control.stage(&start); 50];
+        let found = control.solve(&start, Target::Place(target), &mut plan);
+        let found = found.unwrap_or_else(|error| panic!("{k}: {error}"));
+        census.count(found.iterations());
+        assert!(found.gap() < 1e-11 && found.is_minimum(), "{k}: {found:?}");
+    }
+    assert!(census.sum < 20 * 60 && census.most < 50, "{census:?}");
 }
