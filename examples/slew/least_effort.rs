@@ -8,7 +8,7 @@
 //! | `declaration` | the body with torques, as the macro is given it |
 //! | `problem` | attitudes, body, duration, bounds |
 //! | `plan` | plans of the steps, and their books of momentum and energy |
-//! | `pontryagin`, `shooting` | plans of the continuous problem |
+//! | `pontryagin` | plans of the continuous problem, by shooting |
 //! | `refinement` | both side by side |
 //! | `eigenaxis` | turns about the fixed axis |
 //! | `flight` | plans flown, with feedback and without |
@@ -22,7 +22,6 @@ mod plan;
 mod pontryagin;
 mod problem;
 mod refinement;
-mod shooting;
 
 use crate::Flags;
 use crate::body::Body;

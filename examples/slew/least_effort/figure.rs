@@ -63,10 +63,10 @@ fn flights(flags: &Flags, sorties: &[Sortie; 2]) -> Panel<'static> {
     let [_, start] = sorties[0].surprised();
     let [inertia, _] = sorties[1].surprised();
     let series = vec![
-        curve("start turned", ORANGE, &start.open),
-        curve("with feedback", RED, &start.closed),
+        curve("start", ORANGE, &start.open),
+        curve("corrected", RED, &start.closed),
         curve("inertia", GREEN, &inertia.open),
-        curve("with feedback", BLUE, &inertia.closed),
+        curve("corrected", BLUE, &inertia.closed),
     ];
-    Panel { title: "Flown: angle to the plan", unit: "degrees", x_label: "time (s)", series }
+    Panel { title: "Flown: off by", unit: "degrees", x_label: "time (s)", series }
 }

@@ -1,11 +1,11 @@
 //! Plans with h, h/2 and h/4 beside the continuous one.
 
 use super::plan::Plan;
-use super::pontryagin::{Motion, Pontryagin};
+use super::pontryagin::{Extremals, Motion, attitude, effort, momentum};
 use super::problem::Problem;
-use super::shooting::Shot;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::Convergence;
+use clebsch_examples::extremal::Pontryagin;
 use clebsch_examples::flags::Order;
 use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
@@ -28,31 +28,30 @@ impl Refinement {
     /// # Errors
     /// What solving returns, and shots that do not arrive.
     pub fn new(problem: &Problem, plan: &Plan) -> Result<Self, Failure> {
-        let pontryagin = Pontryagin::new(problem);
-        let guess = plan.stages.first().map(|stage| pontryagin.scaled(stage.costate())).unwrap_or_default();
-        let shot = Shot::aim(&pontryagin, &problem.to, &guess)
-            .ok_or_else(|| Failure::Flags("no continuous plan is near: take shorter steps".to_owned()))?;
-        let path = shot.path(&pontryagin, 2 * problem.steps);
-        let effort = shot.end.effort() * pontryagin.effort_unit;
+        let extremals = Extremals::new(problem);
+        let near = plan.stages.first().map(|stage| *stage.costate()).unwrap_or_default();
+        let shot = extremals.aim(&problem.to, &near);
+        let shot = shot.ok_or_else(|| Failure::Flags("no continuous plan is near: take shorter steps".to_owned()))?;
+        let path = extremals.path(extremals.start(&shot.costates), 2 * problem.steps);
+        let least = path.last().map_or(f64::NAN, effort) * extremals.effort_unit;
         let inverse_inertia = problem.body.inertia.try_inverse().unwrap_or_default();
         let mut errors = [[0.0; 3]; 4];
         for (part, finer) in [1, 2, 4].into_iter().enumerate() {
             let plan = if finer == 1 { plan.clone() } else { Plan::solve(problem, finer)? };
             let pairs = || path.iter().step_by(2).zip(plan.places().step_by(finer as usize));
             let largest = |size: &dyn Fn(&Motion) -> f64| path.iter().map(size).fold(0.0, f64::max);
-            let unit = pontryagin.momentum_unit;
-            let momenta =
-                pairs().map(|(motion, place)| (motion.momentum() - place.1 / unit).norm()).fold(0.0, f64::max);
+            let unit = extremals.momentum_unit;
+            let momenta = pairs().map(|(motion, place)| (momentum(motion) - place.1 / unit).norm()).fold(0.0, f64::max);
             let (off, energy) = plan.energy_book(&inverse_inertia);
-            errors[0][part] = pairs().map(|(motion, place)| (motion.attitude() - place.0).norm()).fold(0.0, f64::max);
-            errors[1][part] = momenta / largest(&|motion| motion.momentum().norm());
-            errors[2][part] = (plan.effort / effort - 1.0).abs();
+            errors[0][part] = pairs().map(|(motion, place)| (attitude(motion) - place.0).norm()).fold(0.0, f64::max);
+            errors[1][part] = momenta / largest(&|motion| momentum(motion).norm());
+            errors[2][part] = (plan.effort / least - 1.0).abs();
             errors[3][part] = off / energy;
         }
         let names = ["attitudes, rad", "momenta, relative", "effort, relative", "work less kinetic energy, relative"];
         let converge = |errors| Convergence { errors, reference: shot.error, steps: problem.steps };
         let rows = names.into_iter().zip(errors.map(converge)).collect();
-        Ok(Self { effort, path, steps: problem.steps, rows })
+        Ok(Self { effort: least, path, steps: problem.steps, rows })
     }
 
     /// How many times the continuous torques reach or leave a bound.
