@@ -134,8 +134,8 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
     /// [`stage`](Self::stage), a solution for another start, target or system, or inputs from elsewhere. They need neither lead to the
     /// target nor keep the bounds.
     ///
-    /// Work: four to eight linearisations from a good guess, two from a solution, ten to thirty with bounds, each linear in the number of
-    /// stages; at most 500.
+    /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess, ten to forty
+    /// with bounds or from standing still, each linear in the number of stages; at most 500.
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for what was given;

@@ -44,6 +44,7 @@
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
+//! | choose inputs at the least price, within bounds | [`Controlled::control`]; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
 //! | give each step an input of its forces | [`Stepper::step_with`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |

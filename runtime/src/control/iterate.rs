@@ -12,7 +12,9 @@ use nalgebra::{SMatrix, SVector};
 
 /// Directions that may lack curvature, as those of a symmetry do, while the curvature of steps is counted in full.
 const FLAT: usize = 2;
-/// Corrections of this size are near enough a solution for the exact curvature and for a fixed weight of the target.
+/// Corrections in a row that no one sees, after which a plan is critical whatever they were made with: Newton's method would have needed two.
+const CALM: u32 = 5;
+/// Corrections of this size are near enough a solution for the exact curvature and a fixed weight of the target.
 const NEAR: (i64, i64) = (1, 100);
 
 /// A plan with its multipliers and with what the sweeps before have told.
@@ -30,6 +32,8 @@ pub(super) struct Iterate<X, T, const D: usize> {
     /// The size of the correction before, and how often in a row that was round-off.
     before: Option<T>,
     stagnations: u32,
+    /// Sweeps in a row with corrections that no one sees.
+    calm: u32,
     /// The largest price.
     largest: T,
     /// The smallest distance to the target.
@@ -55,7 +59,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let settings = Settings {
             multipliers,
             weight: SMatrix::from_element(zero),
-            barrier: barrier.unwrap_or(Barrier { weight: zero }),
+            barrier: barrier.unwrap_or(Barrier::none()),
             curvature: Curvature::Mirrored { damping: zero },
             bend: T::one(),
             is_last: false,
@@ -69,6 +73,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             rank: D,
             before: None,
             stagnations: 0,
+            calm: 0,
             largest: zero,
             nearest: distance,
             stalls: 0,
@@ -77,17 +82,20 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
 
     /// Whether the sweep found enough positive curvature to go downhill; if not, the next one is made otherwise.
     ///
-    /// First the critical point of the exact model tells whether more weight of the target helps; where it does not, the curvature of
-    /// the steps is counted less and less, down to that of the price alone.
+    /// First the critical point of the exact model is gone to, where it is near, or tells whether more weight of the target helps; else
+    /// the curvature of the steps is counted less and less, down to that of the price alone.
     pub fn goes_downhill<const U: usize>(
         &mut self,
         summary: &Summary<T, D, U>,
         gramian: &Gramian<T, D>,
         stiffer: &SMatrix<T, D, D>,
     ) -> bool {
-        let is_bent = self.settings.bend > T::zero();
-        let is_whole = self.settings.bend >= T::one();
+        let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
         if self.settings.curvature == Curvature::Kept {
+            let is_near = matches!(self.before, Some(before) if before <= T::from_ratio(NEAR.0, NEAR.1));
+            if summary.negative <= FLAT && is_near && self.is_exact() {
+                return true;
+            }
             self.settings.curvature = Curvature::Mirrored { damping: self.damping };
             self.is_probed = true;
             if index(summary.negative, self.rank, gramian) == 0 {
@@ -130,8 +138,12 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let seen = T::EPSILON.sqrt();
         let stagnates = matches!(self.before, Some(before) if before <= seen && size > before * T::from_ratio(1, 8));
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
+        self.calm = if size <= seen && self.damping <= T::one() { self.calm + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
-        let is_critical = self.is_exact() && (size <= unit || size <= seen && stagnates) && is_decided;
+        let is_flat = size <= unit && self.damping == T::zero() || size <= seen && stagnates && self.is_exact();
+        // Where not all of the curvature is counted, corrections shrink by and by.
+        let patience = if self.is_exact() { CALM } else { 10 * CALM };
+        let is_critical = is_flat && is_decided || self.calm > patience;
         if !is_critical {
             Verdict::Correct
         } else if !end.is_reached() {
@@ -148,7 +160,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let next = self.settings.barrier.next(bounds, price);
         if next.weight < self.settings.barrier.weight * T::from_ratio(9, 10) {
             self.settings.barrier = next;
-            self.before = None;
+            (self.before, self.calm) = (None, 0);
         }
     }
 
@@ -162,8 +174,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         distance: T,
     ) {
         let near = T::from_ratio(NEAR.0, NEAR.1);
-        let refused = made.as_ref().map_or(usize::MAX, |made| made.refused);
-        let fraction = made.as_ref().map_or(T::zero(), |made| made.fraction);
+        let (refused, fraction) = made.as_ref().map_or((usize::MAX, T::zero()), |made| (made.refused, made.fraction));
         if let Some(made) = made {
             self.last = made.last;
             self.settings.multipliers += made.change * made.fraction;

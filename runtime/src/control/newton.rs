@@ -89,6 +89,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
             match now.verdict(&end, size, unit, Barrier::last(bounds, magnitude).weight) {
                 Verdict::Done => {
                     self.settle(plan, &change, now.settings.barrier)?;
+                    // Where inputs need no correction, the multipliers may.
                     now.settings.multipliers += change;
                     return self.finish(plan, now, sweeps);
                 }
@@ -157,7 +158,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
     ) -> Result<Solved<S, D, U, C>, Error> {
         let end = self.end(plan, &now.last);
         let settings = Settings { curvature: Curvature::Kept, is_last: true, ..now.settings };
-        let summary = self.eliminate(plan, &now.last, &end, &settings)?;
+        // The weight of the target belongs to the search: costates are those of the multipliers alone.
+        let closed = End { lack: SVector::from_element(S::Scalar::zero()), ..end };
+        let summary = self.eliminate(plan, &now.last, &closed, &settings)?;
         let negative = index(summary.negative, now.rank, &Gramian::of(&summary.gramian));
         Ok(Solved { summary, last: now.last, end, negative, sweeps })
     }

@@ -45,7 +45,7 @@ impl<'p, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize>
         self.h
     }
 
-    /// The number of linearisations that were made.
+    /// The number of linearisations that were made, but for the last, which is for gains and the index.
     pub fn iterations(&self) -> u32 {
         self.iterations
     }

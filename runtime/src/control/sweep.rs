@@ -132,8 +132,12 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                 model.add_bounds(&bounds, &force, &stiffness);
             }
             model.add_value(&step, &value);
-            let (policy, before) = model.eliminate(settings.curvature);
+            let (policy, mut before) = model.eliminate(settings.curvature);
             summary.count(step.price, &model, &policy);
+            if settings.is_last {
+                // the costate of the plan as it is, without the correction that is round-off
+                before.costate = model.by_place;
+            }
             (stage.next_costate, stage.costate) = (value.costate, before.costate);
             (stage.shift, stage.gain, stage.by_multiplier) = (policy.shift, policy.gain, policy.by_multiplier);
             if settings.is_last {

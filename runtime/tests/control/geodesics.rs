@@ -126,3 +126,38 @@ fn attitudes_turn_about_the_axis_that_is_not_driven() -> Result<(), Error> {
     assert!((order - 2.0).abs() < 0.05, "{order} from {coarse} and {fine}");
     shortest(&attitude(), [0.2, 0.5, 1.0], 40, rest, |found| assert!(found.is_minimum(), "{found:?}"))
 }
+
+/// p_k = Aᵀp_{k+1} and hu + Bᵀp_{k+1} = 0, also where the guess was the solution without its costates.
+#[test]
+fn costates_are_those_of_the_plan() -> Result<(), Error> {
+    let (car, steps) = (unicycle(), 400);
+    let h = 1.0 / steps as f64;
+    let control: Control<_, 3, 2, 0> = car.clone().control(h)?;
+    let (start, goal) = (Matrix3::identity(), car.exp(&[0.4, 1.1, 0.8]));
+    let mut plan = vec![control.stage(&start); steps];
+    let price = control.solve(&start, Target::Place(goal), &mut plan)?.price();
+    let mut again: Plan = plan.iter().map(|stage| control.stage(&start).with_input(*stage.input())).collect();
+    let again = control.solve(&start, Target::Place(goal), &mut again)?;
+    assert!((again.price() - price).abs() < 1e-13 && again.iterations() <= 3, "{again:?}");
+    let size = again.final_costate().norm();
+    assert!(size > 1.0);
+    let mut next = *again.final_costate();
+    for stage in again.stages().iter().rev() {
+        let step = car.expand(&h, 0.0, stage.place(), stage.input(), &next)?;
+        assert_near!(stage.input() * h + step.by_input.transpose() * next, Vector2::zeros(), 1e-13 * size);
+        assert_near!(*stage.costate(), step.by_place.transpose() * next, 1e-14 * size);
+        next = *stage.costate();
+    }
+    Ok(())
+}
+
+/// Many steps do not keep a car from parking.
+#[test]
+fn a_car_parks_in_many_steps() -> Result<(), Error> {
+    for steps in [100, 200, 400] {
+        let (price, iterations) =
+            shortest(&unicycle(), [0.0, 0.0, 1.0], steps, rest, |found| (found.price(), found.iterations()))?;
+        assert!(iterations <= 60 && price > 5.579, "{iterations}");
+    }
+    Ok(())
+}

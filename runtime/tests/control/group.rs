@@ -90,16 +90,15 @@ impl<const U: usize> Group<U> {
 
     /// The coordinates of log(exp(−hu) exp δ exp(h(u + du))): variables 0..3 are δ, 3.. are du.
     fn change(&self, h: f64, u: &SVector<f64, U>) -> [Jet; 3] {
-        let delta = core::array::from_fn::<_, 3, _>(|i| Jet::variable(0.0, i));
-        let input: [Jet; U] = core::array::from_fn(|j| Jet::variable(u[j] * h, 3 + j));
-        let input = input.map(|x| Jet { slope: x.slope * h, ..x });
+        let delta: [Jet; 3] = core::array::from_fn(|i| Jet::variable(0.0, i));
+        let input: [Jet; U] = core::array::from_fn(|j| Jet::variable(u[j], 3 + j) * h);
         let back = self.exp((-u * h).as_slice());
         let moved = product(&constant(&back), &product(&self.jet_exp(&delta), &self.jet_exp(&input)));
         let off = sum(&moved, &constant(&Matrix3::identity()), -1.0);
         let log = sum(&off, &product(&off, &off), -0.5);
         core::array::from_fn(|i| {
-            let entries = log.iter().flatten().zip(self.dual[i].transpose().iter().copied().collect::<Vec<f64>>());
-            entries.fold(Jet::constant(0.0), |total, (entry, dual)| total + *entry * dual)
+            let dual = self.dual[i].transpose();
+            log.iter().flatten().zip(&dual).fold(Jet::constant(0.0), |total, (entry, dual)| total + *entry * *dual)
         })
     }
 }
