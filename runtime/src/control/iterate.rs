@@ -70,7 +70,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             is_open: barrier.is_none(),
             damping: zero,
             is_probed: false,
-            rank: D,
+            rank: 0,
             before: None,
             stagnations: 0,
             calm: 0,
@@ -93,7 +93,8 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
         if self.settings.curvature == Curvature::Kept {
             let is_near = matches!(self.before, Some(before) if before <= T::from_ratio(NEAR.0, NEAR.1));
-            if summary.negative <= FLAT && is_near && self.is_exact() {
+            let is_convex = summary.negative <= FLAT || index(summary.negative, self.rank, gramian) == 0;
+            if is_convex && is_near && self.is_exact() {
                 return true;
             }
             self.settings.curvature = Curvature::Mirrored { damping: self.damping };
@@ -105,7 +106,9 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             }
             return false;
         }
-        self.rank = gramian.rank();
+        // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
+        let rank = gramian.rank();
+        self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
         if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
             self.settings.curvature = Curvature::Kept;
         } else if summary.negative > FLAT && is_bent {
