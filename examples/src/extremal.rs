@@ -13,7 +13,7 @@ const CORRECTIONS: usize = 60;
 /// The largest correction, relative.
 const LARGEST: f64 = 0.3;
 /// Differences of costates, relative: the square of it and rounding over it are what derivatives are wrong by.
-const DIFFERENCE: f64 = 1e-5;
+const DIFFERENCE: f64 = 1e-6;
 
 /// Pontryagin's conditions: N numbers, places and costates among them, and U inputs. The whole time is 1.
 pub trait Pontryagin<const N: usize, const U: usize> {
@@ -34,9 +34,9 @@ pub trait Pontryagin<const N: usize, const U: usize> {
         (0..strides as u64).fold(*motion, |motion, _| self.stride(motion, part / strides))
     }
 
-    /// The extremal at so many equal parts of the time, the start and the end among them.
-    fn path(&self, start: Motion<N, U>, parts: u64) -> Vec<Motion<N, U>> {
-        let later = |motion: &Motion<N, U>| Some(self.after(motion, 1.0 / parts as f64));
+    /// The extremal at so many equal parts of a time, the start and the end among them.
+    fn path(&self, start: Motion<N, U>, parts: u64, time: f64) -> Vec<Motion<N, U>> {
+        let later = |motion: &Motion<N, U>| Some(self.after(motion, time / parts as f64));
         std::iter::successors(Some(start), later).take(parts as usize + 1).collect()
     }
 
@@ -82,7 +82,7 @@ pub trait Pontryagin<const N: usize, const U: usize> {
 }
 
 /// Where an extremal is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<const N: usize, const U: usize> {
     /// Places, costates and what else is integrated.
     pub y: SVector<f64, N>,
@@ -135,5 +135,43 @@ impl<const K: usize> Shot<K> {
             scaled -= correction * (LARGEST / size).min(1.0);
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Vector2, Vector5};
+
+    /// ẍ = u with |u| ≤ 5 at least ½ ∫ u² dt: x, v, their costates, the effort.
+    struct Cart;
+
+    const TOP: f64 = 5.0;
+
+    impl Pontryagin<5, 1> for Cart {
+        fn field(&self, y: &Vector5<f64>, [held]: [i8; 1]) -> Vector5<f64> {
+            let u = if held == 0 { -y[3] } else { TOP * f64::from(held) };
+            Vector5::new(y[1], u, 0.0, -y[2], u * u / 2.0)
+        }
+
+        fn wanted(&self, y: &Vector5<f64>) -> [i8; 1] {
+            [i8::from(-y[3] > TOP) - i8::from(-y[3] < -TOP)]
+        }
+    }
+
+    /// From rest to rest a unit further, by hand: u = ±5 down to the share s of half the time, s² = 3 − 12/5, and linear between.
+    #[test]
+    fn a_cart_is_held_back_at_both_ends() {
+        let end =
+            |costates: &Vector2<f64>| Cart.after(&Cart.begin(Vector5::new(0.0, 0.0, costates.x, costates.y, 0.0)), 1.0);
+        let miss = |costates: &Vector2<f64>| {
+            let end = end(costates);
+            (Vector2::new(end.y[0] - 1.0, end.y[1]), end.error)
+        };
+        let shot = Shot::aim(&Vector2::new(-12.0, -6.0), &Vector2::repeat(1.0), miss).expect("a way");
+        let (end, s) = (end(&shot.costates), 0.6_f64.sqrt());
+        let slope = -2.0 * TOP / s;
+        assert!((shot.costates.x - slope).abs() < 1e-9 && (shot.costates.y - slope / 2.0).abs() < 1e-9, "{shot:?}");
+        assert!((end.y[4] - TOP * TOP / 2.0 * (1.0 - 2.0 * s / 3.0)).abs() < 1e-10 && end.switches == 2, "{end:?}");
     }
 }

@@ -32,7 +32,7 @@ impl Refinement {
         let near = plan.stages.first().map(|stage| *stage.costate()).unwrap_or_default();
         let shot = extremals.aim(&problem.to, &near);
         let shot = shot.ok_or_else(|| Failure::Flags("no continuous plan is near: take shorter steps".to_owned()))?;
-        let path = extremals.path(extremals.start(&shot.costates), 2 * problem.steps);
+        let path = extremals.path(extremals.start(&shot.costates), 2 * problem.steps, 1.0);
         let least = path.last().map_or(f64::NAN, effort) * extremals.effort_unit;
         let inverse_inertia = problem.body.inertia.try_inverse().unwrap_or_default();
         let mut errors = [[0.0; 3]; 4];
