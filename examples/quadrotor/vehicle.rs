@@ -82,12 +82,12 @@ impl Vehicle {
 
     /// The torque that thrusts make, by r × f and the drag of each rotor, N·m: not from the declaration.
     pub fn torque(thrusts: &Thrusts) -> Vector3<f64> {
-        let at = [(1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
-        let of = |rotor: usize| {
-            let (place, side) =
-                (Vector3::new(at[rotor].0, at[rotor].1, 0.0) * Self::arm(), if rotor % 2 == 0 { -1.0 } else { 1.0 });
-            (place.cross(&Vector3::z()) + Vector3::z() * (DRAG * side)) * thrusts[rotor]
+        // x and y in units of the arm, and the side to which drag turns
+        const ROTORS: [(f64, f64, f64); 4] = [(1.0, -1.0, -1.0), (-1.0, -1.0, 1.0), (-1.0, 1.0, -1.0), (1.0, 1.0, 1.0)];
+        let of = |((x, y, side), thrust): (&(f64, f64, f64), &f64)| {
+            let place = Vector3::new(*x, *y, 0.0) * Self::arm();
+            (place.cross(&Vector3::z()) + Vector3::z() * (DRAG * side)) * *thrust
         };
-        (0..4).map(of).sum()
+        ROTORS.iter().zip(thrusts).map(of).sum()
     }
 }
