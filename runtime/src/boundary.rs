@@ -10,6 +10,7 @@
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
 //! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
+//! | `several` | other ways between the same endpoints |
 //! | `end` | the gap to the target and the motions that fix it |
 
 mod coarse;
@@ -19,6 +20,7 @@ mod guess;
 mod newton;
 mod node;
 mod pivot;
+mod several;
 mod sweep;
 mod vertex;
 
@@ -26,6 +28,7 @@ pub(crate) use end::shortest;
 pub use extremal::{Extremal, States};
 pub use guess::Guess;
 pub use node::Node;
+pub use several::Way;
 
 use crate::stepper::check_time;
 use crate::{Clebsch, Clock, Error, Scalar, Space, Stepper, Variational};

@@ -46,6 +46,7 @@
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
 //! | choose inputs at the least price, within bounds | [`Controlled::control`]; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
 //! | give each step an input of its forces | [`Stepper::step_with`] |
+//! | choose the inputs, within bounds and at least price | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control`], [`Optimum`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
 //!
@@ -92,7 +93,7 @@ mod time;
 mod trajectory;
 mod variational;
 
-pub use boundary::{Boundary, Extremal, Guess, Node, States};
+pub use boundary::{Boundary, Extremal, Guess, Node, States, Way};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
 pub use control::{Control, Optimum, Stage, Target};

@@ -1,11 +1,13 @@
 //! Fixed endpoints and derivatives of steps: `cargo bench -p clebsch-tests --bench boundary`.
 //!
 //! Solutions of P5 and P5v, cold and warm, beside Newton's method by hand, timed in turn in the same run, with time and bytes of each
-//! edge of paths of any length; the share of random endpoints that is solved; then derivatives of steps as multiples of the step.
+//! edge of paths of any length; the share of random endpoints that is solved; plans of least price within bounds; then derivatives of steps
+//! as multiples of the step.
 
 mod hand;
 #[path = "../../tests/boundary/pairs.rs"]
 mod pairs;
+mod plans;
 mod slews;
 mod systems;
 mod tangents;
@@ -52,6 +54,27 @@ fn main() {
             line.solved_near,
             line.most,
             line.errors
+        );
+    }
+    println!(
+        "\nPlans: time of a solution from no guess and from itself, µs; of each step in a linearisation, ns; bytes of a step\n"
+    );
+    println!(
+        "{:8} {:>6} {:>10} {:>10} {:>5} {:>5} {:>8} {:>6} {:>6} {:>14}",
+        "problem", "steps", "cold", "again", "iter.", "iter.", "step", "bytes", "held", "price"
+    );
+    for line in [10, 50, 200, 1000].into_iter().flat_map(plans::lines) {
+        let [cold, again] = [0, 1].map(|k: usize| line.times[k].least);
+        let [first, second] = line.iterations;
+        let (per_step, bytes) = (cold / line.steps as f64 / f64::from(first), line.bytes / line.steps);
+        println!(
+            "{:8} {:6} {:10.1} {:10.1} {first:5} {second:5} {per_step:8.1} {bytes:6} {:6} {:14.10}",
+            line.problem,
+            line.steps,
+            cold / 1e3,
+            again / 1e3,
+            line.held,
+            line.price
         );
     }
     println!("\nDerivatives: time of a step, ns, and multiples of it with the tangent map, with sensitivities too\n");

@@ -3,7 +3,7 @@
 // what the fixtures import for their declarations, no code names
 #![allow(unused_imports)]
 
-use crate::{Motion, integrate};
+use crate::{Motion, Plan, choose, connect, integrate};
 
 macro_rules! modules {
     ($($module:ident)*) => {$(
@@ -23,12 +23,32 @@ macro_rules! steppers {
     )*};
 }
 
+macro_rules! plans {
+    ($($name:ident: $system:ty, $d:literal, $u:literal, $c:literal;)*) => {$(
+        /// Whether a plan is found.
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $name(system: &$system, plan: &mut Plan<$system, $d, $u, $c>) -> bool {
+            choose(system, plan).is_ok()
+        }
+    )*};
+}
+
+/// Whether a path is found between fixed endpoints.
+#[unsafe(no_mangle)]
+pub extern "C" fn step_between(
+    system: &watched_top::WatchedTop,
+    motion: &mut Motion<watched_top::WatchedTop>,
+    target: &nalgebra::Matrix3<f64>,
+) -> bool {
+    connect(system, motion, target).is_ok()
+}
+
 modules! {
     annotated_body centred_body damped_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
-    lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top
-    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob two_bodies two_pendulums
-    underwater_vehicle watched_top weighted_sl2
+    lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top regulator
+    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob steered_body two_bodies two_pendulums
+    underwater_vehicle unicycle watched_top weighted_sl2
 }
 
 steppers! {
@@ -69,6 +89,13 @@ steppers! {
     step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;
     step_damped_body: damped_body::DampedBody;
     step_steered_bob: steered_bob::SteeredBob;
+    step_steered_body: steered_body::SteeredBody;
     step_watched_top: watched_top::WatchedTop;
     step_weighted_sl2: weighted_sl2::WeightedSl2;
+}
+
+plans! {
+    step_regulator: regulator::Regulator, 2, 1, 0;
+    step_steered_body_to_a_target: steered_body::SteeredBody, 6, 3, 2;
+    step_unicycle: unicycle::Unicycle, 3, 2, 3;
 }

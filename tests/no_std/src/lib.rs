@@ -10,7 +10,7 @@
 #[cfg(feature = "heap")]
 extern crate alloc;
 
-use clebsch::{Clebsch, Error, Stepper};
+use clebsch::{Clebsch, Controlled, Error, Guess, Stage, Stepper, Target, Variational};
 
 mod fixtures;
 
@@ -73,5 +73,44 @@ fn formulas<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<
     motion.momentum = stepper.momentum_components(&motion.matrix);
     motion.configuration = stepper.act(&motion.element, &motion.configuration);
     motion.momentum = stepper.momentum_map(&motion.configuration, &motion.covector);
+    Ok(())
+}
+
+/// The steps of a plan, and the edges of a path.
+const STEPS: usize = 16;
+
+/// A problem of optimal control.
+pub struct Plan<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+    step_size: S::Scalar,
+    start: S::Place,
+    goal: S::Place,
+    stages: [Stage<S, D, U, C>; STEPS],
+    price: S::Scalar,
+}
+
+/// Everything that plans can do.
+fn choose<S: Controlled<D, U, C> + Clone, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    plan: &mut Plan<S, D, U, C>,
+) -> Result<(), Error> {
+    let control = system.clone().control(plan.step_size)?;
+    plan.stages = [control.stage(&plan.start); STEPS];
+    let target = Target::Place(plan.goal);
+    plan.price = control.solve(&plan.start, target, &mut plan.stages)?.price();
+    plan.goal = control.follow(&plan.start, &control.feedback(&plan.stages[0], &plan.goal))?;
+    Ok(())
+}
+
+/// A path between fixed endpoints.
+fn connect<S, const M: usize>(system: &S, motion: &mut Motion<S>, target: &S::Configuration) -> Result<(), Error>
+where
+    S: Variational<M> + Clone,
+{
+    let stepper = system.stepper(motion.step_size)?;
+    let boundary = stepper.boundary();
+    let mut path = [boundary.rest(&motion.configuration); STEPS];
+    let extremal = boundary.solve(&motion.configuration, target, Guess::Geodesic, &mut path)?;
+    motion.energy = extremal.action();
+    motion.configuration = *boundary.solve_free(target, Guess::Path, &mut path)?.end();
     Ok(())
 }

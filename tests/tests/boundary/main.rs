@@ -4,6 +4,7 @@ mod free_ends;
 mod limits;
 mod pairs;
 mod systems;
+mod ways;
 
 use clebsch::{Clebsch, Error, Extremal, Guess, Node, Stepper, Variational};
 use clebsch_tests::oracle::near::assert_near;

@@ -169,3 +169,11 @@ pub struct Catch {
     pub stiffness: f64,
     pub goal: Matrix3<f64>,
 }
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    emit   = [boundary],
+)]
+pub struct Bead;

@@ -1,4 +1,5 @@
 //! The choice of inputs, through the macro.
 
+mod closed_forms;
 mod derivatives;
 mod plans;

@@ -1,6 +1,6 @@
-//! Plans of declared systems, against their conditions of first order and against closed forms.
+//! Plans of declared systems: Riccati's gains, the conditions of first order of random problems, evaluated by themselves, and many targets.
 
-use clebsch::{Controlled, Target};
+use clebsch::{Controlled, Error, Optimum, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::unicycle::Unicycle;
@@ -27,6 +27,91 @@ fn a_regulator_has_the_gains_of_riccati() {
     }
     assert!((optimum.price() - (start.transpose() * p * start)[0] / 2.0).abs() < 1e-13);
     assert!(optimum.is_minimum() && optimum.iterations() <= 2);
+}
+
+/// p_k = ∂ℓ/∂x + Aᵀp_{k+1} + ∂a/∂xᵀz, 0 = ∂ℓ/∂u + Bᵀp_{k+1} + ∂a/∂uᵀz, a ≤ 0 ≤ z, z·a = 0, and the inputs lead to the target.
+fn first_order<S, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    h: f64,
+    start: &S::Place,
+    target: &S::Place,
+    optimum: &Optimum<'_, S, D, U, C>,
+    tolerance: f64,
+) -> Result<(), Error>
+where
+    S: Controlled<D, U, C, Scalar = f64>,
+{
+    let constants = system.prepare(h)?;
+    let mut x = *start;
+    let mut price = 0.0;
+    let stages = optimum.stages();
+    let scale = 1.0 + stages.iter().map(|stage| stage.costate().amax()).fold(0.0, f64::max);
+    for (k, stage) in stages.iter().enumerate() {
+        let t = h * k as f64;
+        assert!(x.distance_squared(stage.place()).sqrt() < 1e-12, "the place {k}");
+        let next = stages.get(k + 1).map_or(optimum.final_costate(), |next| next.costate());
+        let expansion = system.expand(&constants, t, &x, stage.input(), next)?;
+        let z = stage.multipliers();
+        let bounds = system.bounds_expanded(t, &x, stage.input(), z);
+        let costate =
+            expansion.price_by_place + expansion.by_place.transpose() * next + bounds.by_place.transpose() * z;
+        let off = (costate - stage.costate()).amax();
+        assert!(off < tolerance * scale, "{}: the costate {k} is {off:.1e} off", S::NAME);
+        let slope = expansion.price_by_input + expansion.by_input.transpose() * next + bounds.by_input.transpose() * z;
+        assert!(slope.amax() < tolerance * scale, "{}: slope {:.1e} at {k}", S::NAME, slope.amax());
+        for i in 0..C {
+            assert!(bounds.values[i] < 1e-9 && z[i] >= 0.0, "{}: bound {i} at {k}", S::NAME);
+            assert!((z[i] * bounds.values[i]).abs() < 1e-9 * scale, "{}: both of {i} at {k}", S::NAME);
+            assert_eq!(stage.active()[i], z[i] > -bounds.values[i]);
+        }
+        price += expansion.price;
+        x = expansion.next;
+    }
+    assert!(x.distance_squared(target).sqrt() < 1e-11, "{}: the target", S::NAME);
+    assert!((price - optimum.price()).abs() < 1e-12 * (1.0 + price.abs()));
+    assert!(optimum.is_minimum());
+    Ok(())
+}
+
+#[test]
+fn unicycles_park_within_their_bounds() -> Result<(), Error> {
+    let random = &mut Random::new(601);
+    let mut held = 0;
+    for _ in 0..20 {
+        let system =
+            Unicycle { turn_price: 1.0, top_turn: 3.0, time_price: 0.0, miss_price: 0.0, goal: Vector2::zeros() };
+        let control = system.clone().control(0.05)?;
+        let start = Matrix3::identity();
+        // ahead, within a quarter of a turn
+        let angle = random.between(-1.0, 1.0);
+        let (sine, cosine) = angle.sin_cos();
+        let (x, y) = (random.between(1.0, 2.0), random.between(-1.0, 1.0));
+        let target = Matrix3::new(cosine, -sine, x, sine, cosine, y, 0.0, 0.0, 1.0);
+        let mut plan = [control.stage(&start); 20];
+        let optimum = control.solve(&start, Target::Place(target), &mut plan)?;
+        held += optimum.stages().iter().filter(|stage| stage.active().contains(&true)).count();
+        first_order(&system, 0.05, &start, &target, &optimum, 1e-10)?;
+    }
+    assert!(held > 0, "no bound was ever reached");
+    Ok(())
+}
+
+#[test]
+fn bodies_turn_within_their_torque() -> Result<(), Error> {
+    let random = &mut Random::new(602);
+    let mut held = 0;
+    for _ in 0..5 {
+        let system = SteeredBody { inertia: random.inertia::<3>(), damping: 0.1, top: 4.0 };
+        let control = system.clone().control(0.1)?;
+        let start = (random.attitude::<3>(), Vector3::zeros());
+        let target = (start.0 * random.rotation::<3>(0.3), random.vector::<3>() * 0.1);
+        let mut plan = [control.stage(&start); 20];
+        let optimum = control.solve(&start, Target::Place(target), &mut plan)?;
+        held += optimum.stages().iter().filter(|stage| stage.active().contains(&true)).count();
+        first_order(&system, 0.1, &start, &target, &optimum, 1e-10)?;
+    }
+    println!("{held} stages at a bound");
+    Ok(())
 }
 
 fn unicycle() -> Unicycle {

@@ -152,6 +152,17 @@ fn forces(program: &Program<'_>) -> String {
         let names: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
         let _ = writeln!(text, "Input: {}; `step` takes none for zero, `step_with` takes one.", names.join(", "));
     }
+    if let Some(control) = &model.control {
+        let bounds = match control.bounds.len() {
+            0 => "without bounds".to_string(),
+            1 => "within one bound".to_string(),
+            count => format!("within {count} bounds"),
+        };
+        let _ = writeln!(
+            text,
+            "`control` chooses inputs of least price {bounds}: the step is differentiated twice, by the multipliers of its momentum equation."
+        );
+    }
     text
 }
 

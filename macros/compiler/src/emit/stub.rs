@@ -17,7 +17,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     };
     let (ident, name) = (&declaration.ident, declaration.ident.to_string());
     let (parameters, arguments, predicates) = declaration.generics.split_for_impl();
-    let predicates = predicates.map(|clause| &clause.predicates).into_iter().flatten();
+    let predicates: Vec<_> = predicates.map(|clause| &clause.predicates).into_iter().flatten().collect();
     let (scalar, bound) = match &outline.scalar {
         ScalarType::F32 => (quote!(::core::primitive::f32), None),
         ScalarType::F64 => (quote!(::core::primitive::f64), None),
@@ -44,8 +44,26 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
         }
     });
     let momentum = matrix(outline.groups.iter().map(|group| group.dimension()).sum(), 1);
+    let dimension: usize = outline.groups.iter().map(|group| group.dimension()).sum();
+    let place = match declaration.kinetic.is_steered() {
+        true => (configuration.clone(), dimension),
+        false => (quote!((#configuration, #momentum)), 2 * dimension),
+    };
+    let inputs = outline.inputs.iter().map(|shape| shape.len()).sum();
+    let controlled = controlled(declaration, &krate, &scalar, place, inputs);
+    let controlled = controlled.map(|(name, body)| {
+        quote! {
+            #[automatically_derived]
+            #[allow(unused_variables, reason = "no body reads its arguments")]
+            impl #parameters #krate::#name for #ident #arguments where #(#predicates,)* #bound { #body }
+        }
+    });
+    if declaration.kinetic.is_steered() {
+        return quote!(#controlled);
+    }
     let methods = methods(&krate, &scalar);
     quote! {
+        #controlled
         #[automatically_derived]
         #[allow(unused_variables, reason = "no body reads its arguments")]
         impl #parameters #krate::Clebsch for #ident #arguments where #(#predicates,)* #bound {
@@ -93,4 +111,49 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(project_momentum(&self, q: &#configuration, mu: &Self::Momentum) -> Self::Momentum),
     ];
     quote!(#(fn #signatures { ::core::unreachable!("the declaration has an error") })*)
+}
+
+/// The trait `Controlled` with its sizes, and its items, where the declaration chooses inputs.
+fn controlled(
+    declaration: &Declaration,
+    krate: &TokenStream,
+    scalar: &TokenStream,
+    (place, dimension): (TokenStream, usize),
+    inputs: usize,
+) -> Option<(TokenStream, TokenStream)> {
+    let bounds = match declaration.control.as_ref()?.bounds.as_ref().map(|closure| &closure.body) {
+        Some(syn::Expr::Array(list)) => list.elems.len(),
+        _ => 0,
+    };
+    let name = declaration.ident.to_string();
+    let [d, u, c] = [dimension, inputs, bounds].map(Literal::usize_unsuffixed);
+    let vector = |size: &Literal| quote!(#krate::__private::SVector<#scalar, #size>);
+    let (costate, input, values) = (vector(&d), vector(&u), vector(&c));
+    let result = |value: TokenStream| quote!(::core::result::Result<#value, #krate::Error>);
+    let (done, reached, time) = (result(quote!(())), result(quote!(#place)), result(quote!(#scalar)));
+    let expansion = result(quote!(#krate::Expansion<#place, #scalar, #d, #u>));
+    let signatures = [
+        quote!(prepare(&self, h: #scalar) -> #done),
+        quote!(check_place(&self, x: &#place) -> #done),
+        quote!(follow(&self, constants: &(), t: #scalar, x: &#place, u: &#input) -> #reached),
+        quote!(price(&self, constants: &(), t: #scalar, x: &#place, u: &#input) -> #scalar),
+        quote!(expand(&self, constants: &(), t: #scalar, x: &#place, u: &#input, costate: &#costate) -> #expansion),
+        quote!(price_of_time(&self, constants: &(), t: #scalar, k: #scalar, x: &#place, u: &#input, costate: &#costate) -> #time),
+        quote!(bounds(&self, t: #scalar, x: &#place, u: &#input) -> #values),
+        quote!(bounds_expanded(&self, t: #scalar, x: &#place, u: &#input, z: &#values) -> #krate::BoundsExpansion<#scalar, #d, #u, #c>),
+        quote!(endpoint(&self, t: #scalar, x: &#place) -> #scalar),
+        quote!(endpoint_expanded(&self, t: #scalar, x: &#place) -> #krate::EndpointExpansion<#scalar, #d>),
+        quote!(arrival(&self, x: &#place, target: &#place) -> #krate::Arrival<#scalar, #d>),
+        quote!(displacement(&self, x: &#place, y: &#place) -> #costate),
+    ];
+    let body = quote! {
+        type Scalar = #scalar;
+        type Place = #place;
+        type Constants = ();
+        const NAME: &'static ::core::primitive::str = #name;
+        const BOUNDS: [&'static ::core::primitive::str; #c] = [""; #c];
+        const MOTIONS: ::core::primitive::usize = #d;
+        #(fn #signatures { ::core::unreachable!("the declaration has an error") })*
+    };
+    Some((quote!(Controlled<#d, #u, #c>), body))
 }

@@ -1,0 +1,122 @@
+//! Several extremals between the same endpoints: other ways round, other windings.
+
+use super::{Boundary, Guess, Node};
+use crate::space::larger;
+use crate::{Error, Scalar, Variational};
+use core::cmp::Ordering;
+use nalgebra::SVector;
+use num_traits::Zero;
+
+/// One of several extremals between the same endpoints, found by [`Boundary::several`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way<T, const M: usize> {
+    /// The action Σ ℓd.
+    pub action: T,
+    /// The momentum N_0 at the start.
+    pub momentum: SVector<T, M>,
+    /// The Morse index, 0 for a local minimum.
+    pub negative: usize,
+    /// What it was found from: [`Boundary::solve`] with this guess finds it again.
+    pub guess: Guess<T, M>,
+}
+
+/// The angles, in quarters of a turn, that guessed velocities go through: there and back from any point of a closed orbit, and one turn more.
+const QUARTERS: [f64; 4] = [1.0, 3.0, 5.0, 7.0];
+/// Momenta that differ by less, relative to their size, are those of one extremal.
+const APART: f64 = 1e-6;
+
+impl<S: Variational<M>, const M: usize> Boundary<'_, S, M> {
+    /// Extremals from `start` to `target` in order of their action, at most K: the shortest way, and what is found from velocities
+    /// along each direction of the algebra and between each two, both ways, through one to seven quarters of a turn in the time of the path.
+    ///
+    /// It is a search: K that are found are extremals, but others may exist. Between conjugate points, such as opposite points of a
+    /// sphere, where extremals come in families, some of each family are given. The nodes of `path` are storage.
+    ///
+    /// Work: 1 + 8M² calls of [`solve`](Self::solve) at most.
+    ///
+    /// # Errors
+    /// Those of [`solve`](Self::solve) for what was given; the least distance that was left, as [`Error::Unreachable`], where no guess
+    /// led to an extremal.
+    pub fn several<const K: usize>(
+        &self,
+        start: &S::Configuration,
+        target: &S::Configuration,
+        path: &mut [Node<S, M>],
+    ) -> Result<[Option<Way<S::Scalar, M>>; K], Error> {
+        self.check(start, &Guess::Geodesic, path.len())?;
+        self.stepper.check_configuration(target)?;
+        let mut ways = [None; K];
+        let mut failure = None;
+        for guess in self.guesses(path.len()) {
+            match self.solve(start, target, guess, path) {
+                Ok(extremal) => insert(
+                    &mut ways,
+                    Way {
+                        action: extremal.action(),
+                        momentum: *extremal.momentum(),
+                        negative: extremal.negative(),
+                        guess,
+                    },
+                ),
+                Err(error) => failure = failure.or(Some(error)),
+            }
+        }
+        match failure {
+            Some(error) if K > 0 && ways.iter().all(Option::is_none) => Err(error),
+            _ => Ok(ways),
+        }
+    }
+
+    /// The shortest way, then ±(E_i ± E_j), i ≤ j, through each of the angles.
+    fn guesses(&self, nodes: usize) -> impl Iterator<Item = Guess<S::Scalar, M>> + use<S, M> {
+        let steps = S::Scalar::from_f64((nodes / S::EDGES.max(1)) as f64);
+        let quarter = S::Scalar::PI * S::Scalar::from_ratio(1, 2) / (self.stepper.h * steps);
+        let pairs = (0..M).flat_map(|i| (i..M).map(move |j| (i, j)));
+        let signs = [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
+        let velocity = move |((i, j), (a, b), angle): ((usize, usize), (f64, f64), f64)| {
+            let (zero, length) = (S::Scalar::zero(), S::Scalar::from_f64(angle) * quarter);
+            let [first, second] = [a, b].map(|sign| S::Scalar::from_f64(sign) * length);
+            let half = S::Scalar::from_ratio(1, 2).sqrt();
+            let entry = |k: usize| match (k == i, k == j) {
+                (true, true) => first,
+                (true, false) => first * half,
+                (false, true) => second * half,
+                (false, false) => zero,
+            };
+            Guess::Velocity(SVector::from_fn(|k, _| entry(k)))
+        };
+        let mixed = QUARTERS.into_iter().flat_map(move |angle| {
+            let pairs = pairs.clone();
+            pairs.flat_map(move |(i, j)| {
+                let count = if i == j { 2 } else { 4 };
+                signs.into_iter().take(count).map(move |sign| ((i, j), sign, angle))
+            })
+        });
+        core::iter::once(Guess::Geodesic).chain(mixed.map(velocity))
+    }
+}
+
+/// Puts a way in its place, if it is none of those that are known; of more than K the one with the largest action is dropped.
+fn insert<T: Scalar, const M: usize, const K: usize>(ways: &mut [Option<Way<T, M>>; K], way: Way<T, M>) {
+    let is_known = |known: &Way<T, M>| {
+        let apart = known.momentum - way.momentum;
+        let size = larger(known.momentum.dot(&known.momentum), way.momentum.dot(&way.momentum));
+        apart.dot(&apart) <= T::from_f64(APART * APART) * size
+    };
+    if ways.iter().flatten().any(is_known) {
+        return;
+    }
+    let mut way = way;
+    for place in ways {
+        match place {
+            None => {
+                *place = Some(way);
+                return;
+            }
+            Some(known) if way.action.partial_cmp(&known.action) == Some(Ordering::Less) => {
+                core::mem::swap(known, &mut way);
+            }
+            Some(_) => {}
+        }
+    }
+}
