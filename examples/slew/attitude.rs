@@ -1,7 +1,11 @@
 //! Attitudes: rotations by an angle about an axis.
 
 use clebsch_examples::flags::finite_list;
+use clebsch_examples::scene::Failure;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+/// Turns that are less than this, rad, are none.
+const NOTICEABLE: f64 = 1e-6;
 
 /// The rotation from the body to space, written as an axis of any length and an angle in degrees.
 ///
@@ -30,4 +34,16 @@ pub fn turn(from: &Matrix3<f64>, to: &Matrix3<f64>) -> Vector3<f64> {
     let projector = (between + Matrix3::identity()) / 2.0;
     let longest = (0..3).max_by(|&i, &j| projector[(i, i)].total_cmp(&projector[(j, j)])).unwrap_or(0);
     projector.column(longest).normalize() * angle
+}
+
+/// The [`turn`] between different attitudes.
+///
+/// # Errors
+/// [`Failure::Flags`] where the attitudes are equal.
+pub fn noticeable_turn(from: &Matrix3<f64>, to: &Matrix3<f64>) -> Result<Vector3<f64>, Failure> {
+    let turn = turn(from, to);
+    if turn.norm() < NOTICEABLE {
+        return Err(Failure::Flags("--from and --to: two different attitudes are needed".to_owned()));
+    }
+    Ok(turn)
 }

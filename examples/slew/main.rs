@@ -1,19 +1,22 @@
 //! A spacecraft turned from one attitude to another in a given time: which motion costs least?
 //!
-//! Here the cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at the
-//! end is not asked, orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
+//! Two answers. The cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at
+//! the end is not asked. Or it starts and ends at rest, torques turn it, and the cost is their square; that each of them is bounded, and by
+//! how much, is a plain assumption, for which `--torque` takes another. Orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
 //! sources are in `body`. Geodesics of rotation groups and their conjugate points: Arnold, *Mathematical Methods of Classical Mechanics*
 //! (1989), appendix 2; Milnor, *Morse Theory* (1963), §15. Fixed endpoints of a free body by discrete Clebsch optimal control: Nordkvist,
-//! Crouch and Bloch, *Discrete Clebsch Optimal Control*.
+//! Crouch and Bloch, *Discrete Clebsch Optimal Control*. Torques: Pontryagin and others, *The Mathematical Theory of Optimal Processes*
+//! (1962), chapter 1.
 
 mod attitude;
 mod body;
 mod least_action;
+mod least_effort;
 
 use body::{Body, Craft};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use clebsch_examples::claims::Claims;
-use clebsch_examples::flags::{Run, Scene, finite_list, parse, positive};
+use clebsch_examples::flags::{Run, Scene, finite, finite_list, parse, positive};
 use clebsch_examples::scene::{Failure, conclude};
 use least_action::Discretization;
 use nalgebra::Matrix3;
@@ -25,11 +28,20 @@ const SCENE: Scene = Scene {
     time_unit: "seconds",
     steps: "180",
     order: "2",
-    order_note: "nothing kicks a free body, so both are the same steps",
-    columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s)",
+    order_note: "no potential kicks this body, so both are the same steps",
+    columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s); with --least effort also the torques u1,u2,u3 from there on (body frame, N m)",
 };
 
-/// A spacecraft turned from one attitude to another at least action: fixed endpoints, checked by shooting
+/// What is to be least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Least {
+    /// ∫ ½ Ω·JΩ dt; nothing acts on the way
+    Action,
+    /// ∫ ½ |u|² dt of the torques u; from rest to rest
+    Effort,
+}
+
+/// A spacecraft turned from one attitude to another at least action, or by bounded torques at least effort: fixed endpoints, checked by shooting
 #[derive(Parser, Debug)]
 pub struct Flags {
     /// The spacecraft
@@ -50,7 +62,19 @@ pub struct Flags {
     /// Duration, seconds, in place of a step size
     #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "step_size")]
     time: Option<f64>,
-    /// How velocities are made of group elements
+    /// What is to be least: the action of a free motion, or the effort of bounded torques from rest to rest
+    #[arg(long, value_enum, default_value = "action")]
+    least: Least,
+    /// The largest torque about each axis of the body, N m [default: 80 % of what the smoothest turn about the fixed axis needs]
+    #[arg(long, value_name = "U", value_parser = positive, allow_hyphen_values = true)]
+    torque: Option<f64>,
+    /// Flown: by which part of it the inertia is larger than planned
+    #[arg(long, value_name = "PART", value_parser = finite, allow_hyphen_values = true, default_value = "0.02")]
+    heavier: f64,
+    /// Flown: by which angle the attitude at the start is not as planned, degrees
+    #[arg(long, value_name = "ANGLE", value_parser = finite, allow_hyphen_values = true, default_value = "2")]
+    tilted: f64,
+    /// How velocities are made of group elements, for the least action
     #[arg(long, value_enum, default_value = "moser-veselov")]
     discretization: Discretization,
     #[command(flatten)]
@@ -66,5 +90,9 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    least_action::run(flags, Body::new(flags)?)
+    let body = Body::new(flags)?;
+    match flags.least {
+        Least::Action => least_action::run(flags, body),
+        Least::Effort => least_effort::run(flags, body),
+    }
 }

@@ -13,6 +13,7 @@
 //! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
 //! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
 //! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |
+//! | [`extremal`] | continuous problems with bounded inputs, by Pontryagin's conditions and shooting |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
 
 pub mod claims;
@@ -21,6 +22,7 @@ pub mod convergence;
 pub mod csv;
 pub mod elliptic;
 pub mod energy_band;
+pub mod extremal;
 pub mod figure;
 pub mod flags;
 pub mod integrate;

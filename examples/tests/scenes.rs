@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 15] = [
+const SCENES: [(&str, &str); 16] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -70,6 +70,31 @@ fn defaults_hold_all_their_claims() {
     }
 }
 
+/// Scenes of plans, which short runs do not suit: name, flags, and the columns of the CSV file.
+const PLANS: [(&str, &[&str], &str); 2] = [
+    (
+        "slew",
+        &["--least", "effort"],
+        "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3,u1,u2,u3",
+    ),
+    ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
+];
+
+#[test]
+fn plans_hold_all_their_claims_and_write_the_promised_columns() {
+    for (scene, arguments, columns) in PLANS {
+        let (csv, figure) = (file(&format!("{scene}-plan.csv")), file(&format!("{scene}-plan.svg")));
+        let output = run(scene, &[arguments, &["--csv", text(&csv), "--figure", text(&figure)]].concat());
+        let report = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{scene}: {report}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(report.contains("  holds  ") && !report.contains("  skipped  "), "{scene}: {report}");
+        let written = std::fs::read_to_string(csv).expect("the plan");
+        assert_eq!(written.lines().next(), Some(columns), "{scene}");
+        assert!(written.lines().all(|line| line.split(',').count() == columns.split(',').count()), "{scene}");
+        assert!(std::fs::read_to_string(figure).expect("the figure").contains("<polyline"));
+    }
+}
+
 #[test]
 fn other_flags_hold_all_their_claims() {
     for (scene, arguments) in [
@@ -104,6 +129,8 @@ fn other_flags_hold_all_their_claims() {
         ("unicycle", &["--turn-price", "0.04", "--costate", "0,1,0", "--top-turn", "1", "--miss-price", "0.1"]),
         ("plate_ball", &["--turn", "0,0,1,90"]),
         ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
+        ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
+        ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
         ("inertia_estimation", &["--spin", "0,0,2.67", "--radius", "1e9", "--step-size", "0.5", "--steps", "1200"]),
@@ -168,6 +195,13 @@ fn mistakes_are_explained() {
         ("slew", &["--from", "0,0,0,10"], "an axis needs a direction"),
         ("slew", &["--inertia", "1,2,9,0,0,0"], "no body has the principal moments"),
         ("slew", &["--inertia", "1,2,3,0,0,0", "--body", "envisat"], "cannot be used with"),
+        ("slew", &["--least", "effort", "--torque", "0"], "`0` is not above zero"),
+        ("slew", &["--least", "effort", "--torque", "100"], "bounds"),
+        ("quadrotor", &["--order", "1"], "plans are made with steps of order 2"),
+        ("quadrotor", &["--thrust", "0.05"], "hovering takes 0.0687 N of each rotor"),
+        ("quadrotor", &["--to", "0,0,0", "--yaw", "0"], "another place to hover at is needed"),
+        ("quadrotor", &["--mass", "-1"], "`-1` is not above zero"),
+        ("slew", &["--least", "effort", "--to", "1,2,3,720"], "two different attitudes are needed"),
         ("slew", &["--time", "1800", "--step-size", "10"], "cannot be used with"),
         ("unicycle", &["--goal", "1,2"], "3 numbers separated by commas are needed, 2 were given"),
         ("unicycle", &["--goal", "0,0,360"], "a place other than the origin is needed"),

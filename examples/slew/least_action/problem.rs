@@ -2,13 +2,10 @@
 
 use super::euler::Euler;
 use crate::Flags;
-use crate::attitude::turn;
+use crate::attitude::noticeable_turn;
 use crate::body::Body;
 use clebsch_examples::scene::Failure;
 use nalgebra::{Matrix3, Vector3};
-
-/// Turns that are less than this, rad, are none.
-const NOTICEABLE: f64 = 1e-6;
 
 /// A body that has to be turned.
 #[derive(Clone, Debug)]
@@ -36,10 +33,7 @@ impl Problem {
     /// [`Failure::Flags`] where the attitudes are equal.
     pub fn new(flags: &Flags, body: Body) -> Result<Self, Failure> {
         let (from, to, duration) = (flags.from, flags.to, flags.run.duration());
-        let turn = turn(&from, &to);
-        if turn.norm() < NOTICEABLE {
-            return Err(Failure::Flags("--from and --to: two different attitudes are needed".to_owned()));
-        }
+        let turn = noticeable_turn(&from, &to)?;
         Ok(Self { body, from, to, turn, duration, steps: flags.run.steps, euler: Euler::new(&body, &from, duration) })
     }
 
