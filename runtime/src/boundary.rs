@@ -1,6 +1,8 @@
 //! Fixed endpoints: the extremal of the action from one configuration to another in a given number of steps.
 //!
-//! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on.
+//! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on. So the
+//! problem on the whole space and the problem on the orbit have one answer, of which only the part of momenta that motions can have is
+//! determined, and no extremal is abnormal. As every vertex is an unknown, no single shot has to hit the target.
 //!
 //! | file | what it does |
 //! |---|---|

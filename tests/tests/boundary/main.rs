@@ -1,5 +1,6 @@
 //! Fixed endpoints by the generated code: against published optima, closed forms, the stepper and the first-order conditions.
 
+mod direct;
 mod free_ends;
 mod limits;
 mod pairs;

@@ -71,3 +71,37 @@ fn a_pointer_leaves_the_pole_along_a_meridian() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// A body with two wheels: it turns about its first two axes, never about the third.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    controls       = |u: Vector2| vector![u.x, u.y, 0],
+    cost           = |h, u| h * u.norm_squared() / 2,
+    discretization = exponential,
+)]
+pub struct TwoWheels;
+
+/// To a turn by φ about the third axis: R = exp(t(p + c e₃)) exp(−t c e₃) with |p + c e₃| = 2π and c = 2π − φ after a time of one, so that the
+/// least price is (4πφ − φ²)/2. Steps with constant inputs come near it to second order.
+#[test]
+fn two_wheels_turn_about_the_third_axis() -> Result<(), Error> {
+    let angle = 0.9_f64;
+    let expected = (4.0 * PI * angle - angle * angle) / 2.0;
+    let start = Matrix3::identity();
+    let target = *nalgebra::Rotation3::from_scaled_axis(Vector3::z() * angle).matrix();
+    let mut errors = Vec::new();
+    for steps in [20, 40, 80] {
+        let control = TwoWheels.control(1.0 / steps as f64)?;
+        let mut plan = vec![control.stage(&start); steps];
+        let optimum = control.solve(&start, Target::Place(target), &mut plan)?;
+        assert!(optimum.gap() < 1e-11);
+        errors.push(optimum.price() - expected);
+    }
+    assert!(errors[2].abs() < 2e-2, "{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.05, "order {order}: {errors:?}");
+    }
+    Ok(())
+}
