@@ -48,8 +48,8 @@ where
     let reason = "directions across the arc times half turns";
     claims.holds(&format!("S{sphere}: the indices are Morse's"), indices, reason);
     // Along the family of all half circles the Hessian has nothing to say: corrections below √ε are not told from none.
-    let reason = "√ε: a family of half circles, of which rounding chooses one";
-    claims.at_most(&format!("S{sphere}: to the opposite point both ways"), halves, f64::EPSILON.sqrt(), reason);
+    let reason = "2√ε, two corrections: a family of half circles, of which rounding chooses one";
+    claims.at_most(&format!("S{sphere}: to the opposite point both ways"), halves, 2.0 * f64::EPSILON.sqrt(), reason);
     Ok(())
 }
 

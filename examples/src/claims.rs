@@ -99,9 +99,22 @@ impl Display for Claims {
     }
 }
 
+/// The largest of numbers that are not below zero; NaN where one of them is, so that no claim holds of it.
+pub fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |a: f64, b: f64| if a.is_nan() || b <= a { a } else { b };
+    numbers.into_iter().fold(0.0, larger)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_of_numbers_hides_none() {
+        assert_eq!(largest([1.0, 3.0, 2.0]), 3.0);
+        assert_eq!(largest([]), 0.0);
+        assert!(largest([1.0, f64::NAN, 2.0]).is_nan() && largest([f64::NAN]).is_nan());
+    }
 
     #[test]
     fn failed_claims_are_named() {

@@ -11,7 +11,7 @@
 //! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
 //! | [`claims`] | what a scene asserts: each with its measured number and its bound |
 //! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
-//! | [`elliptic`] | complete elliptic integrals, for closed forms to compare with |
+//! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
 //! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |
 //! | [`extremal`] | continuous problems with bounded inputs, by Pontryagin's conditions and shooting |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
@@ -26,6 +26,7 @@ pub mod extremal;
 pub mod figure;
 pub mod flags;
 pub mod integrate;
+pub mod jacobi;
 pub mod progress;
 pub mod reference;
 pub mod round_off;

@@ -6,6 +6,12 @@ mod geodesic;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../inertia_estimation/noise.rs"]
 mod noise;
+#[allow(dead_code, reason = "what the next one needs")]
+#[path = "../unicycle/place.rs"]
+mod place;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../unicycle/geodesic.rs"]
+mod plane_geodesic;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../inertia_estimation/rotation.rs"]
 mod rotation;

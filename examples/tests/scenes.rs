@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 13] = [
+const SCENES: [(&str, &str); 15] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -28,6 +28,8 @@ const SCENES: [(&str, &str); 13] = [
     ),
     ("sphere_bvp", "step,time,q1,q2,q3,N1,N2,N3"),
     ("slew", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3"),
+    ("unicycle", "step,time,x,y,theta,omega,v,ltheta,lx,ly"),
+    ("plate_ball", "step,time,x,y,R11,R12,R13,R21,R22,R23,R31,R32,R33,u1,u2,m1,m2,m3"),
     ("inertia_estimation", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
@@ -121,6 +123,12 @@ fn other_flags_hold_all_their_claims() {
         ("slew", &["--discretization", "cayley", "--to", "0,0,1,90", "--steps", "100"]),
         ("slew", &["--inertia", "1,1,1,0,0,0", "--steps", "20"]),
         ("slew", &["--steps", "1"]),
+        ("unicycle", &["--goal", "2,3,-120", "--step-size", "0.1"]),
+        ("unicycle", &["--goal", "-1,0.5,180", "--costate", "-0.5,2,-1.5", "--steps", "100"]),
+        ("unicycle", &["--goal", "1,0,0", "--costate", "3,0,0", "--time-price", "100"]),
+        ("unicycle", &["--turn-price", "0.04", "--costate", "0,1,0", "--top-turn", "1", "--miss-price", "0.1"]),
+        ("plate_ball", &["--turn", "0,0,1,90"]),
+        ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
         ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
         ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
@@ -195,6 +203,14 @@ fn mistakes_are_explained() {
         ("quadrotor", &["--mass", "-1"], "`-1` is not above zero"),
         ("slew", &["--least", "effort", "--to", "1,2,3,720"], "two different attitudes are needed"),
         ("slew", &["--time", "1800", "--step-size", "10"], "cannot be used with"),
+        ("unicycle", &["--goal", "1,2"], "3 numbers separated by commas are needed, 2 were given"),
+        ("unicycle", &["--goal", "0,0,360"], "a place other than the origin is needed"),
+        ("unicycle", &["--turn-price", "0"], "`0` is not above zero"),
+        ("unicycle", &["--costate", "1e300,1,1"], "numbers of this size overflow"),
+        ("unicycle", &["--steps", "1"], "that there are enough steps"),
+        ("plate_ball", &["--turn", "0,0,0,3"], "an axis needs a direction"),
+        ("plate_ball", &["--turn", "1,0,0,0"], "another place or another attitude is needed"),
+        ("plate_ball", &["--radius", "-1"], "`-1` is not above zero"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),

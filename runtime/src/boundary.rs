@@ -10,12 +10,14 @@
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
 //! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
+//! | `free_time` | chooses the step size |
 //! | `several` | other ways between the same endpoints |
 //! | `end` | the gap to the target and the motions that fix it |
 
 mod coarse;
 mod end;
 mod extremal;
+mod free_time;
 mod guess;
 mod newton;
 mod node;

@@ -21,11 +21,9 @@
 //! | `search` | how much of a correction is made |
 //! | `stir` | varies inputs where by symmetry no first derivative leads to the target |
 //! | `free_time` | the step size of least price |
-//! | `bracket` | the zero of a slope |
 //! | `optimum` | what a problem is answered with |
 
 mod barrier;
-mod bracket;
 mod end;
 mod free_time;
 mod gramian;

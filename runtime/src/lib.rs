@@ -66,6 +66,7 @@ extern crate std;
 #[doc(hidden)]
 pub mod __private;
 mod boundary;
+mod bracket;
 mod conserved;
 mod control;
 mod controlled;

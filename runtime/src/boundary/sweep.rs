@@ -44,8 +44,9 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         }
     }
 
-    fn time_of_end(&self, edges: usize) -> S::Scalar {
-        time_after::<S, M>(self.time, self.h, edges / S::EDGES.max(1))
+    pub fn time_of_end(&self, edges: usize) -> S::Scalar {
+        // the price of the end may depend on the time where nothing else does
+        self.time + S::Scalar::from_f64((edges / S::EDGES.max(1)) as f64) * self.h
     }
 
     /// Linearises and eliminates a path that ends at `last_vertex`: fills momenta, gains and shifts of the nodes.
@@ -186,7 +187,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     }
 
     #[inline]
-    fn momenta(
+    pub fn momenta(
         &self,
         index: usize,
         q: &S::Configuration,

@@ -7,10 +7,10 @@
 //! the multipliers kept. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent, *Algorithms
 //! for Minimization without Derivatives*, 1973, chapter 4); each plan is the guess of the next.
 
-use super::bracket::{Bracket, Sample};
 use super::newton::Solved;
 use super::sweep::Problem;
 use super::{Control, Optimum, Stage, Target};
+use crate::bracket::{Bracket, Sample};
 use crate::{Controlled, Error, Scalar};
 use core::ops::RangeInclusive;
 use num_traits::Zero;

@@ -1,6 +1,6 @@
 //! Free ends: the last momentum is −∂φ/∂q, against closed forms and against the fixed endpoints that they are.
 
-use super::systems::{Catch, Spring};
+use super::systems::{Catch, Hurry, Spring};
 use clebsch::{Clebsch, Error, Guess};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
@@ -57,5 +57,34 @@ fn a_top_is_caught() -> Result<(), Error> {
                 > action - stiffness * (end.transpose() * goal).trace()
         );
     }
+    Ok(())
+}
+
+/// m d²/(2T) + c T is least at T = d √(m/2c).
+#[test]
+fn time_has_a_price() -> Result<(), Error> {
+    let (mass, price) = (1.7, 2.3);
+    let (start, target) = (Vector2::new(0.4, 0.3), Vector2::new(1.9, -0.8));
+    let expected = (target - start).norm() * f64::sqrt(mass / (2.0 * price));
+    for first in [0.01, 0.3] {
+        let stepper = Hurry { mass, price }.into_stepper(first)?;
+        let boundary = stepper.boundary();
+        let mut path = [boundary.rest(&start); 20];
+        let h = boundary.free_time(&start, Some(&target), 1e-3..=1.0, Guess::Geodesic, &mut path)?;
+        assert!((20.0 * h - expected).abs() < 1e-9 * expected, "{} is not {expected}", 20.0 * h);
+        let stepper = Hurry { mass, price }.into_stepper(h)?;
+        let boundary = stepper.boundary();
+        let extremal = boundary.solve(&start, &target, Guess::Path, &mut path)?;
+        // the energy is the price of the time
+        assert!((stepper.energy(&extremal.states().next().expect("a start")) - price).abs() < 1e-8);
+    }
+    // at a limit the price falls beyond it
+    let stepper = Hurry { mass, price }.into_stepper(0.01)?;
+    let boundary = stepper.boundary();
+    let mut path = [boundary.rest(&start); 20];
+    let h = boundary.free_time(&start, Some(&target), 1e-3..=0.02, Guess::Geodesic, &mut path)?;
+    assert_eq!(h, 0.02);
+    let error = boundary.free_time(&start, Some(&target), 0.1..=-0.1, Guess::Geodesic, &mut path);
+    assert!(matches!(error, Err(Error::StepSize { .. })), "{error:?}");
     Ok(())
 }

@@ -177,3 +177,15 @@ pub struct Catch {
     emit   = [boundary],
 )]
 pub struct Bead;
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action   = |a: Translation<2>, x: Vector2| x + a,
+    cost     = |h, a| self.mass * a.norm_squared() / (2 * h),
+    endpoint = |t, x| self.price * t,
+    emit     = [boundary],
+)]
+pub struct Hurry {
+    pub mass: f64,
+    pub price: f64,
+}

@@ -5,7 +5,7 @@ use crate::space::larger;
 
 /// A step size with the slope dV/dh there, and the sum of the sizes of its terms.
 #[derive(Clone, Copy)]
-pub(super) struct Sample<T> {
+pub(crate) struct Sample<T> {
     pub h: T,
     pub slope: T,
     pub size: T,
@@ -13,7 +13,7 @@ pub(super) struct Sample<T> {
 
 /// Where the zero of the slope is looked for.
 #[derive(Clone, Copy)]
-pub(super) struct Bracket<T> {
+pub(crate) struct Bracket<T> {
     limits: (T, T),
     /// Step sizes that are too short and too long.
     short: Option<T>,
