@@ -11,6 +11,9 @@ use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 use std::fmt::{self, Display, Formatter};
 
+/// How far a slope may be from the order where bounds are reached on the way.
+const SLOPE: f64 = 0.25;
+
 /// Both, and how they agree.
 #[derive(Clone, Debug)]
 pub struct Refinement {
@@ -19,7 +22,7 @@ pub struct Refinement {
     /// At half steps: where the continuous torques are held back.
     path: Vec<Motion>,
     steps: u64,
-    rows: Vec<(&'static str, Convergence)>,
+    rows: [(&'static str, Convergence); 4],
 }
 
 impl Refinement {
@@ -50,7 +53,7 @@ impl Refinement {
         }
         let names = ["attitudes, rad", "momenta, relative", "effort, relative", "work less kinetic energy, relative"];
         let converge = |errors| Convergence { errors, reference: shot.error, steps: problem.steps };
-        let rows = names.into_iter().zip(errors.map(converge)).collect();
+        let rows = std::array::from_fn(|i| (names[i], converge(errors[i])));
         Ok(Self { effort: least, path, steps: problem.steps, rows })
     }
 
@@ -75,9 +78,14 @@ impl Refinement {
 
     /// Claims second order, and that the same torques are held back.
     pub fn claim(&self, plan: &Plan, claims: &mut Claims) {
-        // A bound is reached within a step, each time elsewhere in it: that moves attitudes by a part of their error that is not a series in h.
-        for (name, convergence) in &self.rows[1..] {
+        let [places @ .., effort, work] = &self.rows;
+        for (name, convergence) in [effort, work] {
             convergence.claim(Order::Second, &format!("the order: {name}"), claims);
+        }
+        for (name, Convergence { errors, .. }) in places {
+            let reason = "mean slope from h to h/4; bounds are reached within steps, each time elsewhere";
+            let slope = (errors[0] / errors[2]).log2() / 2.0;
+            claims.within(&format!("the order: {name}"), slope, 2.0 - SLOPE..=2.0 + SLOPE, 3, reason);
         }
         let reason =
             format!("torques of {} held back otherwise than those by shooting, one for each switch", self.steps);
