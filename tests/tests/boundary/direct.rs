@@ -51,7 +51,7 @@ fn a_direct_minimisation_finds_the_same_path() -> Result<(), Error> {
     let mut path = [boundary.rest(&Matrix3::identity()); 8];
     let extremal = boundary.solve(&Matrix3::identity(), &target, Guess::Geodesic, &mut path)?;
     // from a path that zigzags
-    let zigzag = |k: usize| Vector3::new(0.2, -0.1, 0.3) * if k % 2 == 0 { 1.0 } else { -1.0 };
+    let zigzag = |k: usize| Vector3::new(0.2, -0.1, 0.3) * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut vertices: Vec<Matrix3<f64>> = (0..=8)
         .map(|k| *Rotation3::from_scaled_axis(Vector3::new(0.6, -0.9, 1.1) * (k as f64 / 8.0)).matrix())
         .enumerate()
