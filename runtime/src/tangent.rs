@@ -211,7 +211,7 @@ where
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent).
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
     pub fn step_sensitivity<const P: usize>(
         &self,
         state: &State<S>,
@@ -226,7 +226,7 @@ where
     ///
     /// # Errors
     /// As [`step_tangent_with`](Self::step_tangent_with).
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
     pub fn step_sensitivity_with<const P: usize>(
         &self,
         state: &State<S>,

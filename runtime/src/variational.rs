@@ -48,7 +48,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     ) -> Result<Self::Element, Error>;
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
-    #[allow(clippy::too_many_arguments)]
+    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     fn edge(
         &self,
         constants: &Self::Constants,
@@ -61,7 +61,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     ) -> Edge<Self::Scalar, M>;
 
     /// [`edge`](Self::edge) without derivatives of the momenta.
-    #[allow(clippy::too_many_arguments)]
+    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     fn momenta(
         &self,
         constants: &Self::Constants,
@@ -75,7 +75,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
 
     /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
     /// Together they say everything, and nothing of the size of inertia/h cancels.
-    #[allow(clippy::too_many_arguments)]
+    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     fn carried(
         &self,
         constants: &Self::Constants,
@@ -162,7 +162,11 @@ pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
     const QUANTITIES: [&'static str; P];
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
-    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
+    #[allow(
+        clippy::type_complexity,
+        clippy::too_many_arguments,
+        reason = "an edge is its place and time, its ends and its input; both its momenta have slopes"
+    )]
     fn edge_slopes(
         &self,
         constants: &Self::Constants,

@@ -71,7 +71,8 @@ fn long_arcs_need_a_guess() -> Result<(), Error> {
             let momentum = axis().scale(0.5 * (angle / 20.0).sin() / stepper.step_size());
             assert!(extremal.gap() < 1e-13 && extremal.residual() < 1e-11, "{extremal:?}");
             assert_near!(extremal.momentum(), momentum, 1e-5);
-            assert_near!(extremal.momentum(), extremal.final_momentum(), 1e-11);
+            // the momentum in space changes by what round-off has left at each of 19 vertices
+            assert_near!(extremal.momentum(), extremal.final_momentum(), 20.0 * extremal.residual() + 1e-13);
         }
     }
     for (angle, index) in [(2.0, 0), (4.0, 1), (-4.0, 1), (6.0, 1), (7.0, 2)] {

@@ -117,7 +117,7 @@ pub(super) fn steering<'g>(
     let by_time = |value: Expr<'g>| [along(value, model.step_size), along(value, model.time)];
     let count = Shape::vector(control.bounds.len().max(1));
     Some(Steering {
-        step: element(model, symbols).map(|element| step(model, symbols, element, &all)),
+        step: element(model).map(|element| step(model, symbols, element, &all)),
         price: Jet::of(control.price, &all),
         price_of_time: by_time(control.price),
         bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
@@ -149,7 +149,7 @@ fn approach<'g>(model: &Model<'g>, symbols: &Symbols<'g>, momentum_map: &[Expr<'
 }
 
 /// F − I for each factor, made of inputs.
-fn element<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Option<Vec<Expr<'g>>> {
+fn element<'g>(model: &Model<'g>) -> Option<Vec<Expr<'g>>> {
     let (velocity, discretization) = match &model.kinetic {
         Kinetic::Controls { velocity, discretization } => (velocity, *discretization),
         Kinetic::Dynamics(next) => {
@@ -158,33 +158,26 @@ fn element<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Option<Vec<Expr<'g>>
         }
         Kinetic::Cost(_) | Kinetic::Lagrangian { .. } => return None,
     };
-    let factors = model.factors.iter().zip(velocity).enumerate();
-    Some(
-        factors
-            .map(|(k, (factor, xi))| {
-                let chart = match discretization {
-                    _ if factor.group.is_translation() => Chart::Identity,
-                    Discretization::Exponential => Chart::Exponential,
-                    _ => Chart::Cayley,
-                };
-                let blocks = model.graph.blocks(factor.group);
-                let of_factor = blocks.iter().map(|block| {
-                    let (slope, parts) = chart.slope_at_identity(block);
-                    model.graph.rational(slope, parts)
-                        * model.step_size
-                        * xi.block(block.offset, 0, Shape::vector(block.algebra.dimension()))
-                });
-                let coordinates: Vec<Expr<'g>> = of_factor.collect();
-                debug_assert_eq!(coordinates.len(), symbols.coordinates(k).len());
-                let (numerator, denominator) = chart.increment(factor.group, &coordinates);
-                numerator / denominator
-            })
-            .collect(),
-    )
+    let increment = |(factor, xi): (&Factor<'g>, &Expr<'g>)| {
+        let chart = match discretization {
+            _ if factor.group.is_translation() => Chart::Identity,
+            Discretization::Exponential => Chart::Exponential,
+            _ => Chart::Cayley,
+        };
+        let blocks = model.graph.blocks(factor.group);
+        let coordinates = blocks.iter().map(|block| {
+            let (numerator, denominator) = chart.slope_at_identity(block);
+            let part = xi.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
+            model.graph.rational(numerator, denominator) * model.step_size * part
+        });
+        let (numerator, denominator) = chart.increment(factor.group, &coordinates.collect::<Vec<_>>());
+        numerator / denominator
+    };
+    Some(model.factors.iter().zip(velocity).map(increment).collect())
 }
 
-/// b along a direction, as an element of the Lie algebra: F⁻¹δF for a right action, δF F⁻¹ for a left one.
-fn trivialised<'g>(factor: &Factor<'g>, change: Expr<'g>) -> Expr<'g> {
+/// The logarithmic derivative b along a direction, an element of the Lie algebra: F⁻¹δF for a right action, δF F⁻¹ for a left one.
+fn logarithmic<'g>(factor: &Factor<'g>, change: Expr<'g>) -> Expr<'g> {
     let (group, f) = (factor.group, factor.symbol);
     match (group, factor.side) {
         (Group::Translation(_), _) => change,
@@ -221,7 +214,7 @@ fn step<'g>(
         .collect();
     let column = |i: usize| {
         let of_factor = parts.iter().enumerate().map(|(k, part)| {
-            let whole = coordinates(part.factor.group, trivialised(part.factor, part.changes[i]));
+            let whole = coordinates(part.factor.group, logarithmic(part.factor, part.changes[i]));
             let whole = if i < dimension { part.moved[i] + whole } else { whole };
             whole.embed(Shape::vector(dimension), model.offset(k), 0)
         });
@@ -235,7 +228,7 @@ fn step<'g>(
     let by_time = [model.step_size, model.time].map(|symbol| {
         let of_factor = parts.iter().enumerate().map(|(k, part)| {
             let change = increment[k].differential(&[(symbol, one)]);
-            part.costate.dot(coordinates(part.factor.group, trivialised(part.factor, change)))
+            part.costate.dot(coordinates(part.factor.group, logarithmic(part.factor, change)))
         });
         of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
     });
@@ -263,9 +256,9 @@ impl<'g> Factored<'_, 'g> {
     fn curvature(&self, directions: &[Direction<'g>], i: usize, j: usize) -> Expr<'g> {
         let group = self.factor.group;
         let second = (self.changes[i].differential(&directions[j]) + self.changes[j].differential(&directions[i])) / 2;
-        let mut sum = coordinates(group, trivialised(self.factor, second));
+        let mut sum = coordinates(group, logarithmic(self.factor, second));
         if !group.is_translation() {
-            let [a, b] = [i, j].map(|i| trivialised(self.factor, self.changes[i]));
+            let [a, b] = [i, j].map(|i| logarithmic(self.factor, self.changes[i]));
             let product = (group.compose(a, b) + group.compose(b, a)) / 2;
             sum = sum - coordinates(group, product) + self.bracket(i, b) + self.bracket(j, a);
         }

@@ -64,14 +64,11 @@ impl Emitter<'_, '_> {
         if self.model.is_steered() { self.dimension() } else { 2 * self.dimension() }
     }
 
-    /// A kernel as a block, and its outputs as matrices.
-    fn values(&self, kernel: &Kernel) -> (TokenStream, Vec<TokenStream>) {
+    /// The only output of a kernel, a scalar.
+    fn scalar(&self, kernel: &Kernel) -> TokenStream {
         let scope = self.scope_of_system();
-        let outputs = kernel.outputs.iter().map(|(shape, entries)| match shape.is_scalar() {
-            true => scope.code(&entries[0], false),
-            false => code::grid(&scope, *shape, entries, false),
-        });
-        (code::locals(&scope, kernel), outputs.collect())
+        let (locals, value) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+        quote!({ #locals #value })
     }
 
     /// The only output of a kernel, a matrix even where it has one entry.
@@ -295,17 +292,11 @@ impl Emitter<'_, '_> {
             true => (quote!(*constants), quote!(x)),
             false => (quote!(constants.1), quote!(&x.0)),
         };
-        let (locals, price) = self.values(&kernels.price);
-        let price = &price[0];
+        let price = self.scalar(&kernels.price);
         let (bounds, expanded) = (self.matrix(&kernels.bounds), self.tuple(&kernels.bounds_expanded, &[]));
-        let zero = quote!(<#scalar as #private::Zero>::zero());
         let endpoint = match &self.program.endpoint {
-            Some(kernels) => {
-                let (locals, value) = self.values(&kernels.price);
-                let value = &value[0];
-                quote!(#locals #value)
-            }
-            None => zero.clone(),
+            Some(kernels) => self.scalar(&kernels.price),
+            None => quote!(<#scalar as #private::Zero>::zero()),
         };
         let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
         let formulas = &self.program.formulas;
@@ -316,7 +307,6 @@ impl Emitter<'_, '_> {
             #[inline]
             fn price(&self, constants: &Self::Constants, t: #scalar, x: &Self::Place, u: &#private::SVector<#scalar, #u>) -> #scalar {
                 let (h, q) = (#h, #q);
-                #locals
                 #price
             }
             #of_bounds

@@ -10,7 +10,7 @@ use super::forces::{self, Input};
 use super::leaves::{Expected, leaves, new_value_of};
 use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, Slot};
 use super::value::Value;
-use super::{Bound, Configuration, Control, Discretization, Kinetic};
+use super::{Bound, Configuration, Control, Discretization, Factor, Kinetic};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{self, Closure, Declaration, spell};
 
@@ -32,6 +32,20 @@ pub(super) fn motion<'g>(
                 context
                     .diagnostics
                     .push(error.help("write `discretization = exponential` or `discretization = cayley`"));
+                return None;
+            }
+            let leaves =
+                |factor: &&Factor<'g>| !factor.group.is_translation() && !factor.group.has_cayley_chart(context.graph);
+            if let (Some(dial), Discretization::Cayley, Some(factor)) =
+                (chosen, discretization, system.factors.iter().find(leaves))
+            {
+                let name = factor.group.name(context.graph);
+                let error = Diagnostic::new(dial.span, format!("`{name}` has no Cayley map"));
+                context.diagnostics.push(
+                    error
+                        .help("write `discretization = exponential`")
+                        .note(format!("(I - Z)⁻¹(I + Z) is not in {name} for every Z of its Lie algebra")),
+                );
                 return None;
             }
             Some((Kinetic::Controls { velocity, discretization }, input))
@@ -83,7 +97,10 @@ pub(super) fn read<'g>(
         return None;
     };
     check_is_vector(context, control, leaf)?;
-    let price = of_input(context, arguments, &control.price, input, "a price is a scalar");
+    let taken = arguments.match_slots(&control.price, PRICE, &mut context.diagnostics);
+    let chosen = [(Slot::Chosen, Some(forces::value_of(input)))];
+    let scope = arguments.scope(&control.price, PRICE, &taken, &chosen, &mut context.diagnostics);
+    let price = scalar(context, &control.price, Elaborated { scope, needs: "a price is a scalar" });
     let bounds = control.bounds.as_ref().map(|closure| bounds(context, arguments, closure, input));
     Some(Control {
         price: price?,
@@ -115,29 +132,6 @@ fn check_is_vector(context: &mut Context<'_, '_>, control: &parse::Control, leaf
     None
 }
 
-fn of_input<'g>(
-    context: &mut Context<'_, 'g>,
-    arguments: &Arguments<'_, 'g>,
-    closure: &Closure,
-    input: &Input<'g>,
-    needs: &'static str,
-) -> Option<Expr<'g>> {
-    let scope = scope(context, arguments, closure, PRICE, input);
-    scalar(context, closure, Elaborated { scope, needs })
-}
-
-fn scope<'g>(
-    context: &mut Context<'_, 'g>,
-    arguments: &Arguments<'_, 'g>,
-    closure: &Closure,
-    slots: &[Slot],
-    input: &Input<'g>,
-) -> super::scope::Scope<'g> {
-    let taken = arguments.match_slots(closure, slots, &mut context.diagnostics);
-    let chosen = [(Slot::Chosen, Some(forces::value_of(input)))];
-    arguments.scope(closure, slots, &taken, &chosen, &mut context.diagnostics)
-}
-
 /// `[a <= b, …]` as a − b ≤ 0.
 fn bounds<'g>(
     context: &mut Context<'_, 'g>,
@@ -152,11 +146,17 @@ fn bounds<'g>(
         context.diagnostics.push(error.help(format!("write `bounds = |{name}| [-1 <= {name}.x, {name}.x <= 1]`")));
         return None;
     };
+    // arguments are matched once, so that a mistake in them is told once
+    let taken = arguments.match_slots(closure, BOUNDS, &mut context.diagnostics);
+    if taken.contains(&None) {
+        return None;
+    }
     let mut found = Vec::new();
     for inequality in &list.elems {
         let (lower, upper) = sides(context, inequality)?;
         let mut side = |side: &Syntax| {
-            let scope = scope(context, arguments, closure, BOUNDS, input);
+            let chosen = [(Slot::Chosen, Some(forces::value_of(input)))];
+            let scope = arguments.scope(closure, BOUNDS, &taken, &chosen, &mut context.diagnostics);
             let value = Elaborator::new(context, "bounds", scope).elaborate(side)?;
             match value.matrix().filter(|value| value.shape().is_scalar()) {
                 Some(value) => Some(value),
