@@ -9,6 +9,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | `stage` | what the caller keeps for each step |
+//! | `attempt` | approaches the target in one way after another |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `iterate` | what is known between sweeps, and decided by it |
 //! | `sweep` | linearises and eliminates backward |
@@ -19,12 +20,15 @@
 //! | `barrier` | bounds: slacks, multipliers and their sequence of barriers |
 //! | `rollout` | follows corrected inputs forward |
 //! | `search` | how much of a correction is made |
+//! | `escape` | leaves saddles |
 //! | `stir` | varies inputs where by symmetry no first derivative leads to the target |
 //! | `free_time` | the step size of least price |
 //! | `optimum` | what a problem is answered with |
 
+mod attempt;
 mod barrier;
 mod end;
+mod escape;
 mod free_time;
 mod gramian;
 mod iterate;
@@ -133,7 +137,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
     /// target nor keep the bounds.
     ///
     /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess, ten to forty
-    /// with bounds or from standing still, each linear in the number of stages; at most 500.
+    /// with bounds or from standing still, each linear in the number of stages; at most 400 in each of up to six attempts. Where the
+    /// guess does not lead to the target, the gap is priced in place of being closed, and inputs are varied: what is found then is a
+    /// local minimum like any other, and need not be the best one.
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for what was given;

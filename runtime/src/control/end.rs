@@ -21,6 +21,11 @@ pub(super) struct End<T, const D: usize> {
     pub lack: SVector<T, D>,
     /// E: the lengths of δ, projected to those that the target fixes.
     pub slope: SMatrix<T, D, D>,
+    /// Half the gradient of the squared distance, reversed, and half its Hessian but for the bend of the space.
+    pub pull: SVector<T, D>,
+    pub metric: SMatrix<T, D, D>,
+    /// The squared distance of configurations, and of momenta.
+    pub squares: [T; 2],
     /// The distance to what is asked of the end.
     pub distance: T,
     /// The numbers that the distance is compared with: the largest entry of end and target.
@@ -54,7 +59,15 @@ impl<'a, X: Space<T>, T: Scalar, const D: usize> Goal<'a, X, T, D> {
     {
         let zero = T::zero();
         let Some(goal) = self.target.place() else {
-            return End { lack: SVector::zero(), slope: SMatrix::zero(), distance: zero, scale: x.max_abs() };
+            return End {
+                lack: SVector::zero(),
+                slope: SMatrix::zero(),
+                pull: SVector::zero(),
+                metric: SMatrix::zero(),
+                squares: [zero; 2],
+                distance: zero,
+                scale: x.max_abs(),
+            };
         };
         let arrival = system.arrival(x, goal);
         let asked = if matches!(self.target, Target::Configuration(_)) { S::MOTIONS } else { D };
@@ -72,7 +85,16 @@ impl<'a, X: Space<T>, T: Scalar, const D: usize> Goal<'a, X, T, D> {
             (0..S::MOTIONS).for_each(|i| lack[i] *= factor);
         }
         let slope = SMatrix::from_fn(|i, j| projector[(i, j)] * self.lengths[j]);
-        End { lack, slope, distance: (chord + momentum).sqrt(), scale: larger(goal.max_abs(), x.max_abs()) }
+        let is_asked = |i: usize| if i < asked { T::one() } else { zero };
+        End {
+            lack,
+            slope,
+            pull: SVector::from_fn(|i, _| arrival.residual[i] * is_asked(i)),
+            metric: SMatrix::from_fn(|i, j| arrival.slope[(i, j)] * is_asked(i) * is_asked(j)),
+            squares: [chord, momentum],
+            distance: (chord + momentum).sqrt(),
+            scale: larger(goal.max_abs(), x.max_abs()),
+        }
     }
 
     /// The projector to the changes that the target fixes, and the smallest that closes the gap, both as lengths.

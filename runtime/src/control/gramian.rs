@@ -52,7 +52,7 @@ impl<T: Scalar, const D: usize> Gramian<T, D> {
     /// The number of positive eigenvalues. Directions in which the curvature of the price vanishes on plans that arrive, as those of a
     /// symmetry do, count for none.
     pub fn positive(&self) -> usize {
-        self.count(T::EPSILON.sqrt())
+        self.count(T::EPSILON.powf(T::from_ratio(1, 3)))
     }
 
     fn count(&self, least: T) -> usize {

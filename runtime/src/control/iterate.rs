@@ -8,14 +8,21 @@ use super::search::Made;
 use super::sweep::{Settings, Summary};
 use crate::Scalar;
 use crate::space::larger;
+use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 /// Directions that may lack curvature, as those of a symmetry do, while the curvature of steps is counted in full.
 const FLAT: usize = 2;
 /// Corrections in a row that no one sees, after which a plan is critical whatever they were made with: Newton's method would have needed two.
 const CALM: u32 = 5;
+/// Prices of the gap that are tried.
+pub(super) const ROUNDS: u32 = 20;
 /// Corrections of this size are near enough a solution for the exact curvature and a fixed weight of the target.
 const NEAR: (i64, i64) = (1, 100);
+/// The way down from a saddle is deeper than so many corrections that are still to be made.
+const DEPTH: f64 = 4.0;
+/// Corrections of this size are near enough a critical plan to raise the price of the gap.
+const CRITICAL: (i64, i64) = (1, 20);
 
 /// A plan with its multipliers and with what the sweeps before have told.
 pub(super) struct Iterate<X, T, const D: usize> {
@@ -40,6 +47,21 @@ pub(super) struct Iterate<X, T, const D: usize> {
     pub nearest: T,
     /// Steps in a row that were next to nothing.
     pub stalls: u32,
+    /// Whether no way down from a saddle was found.
+    pub is_cornered: bool,
+    /// How often the price of the gap was raised.
+    pub rounds: u32,
+}
+
+/// What a sweep is good for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Use {
+    /// Its correction leads downhill.
+    Correction,
+    /// It found a way down from a saddle.
+    Escape,
+    /// None: the next one is made otherwise.
+    Nothing,
 }
 
 /// What is done after a sweep.
@@ -47,6 +69,8 @@ pub(super) enum Verdict {
     Correct,
     /// The plan is critical, but no first derivative leads to the target.
     Stir,
+    /// The plan is critical for this price of the gap.
+    Price,
     /// The plan is critical for this barrier.
     Tighten,
     Done,
@@ -59,6 +83,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let settings = Settings {
             multipliers,
             weight: SMatrix::from_element(zero),
+            gap_price: None,
             barrier: barrier.unwrap_or(Barrier::none()),
             curvature: Curvature::Mirrored { damping: zero },
             bend: T::one(),
@@ -77,34 +102,40 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             largest: zero,
             nearest: distance,
             stalls: 0,
+            is_cornered: false,
+            rounds: 0,
         }
     }
 
-    /// Whether the sweep found enough positive curvature to go downhill; if not, the next one is made otherwise.
+    /// What the sweep is good for: whether it found enough positive curvature to go downhill.
     ///
     /// First the critical point of the exact model is gone to, where it is near, or tells whether more weight of the target helps; else
     /// the curvature of the steps is counted less and less, down to that of the price alone.
-    pub fn goes_downhill<const U: usize>(
+    pub fn judge<const U: usize>(
         &mut self,
         summary: &Summary<T, D, U>,
         gramian: &Gramian<T, D>,
         stiffer: &SMatrix<T, D, D>,
-    ) -> bool {
+    ) -> Use {
         let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
         if self.settings.curvature == Curvature::Kept {
-            let is_near = matches!(self.before, Some(before) if before <= T::from_ratio(NEAR.0, NEAR.1));
-            let is_convex = summary.negative <= FLAT || index(summary.negative, self.rank, gramian) == 0;
-            if is_convex && is_near && self.is_exact() {
-                return true;
+            let index = if self.is_priced() { summary.negative } else { index(summary.negative, self.rank, gramian) };
+            let depth = summary.fall.map_or(T::zero(), |(_, _, depth)| depth);
+            let is_deep = matches!(self.before, Some(before) if depth > T::from_f64(DEPTH) * before);
+            if index > 0 && is_deep && self.is_below(NEAR) && self.is_exact() && !self.is_cornered {
+                return Use::Escape;
+            }
+            if self.is_below(NEAR) && self.is_exact() && (index == 0 || summary.negative <= FLAT) {
+                return Use::Correction;
             }
             self.settings.curvature = Curvature::Mirrored { damping: self.damping };
             self.is_probed = true;
-            if index(summary.negative, self.rank, gramian) == 0 {
+            if index == 0 && !self.is_priced() && stiffer.iter().all(|entry| entry.is_finite()) {
                 self.settings.weight = *stiffer;
             } else if summary.negative > FLAT {
                 self.bend_less();
             }
-            return false;
+            return Use::Nothing;
         }
         // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
         let rank = gramian.rank();
@@ -115,9 +146,71 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             self.bend_less();
             self.is_probed = false;
         } else {
-            return true;
+            return Use::Correction;
         }
-        false
+        Use::Nothing
+    }
+
+    /// From now on the gap is only priced, at first as much as closing it costs where R is `stiffness`; its first `motions` entries are those
+    /// of configurations.
+    pub fn price_gap(&mut self, stiffness: &SMatrix<T, D, D>, motions: usize) {
+        let largest = |range: Range<usize>| range.fold(T::zero(), |max, i| larger(max, stiffness[(i, i)]));
+        let part = T::from_ratio(1, 8);
+        self.settings.gap_price = Some([largest(0..motions) * part, largest(motions..D) * part]);
+        self.settings.weight = SMatrix::from_element(T::zero());
+    }
+
+    /// Raises the price of the gap after a plan that is critical for this one.
+    pub fn raise_price(&mut self) {
+        let factor = T::from_f64(8.0);
+        self.settings.gap_price =
+            self.settings.gap_price.map(|[by_motion, by_momentum]| [by_motion * factor, by_momentum * factor]);
+        self.rounds += 1;
+        self.begin_again();
+    }
+
+    /// From now on corrections close the gap: its price becomes a weight, with multipliers that leave this price's force on the end,
+    /// Eᵀ(ν − Re), as it is.
+    pub fn close_gap(&mut self, force: SVector<T, D>, end: &End<T, D>, motions: usize) {
+        let [by_motion, by_momentum] = self.settings.gap_price.unwrap_or([T::zero(); 2]);
+        let price = |i: usize| if i < motions { by_motion } else { by_momentum };
+        self.settings.weight = SMatrix::from_fn(|i, j| if i == j { price(i) } else { T::zero() });
+        self.settings.multipliers = force + self.settings.weight * end.lack;
+        self.settings.gap_price = None;
+        self.begin_again();
+    }
+
+    /// Nothing is known any more of the corrections before.
+    fn begin_again(&mut self) {
+        (self.before, self.calm, self.is_cornered, self.is_probed) = (None, 0, false, false);
+        self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+    }
+
+    /// Goes on from below a saddle, or stays at it.
+    pub fn leave_saddle(&mut self, last: Option<X>) {
+        self.is_cornered = last.is_none();
+        if let Some(last) = last {
+            self.last = last;
+            self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+            (self.before, self.calm, self.is_probed) = (None, 0, false);
+        }
+    }
+
+    /// Whether a critical plan may be a saddle that can be left; the next sweep tells.
+    pub fn may_be_at_saddle(&mut self, negative: usize, size: T) -> bool {
+        let may_be = negative > 0 && !self.is_cornered && self.settings.curvature != Curvature::Kept;
+        if may_be {
+            self.settings.curvature = Curvature::Kept;
+            self.settings.bend = T::one();
+            self.damping = T::zero();
+            self.before = Some(size);
+        }
+        may_be
+    }
+
+    /// Whether the correction before was smaller than this.
+    fn is_below(&self, (numerator, denominator): (i64, i64)) -> bool {
+        matches!(self.before, Some(before) if before <= T::from_ratio(numerator, denominator))
     }
 
     fn bend_less(&mut self) {
@@ -129,6 +222,11 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
     pub fn magnitude<const U: usize>(&mut self, summary: &Summary<T, D, U>, decrement: T) -> T {
         self.largest = larger(self.largest, summary.magnitude + decrement.abs());
         summary.magnitude + T::EPSILON.sqrt() * self.largest
+    }
+
+    /// Whether the gap is only priced.
+    pub fn is_priced(&self) -> bool {
+        self.settings.gap_price.is_some()
     }
 
     /// Whether the model is that of Newton's method.
@@ -147,7 +245,10 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         // Where not all of the curvature is counted, corrections shrink by and by.
         let patience = if self.is_exact() { CALM } else { 10 * CALM };
         let is_critical = is_flat && is_decided || self.calm > patience;
-        if !is_critical {
+        if self.is_priced() {
+            let is_low = size <= T::from_ratio(CRITICAL.0, CRITICAL.1);
+            if is_critical || is_low { Verdict::Price } else { Verdict::Correct }
+        } else if !is_critical {
             Verdict::Correct
         } else if !end.is_reached() {
             Verdict::Stir
@@ -163,7 +264,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let next = self.settings.barrier.next(bounds, price);
         if next.weight < self.settings.barrier.weight * T::from_ratio(9, 10) {
             self.settings.barrier = next;
-            (self.before, self.calm) = (None, 0);
+            (self.before, self.calm, self.is_cornered) = (None, 0, false);
         }
     }
 
@@ -182,7 +283,9 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             self.last = made.last;
             self.settings.multipliers += made.change * made.fraction;
         }
-        if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
+        if self.is_priced() {
+            // the weight is raised between critical plans
+        } else if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
             self.settings.weight = stiffer;
         }
         self.damping = adapted(self.damping, refused);
@@ -191,10 +294,11 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             let more = larger(self.settings.bend * T::from_f64(4.0), T::from_ratio(1, 16));
             self.settings.bend = if more < T::one() && size > near { more } else { T::one() };
         }
-        self.is_probed &= negative > 0 && self.settings.bend >= T::one();
+        let is_kept = self.is_priced() || self.rank == 0;
+        self.is_probed &= size > near && is_kept || negative > 0 && self.settings.bend >= T::one();
         self.nearest = if distance < self.nearest { distance } else { self.nearest };
         self.before = Some(size);
-        self.stalls = if fraction < T::from_f64(1e-6) { self.stalls + 1 } else { 0 };
+        self.stalls = if fraction < T::from_f64(1e-3) { self.stalls + 1 } else { 0 };
     }
 }
 

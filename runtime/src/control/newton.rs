@@ -1,26 +1,27 @@
 //! Newton's method on a plan, and what is done where it does not contract.
 
 use super::Stage;
+use super::attempt::Approach;
 use super::barrier::Barrier;
 use super::end::End;
 use super::gramian::Gramian;
-use super::iterate::{Iterate, Verdict, index};
+use super::iterate::{Iterate, ROUNDS, Use, Verdict, index};
 use super::pivot::Curvature;
 use super::search::{Descent, Evidence};
 use super::sweep::{Problem, Settings, Summary};
 use crate::space::larger;
 use crate::{Controlled, Error, Scalar, Space};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
-/// Backward sweeps of which one solution may make use.
-const SWEEPS: u32 = 500;
+/// Backward sweeps of which one attempt may make use.
+const SWEEPS: u32 = 400;
 /// Damping beyond which no step goes downhill but for round-off.
 const DAMPING_LIMIT: f64 = 1e9;
 /// Patterns that are added to inputs where no first derivative leads to the target.
 const STIRS: u32 = 3;
 /// Steps in a row that may be next to nothing.
-const STALLS: u32 = 12;
+const STALLS: u32 = 8;
 
 /// A plan on which the price is critical.
 pub(super) struct Solved<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
@@ -32,71 +33,74 @@ pub(super) struct Solved<S: Controlled<D, U, C>, const D: usize, const U: usize,
 }
 
 impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
-    /// The critical plan near the guess that the stages hold, once more without its multipliers where they mislead.
-    ///
-    /// # Errors
-    /// Those of [`newton`](Self::newton). The stages hold the inputs of the guess then.
-    pub fn attempt(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<Solved<S, D, U, C>, Error> {
-        plan.iter_mut().for_each(|stage| stage.guess = stage.input);
-        let is_warm = plan.iter().any(|stage| stage.next_costate.max_abs() > S::Scalar::zero());
-        let forget = |stage: &mut Stage<S, D, U, C>| *stage = Stage::rest(&stage.place).with_guess(stage.guess);
-        let mut solved = self.newton(plan);
-        if solved.is_err() {
-            plan.iter_mut().for_each(forget);
-            if is_warm {
-                solved = self.newton(plan);
-            }
-        }
-        if solved.is_err() {
-            plan.iter_mut().for_each(forget);
-        }
-        solved
-    }
-
-    /// The critical plan near the guess, a minimum where one is found.
+    /// The critical plan near the guess, a minimum where one is found, after at most [`SWEEPS`] more sweeps.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::Uncontrollable`], [`Error::Infeasible`], [`Error::TargetMissed`], [`Error::NoExtremal`].
-    fn newton(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<Solved<S, D, U, C>, Error> {
+    pub fn newton(
+        &self,
+        plan: &mut [Stage<S, D, U, C>],
+        approach: Approach,
+        sweeps: &mut u32,
+    ) -> Result<Solved<S, D, U, C>, Error> {
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
         let bounds = S::Scalar::from_f64((plan.len() * C) as f64);
         let unit = unit(plan.len(), C);
         let mut now = self.start_from(plan)?;
+        now.is_open |= approach == Approach::Price;
         let (mut size, mut stirs) = (zero, 0);
-        for sweeps in 1..=SWEEPS {
+        for _ in 0..SWEEPS {
+            *sweeps += 1;
             let end = self.end(plan, &now.last);
             let summary = self.eliminate(plan, &now.last, &end, &now.settings)?;
             let gramian = Gramian::of(&summary.gramian);
             let descent = Descent::of(&summary, &end, &gramian, &now.settings);
             let (change, decrement) = descent.correction(one);
-            if !(summary.price.is_finite() && decrement.is_finite()) {
+            if !summary.price.is_finite() {
                 return Err(Error::NotFinite { name: "the price of the plan" });
             }
             let stiffer = gramian.weight(&summary.gramian, &now.settings.weight);
-            if !now.goes_downhill(&summary, &gramian, &stiffer) {
+            let made_of_it = now.judge(&summary, &gramian, &stiffer);
+            if made_of_it == Use::Nothing {
                 continue;
             }
+            if !decrement.is_finite() {
+                return Err(self.failure(plan, &end, size, *sweeps));
+            }
             let magnitude = now.magnitude(&summary, decrement);
+            if made_of_it == Use::Escape {
+                now.leave_saddle(self.escape(plan, &descent, &summary, magnitude));
+                continue;
+            }
             if now.is_open {
-                // The first sweep, without bounds, told the size of the price.
-                now.is_open = false;
-                now.settings.barrier = Barrier::first(bounds, summary.magnitude + decrement);
-                now.settings.weight = stiffer;
-                self.begin(plan, now.settings.barrier);
+                self.open(plan, &mut now, approach, &stiffer, summary.magnitude + decrement);
                 continue;
             }
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
             match now.verdict(&end, size, unit, Barrier::last(bounds, magnitude).weight) {
+                Verdict::Done | Verdict::Tighten if now.may_be_at_saddle(summary.negative, size) => continue,
                 Verdict::Done => {
                     self.settle(plan, &change, now.settings.barrier)?;
                     // Where inputs need no correction, the multipliers may.
                     now.settings.multipliers += change;
-                    return self.finish(plan, now, sweeps);
+                    return self.finish(plan, now, *sweeps);
                 }
                 Verdict::Tighten => {
                     now.tighten(bounds, magnitude);
                     continue;
                 }
+                Verdict::Price if self.is_relaxed(plan) => {}
+                Verdict::Price if end.distance <= S::Scalar::from_ratio(1, 100) * end.scale => {
+                    let slope = self.system.endpoint_expanded(self.time_after(plan.len()), &now.last).slope;
+                    let force = self.goal.multipliers(&end, &(summary.costate - slope));
+                    now.close_gap(force, &end, S::MOTIONS);
+                    continue;
+                }
+                Verdict::Price if now.rounds < ROUNDS => {
+                    now.raise_price();
+                    continue;
+                }
+                Verdict::Price => return Err(self.failure(plan, &end, size, *sweeps)),
                 Verdict::Stir if stirs == STIRS => {
                     return Err(Error::Uncontrollable { distance: end.distance.to_f64() });
                 }
@@ -114,14 +118,35 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
             let is_whole = made.as_ref().is_some_and(|made| made.fraction >= S::Scalar::from_ratio(9, 10));
             now.advance(made, size, summary.negative, stiffer, end.distance);
             if now.stalls == STALLS || now.damping > S::Scalar::from_f64(DAMPING_LIMIT) {
-                return Err(self.failure(plan, &end, size, sweeps));
+                return Err(self.failure(plan, &end, size, *sweeps));
             }
-            if C > 0 && is_whole && decrement <= S::Scalar::from_f64(10.0) * now.settings.barrier.weight * bounds {
+            let is_central = decrement <= S::Scalar::from_f64(10.0) * now.settings.barrier.weight * bounds;
+            if C > 0 && is_whole && is_central && !now.is_priced() {
                 now.tighten(bounds, magnitude);
             }
         }
         let end = self.end(plan, &now.last);
-        Err(self.failure(plan, &end, size, SWEEPS))
+        Err(self.failure(plan, &end, size, *sweeps))
+    }
+
+    /// Begins with bounds, or with a price of the gap, after the first sweep, which was made without and told the size of prices.
+    fn open(
+        &self,
+        plan: &mut [Stage<S, D, U, C>],
+        now: &mut Iterate<S::Place, S::Scalar, D>,
+        approach: Approach,
+        stiffer: &SMatrix<S::Scalar, D, D>,
+        price: S::Scalar,
+    ) {
+        now.is_open = false;
+        now.settings.weight = *stiffer;
+        if C > 0 {
+            now.settings.barrier = Barrier::first(S::Scalar::from_f64((plan.len() * C) as f64), price);
+            self.begin(plan, now.settings.barrier);
+        }
+        if approach == Approach::Price {
+            now.price_gap(stiffer, S::MOTIONS);
+        }
     }
 
     /// The plan that the inputs make, with the multipliers that the stages hold.

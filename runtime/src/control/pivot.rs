@@ -19,6 +19,16 @@ pub(super) struct Pivot<T, const U: usize> {
     factors: Factors<T, U>,
     /// The number of negative eigenvalues.
     pub negative: usize,
+    /// The direction of the most negative one.
+    pub fall: Option<Fall<T, U>>,
+}
+
+/// A direction δu of an input in which the price curves down.
+#[derive(Clone, Copy)]
+pub(super) struct Fall<T, const U: usize> {
+    pub direction: SVector<T, U>,
+    /// δuᵀ Q_uu δu < 0
+    pub curvature: T,
 }
 
 enum Factors<T, const U: usize> {
@@ -45,7 +55,7 @@ impl<T: Scalar, const U: usize> Pivot<T, U> {
             }
         }
         match triangular(&h) {
-            Some(factors) => Self { factors, negative: 0 },
+            Some(factors) => Self { factors, negative: 0, fall: None },
             None => spectral(&h, curvature),
         }
     }
@@ -120,7 +130,12 @@ fn spectral<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvatur
     let inverse = SMatrix::from_fn(|i, j| scale[i] * inverse[(i, j)] * scale[j]);
     let wrong = -T::EPSILON.sqrt() * largest;
     let negative = spectrum.values.iter().filter(|&&value| value < wrong).count();
-    Pivot { factors: Factors::Spectral(inverse), negative }
+    let least = (0..U).fold(0, |least, i| if spectrum.values[i] < spectrum.values[least] { i } else { least });
+    let fall = (negative > 0).then(|| Fall {
+        curvature: spectrum.values[least],
+        direction: SVector::from_fn(|i, _| scale[i] * spectrum.vectors[(i, least)]),
+    });
+    Pivot { factors: Factors::Spectral(inverse), negative, fall }
 }
 
 /// The eigenvalues of S A S with S = diag |A|^(−1/2), and the diagonal of S; rows that are nothing beside the others count as 0.

@@ -1,6 +1,6 @@
 //! The quadratic model of one step in the backward sweep, and its elimination.
 
-use super::pivot::{Curvature, Pivot};
+use super::pivot::{Curvature, Fall, Pivot};
 use crate::{BoundsExpansion, EndpointExpansion, Expansion, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -11,6 +11,8 @@ pub(super) struct Quadratic<T, const D: usize, const U: usize> {
     place: SMatrix<T, D, D>,
     mixed: SMatrix<T, U, D>,
     input: SMatrix<T, U, U>,
+    /// The part of it that is of this step alone.
+    own: SMatrix<T, U, U>,
     /// Q_xν, Q_uν
     place_multiplier: SMatrix<T, D, D>,
     pub input_multiplier: SMatrix<T, U, D>,
@@ -33,6 +35,7 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
     pub by_multiplier: SMatrix<T, U, D>,
     /// The number of negative eigenvalues of Q_uu.
     pub negative: usize,
+    pub fall: Option<Fall<T, U>>,
 }
 
 impl<T: Scalar, const D: usize> Value<T, D> {
@@ -52,6 +55,23 @@ impl<T: Scalar, const D: usize> Value<T, D> {
     }
 }
 
+impl<T: Scalar, const D: usize> Value<T, D> {
+    /// φ + ½ w d² with the squared distance d² to the target, for configurations and for momenta.
+    pub fn of_priced_end(
+        endpoint: &EndpointExpansion<T, D>,
+        end: &super::end::End<T, D>,
+        motions: usize,
+        [by_motion, by_momentum]: [T; 2],
+    ) -> Self {
+        let price = |i: usize| if i < motions { by_motion } else { by_momentum };
+        Self {
+            costate: SVector::from_fn(|i, _| endpoint.slope[i] - price(i) * end.pull[i]),
+            hessian: endpoint.curvature + SMatrix::from_fn(|i, j| price(i) * end.metric[(i, j)]),
+            by_multiplier: end.slope.transpose(),
+        }
+    }
+}
+
 impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
     /// Of one step, before the value of what follows.
     #[inline]
@@ -62,6 +82,7 @@ impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
             place: step.place_curvature,
             mixed: step.mixed_curvature,
             input: step.input_curvature,
+            own: step.input_curvature,
             place_multiplier: SMatrix::from_element(T::zero()),
             input_multiplier: SMatrix::from_element(T::zero()),
         }
@@ -90,12 +111,18 @@ impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
         let (a, b) = (&step.by_place, &step.by_input);
         self.by_place += a.tr_mul(&next.costate);
         self.by_input += b.tr_mul(&next.costate);
+        self.own = self.input;
         let (along, across) = (next.hessian * a, next.hessian * b);
         self.place += a.tr_mul(&along);
         self.mixed += b.tr_mul(&along);
         self.input += b.tr_mul(&across);
         self.place_multiplier = a.tr_mul(&next.by_multiplier);
         self.input_multiplier = b.tr_mul(&next.by_multiplier);
+    }
+
+    /// How deep the price curves down in a direction, relative to the curvature of the step alone.
+    pub fn depth(&self, fall: &Fall<T, U>) -> T {
+        -fall.curvature / fall.direction.dot(&(self.own * fall.direction))
     }
 
     /// The input that makes the model least, and the value that is left.
@@ -112,6 +139,6 @@ impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
             hessian: SMatrix::from_fn(|i, j| (hessian[(i, j)] + hessian[(j, i)]) * half),
             by_multiplier: self.place_multiplier + gain.tr_mul(&self.input_multiplier),
         };
-        (Policy { shift, gain, by_multiplier, negative: pivot.negative }, value)
+        (Policy { shift, gain, by_multiplier, negative: pivot.negative, fall: pivot.fall }, value)
     }
 }

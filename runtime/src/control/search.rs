@@ -6,6 +6,7 @@
 use super::Stage;
 use super::end::End;
 use super::gramian::Gramian;
+use super::rollout::Rolled;
 use super::sweep::{Problem, Settings, Summary};
 use crate::space::larger;
 use crate::{Controlled, Scalar};
@@ -18,7 +19,7 @@ const TRIALS: usize = 12;
 /// The plan that a correction starts from.
 pub(super) struct Descent<'a, T, const D: usize> {
     end: &'a End<T, D>,
-    settings: Settings<T, D>,
+    pub settings: Settings<T, D>,
     /// Γ⁺
     inverse: SMatrix<T, D, D>,
     /// V_ν
@@ -71,16 +72,30 @@ impl<'a, T: Scalar, const D: usize> Descent<'a, T, D> {
 
     /// δν of the correction that closes a part of the gap, Γ δν = V_ν + (1 − part) e, and twice what it takes from the model.
     pub fn correction(&self, part: T) -> (SVector<T, D>, T) {
+        if self.settings.gap_price.is_some() {
+            return (SVector::from_element(T::zero()), self.descent);
+        }
         let wanted = self.lack + self.end.lack * (T::one() - part);
         let change = self.inverse * wanted;
         let gain = change.dot(&wanted) - (change.dot(&self.lack) + change.dot(&self.end.lack)) * T::from_f64(2.0);
         (change, self.descent + gain)
     }
 
-    /// ν⁺·g + ½ g·Rg
-    fn penalty(&self, change: &SVector<T, D>, lack: &SVector<T, D>) -> T {
-        let weighted: SVector<T, D> = self.settings.weight * lack;
-        weighted.dot(lack) * T::from_ratio(1, 2) - (self.settings.multipliers + change).dot(lack)
+    /// By how much the augmented Lagrangian is larger after a step.
+    pub fn difference<X>(&self, rolled: &Rolled<X, T>, change: &SVector<T, D>, end: &End<T, D>, fraction: T) -> T {
+        let penalties = self.penalty(change, end) - self.penalty(change, self.end);
+        let barriers = self.settings.barrier.weight * rolled.slack_logarithms + fraction * rolled.excess_price;
+        rolled.price - self.price - barriers + penalties
+    }
+
+    /// ν⁺·g + ½ g·Rg, or ½ w d²
+    fn penalty(&self, change: &SVector<T, D>, end: &End<T, D>) -> T {
+        let half = T::from_ratio(1, 2);
+        if let Some([by_motion, by_momentum]) = self.settings.gap_price {
+            return (by_motion * end.squares[0] + by_momentum * end.squares[1]) * half;
+        }
+        let weighted: SVector<T, D> = self.settings.weight * end.lack;
+        weighted.dot(&end.lack) * half - (self.settings.multipliers + change).dot(&end.lack)
     }
 }
 
@@ -105,7 +120,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                     // Bounds that curve allow less than they did from afar.
                     let least = fraction * S::Scalar::from_f64(1e-3);
                     let allowed = larger(allowed * S::Scalar::from_ratio(99, 100), least);
-                    let is_far = descent.end.distance > S::Scalar::zero() && !evidence.is_relaxed;
+                    let is_far = descent.settings.gap_price.is_none()
+                        && descent.end.distance > S::Scalar::zero()
+                        && !evidence.is_relaxed;
                     if part >= one && allowed < S::Scalar::from_ratio(1, 2) && is_far {
                         part = allowed * S::Scalar::from_ratio(4, 5);
                     } else {
@@ -114,16 +131,12 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                     continue;
                 }
                 let end = self.goal.end(self.system, &rolled.last);
-                let penalties = descent.penalty(&change, &end.lack) - descent.penalty(&change, &descent.end.lack);
-                let difference = rolled.price
-                    - descent.price
-                    - barrier.weight * rolled.slack_logarithms
-                    - fraction * rolled.excess_price
-                    + penalties;
+                let difference = descent.difference(&rolled, &change, &end, fraction);
                 let promised = fraction * decrement * S::Scalar::from_f64(1e-4);
                 let round_off = S::Scalar::from_f64(16.0) * S::Scalar::EPSILON * evidence.magnitude;
                 let is_lower = difference <= round_off - promised;
-                let nearer = end.distance < evidence.nearest * S::Scalar::from_ratio(9, 10);
+                let nearer = descent.settings.gap_price.is_none()
+                    && end.distance < evidence.nearest * S::Scalar::from_ratio(9, 10);
                 let feasible = evidence.is_relaxed && fraction >= S::Scalar::from_ratio(1, 10);
                 let trusted = evidence.is_trusted && fraction >= one;
                 if difference.is_finite() && (is_lower || nearer || feasible || trusted) {

@@ -62,9 +62,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Sta
         Self { input, ..self }
     }
 
-    /// The same with this input, as the guess to go back to.
-    pub(super) fn with_guess(self, guess: SVector<S::Scalar, U>) -> Self {
-        Self { input: guess, guess, ..self }
+    /// Goes back to the input of the guess, without multipliers.
+    pub(super) fn forget(&mut self) {
+        *self = Self { input: self.guess, guess: self.guess, ..Self::rest(&self.place) };
     }
 
     /// The place x_k where the step starts.

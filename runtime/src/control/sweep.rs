@@ -15,7 +15,7 @@ use super::Stage;
 use super::barrier::Barrier;
 use super::end::{End, Goal};
 use super::gramian::Gramian;
-use super::pivot::Curvature;
+use super::pivot::{Curvature, Fall};
 use super::quadratic::{Policy, Quadratic, Value};
 use crate::space::larger;
 use crate::{Controlled, Error, Scalar, Space};
@@ -38,6 +38,8 @@ pub(super) struct Settings<T, const D: usize> {
     /// ν and R of the target.
     pub multipliers: SVector<T, D>,
     pub weight: SMatrix<T, D, D>,
+    /// Where no correction has to close the gap to the target: the price of its square, for changes of configurations and of momenta.
+    pub gap_price: Option<[T; 2]>,
     pub barrier: Barrier<T>,
     pub curvature: Curvature<T>,
     /// The part of the curvature of steps and bounds that is counted: 1 for all, 0 for none, which leaves that of the price.
@@ -62,6 +64,9 @@ pub(super) struct Summary<T, const D: usize, const U: usize> {
     pub gramian: SMatrix<T, D, D>,
     /// The number of negative eigenvalues of all Q_uu.
     pub negative: usize,
+    /// The direction of the most negative one, with its stage and how deep it is, relative to the curvature of all steps alone. Along a
+    /// symmetry it is no deeper than what a correction changes.
+    pub fall: Option<(usize, Fall<T, U>, T)>,
     /// By how far each input moves the end where it is 1 throughout, at most.
     pub reach: SVector<T, U>,
     /// The costate at the end.
@@ -78,13 +83,14 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
             lack: -end.lack,
             gramian: SMatrix::from_element(T::zero()),
             negative: 0,
+            fall: None,
             reach: SVector::from_element(T::zero()),
             costate,
         }
     }
 
     #[inline]
-    fn count(&mut self, price: T, model: &Quadratic<T, D, U>, policy: &Policy<T, D, U>) {
+    fn count(&mut self, index: usize, price: T, model: &Quadratic<T, D, U>, policy: &Policy<T, D, U>) {
         self.price += price;
         self.magnitude += price.abs();
         self.descent -= model.by_input.dot(&policy.shift);
@@ -92,6 +98,11 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
         self.lack += model.input_multiplier.tr_mul(&policy.shift);
         self.gramian -= model.input_multiplier.tr_mul(&policy.by_multiplier);
         self.negative += policy.negative;
+        if let Some(fall) = policy.fall
+            && self.fall.is_none_or(|(_, deepest, _)| fall.curvature < deepest.curvature)
+        {
+            self.fall = Some((index, fall, model.depth(&fall)));
+        }
         for j in 0..U {
             self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
         }
@@ -117,7 +128,10 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         settings: &Settings<S::Scalar, D>,
     ) -> Result<Summary<S::Scalar, D, U>, Error> {
         let endpoint = self.system.endpoint_expanded(self.time_after(plan.len()), last);
-        let mut value = Value::of_end(&endpoint, end, &settings.multipliers, &settings.weight);
+        let mut value = match settings.gap_price {
+            Some(price) => Value::of_priced_end(&endpoint, end, S::MOTIONS, price),
+            None => Value::of_end(&endpoint, end, &settings.multipliers, &settings.weight),
+        };
         let mut summary = Summary::of_end(endpoint.price, end, value.costate);
         for (index, stage) in plan.iter_mut().enumerate().rev() {
             let t = self.time_after(index);
@@ -133,7 +147,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
             }
             model.add_value(&step, &value);
             let (policy, mut before) = model.eliminate(settings.curvature);
-            summary.count(step.price, &model, &policy);
+            summary.count(index, step.price, &model, &policy);
             if settings.is_last {
                 // the costate of the plan as it is, without the correction that is round-off
                 before.costate = model.by_place;
@@ -145,6 +159,9 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
                 stage.gain += policy.by_multiplier * (inverse * before.by_multiplier.transpose());
             }
             value = before;
+        }
+        if let Some((_, _, depth)) = &mut summary.fall {
+            *depth /= S::Scalar::from_f64(plan.len() as f64);
         }
         Ok(summary)
     }

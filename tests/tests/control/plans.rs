@@ -1,11 +1,12 @@
 //! Plans of declared systems: Riccati's gains, the conditions of first order of random problems, evaluated by themselves, and many targets.
 
-use clebsch::{Controlled, Error, Optimum, Space, Target};
+use clebsch::{Clebsch, Controlled, Error, Optimum, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use std::f64::consts::PI;
 
 /// The Riccati recursion P = Q + Aᵀ(P − PB(R + BᵀPB)⁻¹BᵀP)A, written out.
 #[test]
@@ -118,6 +119,24 @@ fn unicycle() -> Unicycle {
     Unicycle { turn_price: 1.0, top_turn: 4.0, time_price: 0.0, miss_price: 0.0, goal: Vector2::zeros() }
 }
 
+/// The same without bounds.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SE<2>, q: SE<2>| q * F,
+    controls       = |u: Vector2| vector![u.x, u.y, 0],
+    cost           = |h, u| h * u.norm_squared() / 2,
+    endpoint       = |t, q| self.miss_price * (q.translation() - self.goal).norm_squared() / 2,
+    discretization = exponential,
+)]
+struct FreeUnicycle {
+    miss_price: f64,
+    goal: Vector2<f64>,
+}
+
+fn free_unicycle() -> FreeUnicycle {
+    FreeUnicycle { miss_price: 0.0, goal: Vector2::zeros() }
+}
+
 fn place(angle: f64, x: f64, y: f64) -> Matrix3<f64> {
     let (sin, cos) = angle.sin_cos();
     Matrix3::new(cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0)
@@ -158,6 +177,64 @@ fn a_unicycle_drives_anywhere() {
         assert!(found.stages().iter().all(|s| s.input()[1] > -1e-12 && s.input()[0].abs() <= 4.0));
     }
     assert!(census.sum < 30 * 101 && census.most < 200, "{census:?}");
+}
+
+/// From standing still, where it drives along its axis and turns, and no first derivative leads to the side; also next to there, and
+/// turned around. The mirror image of a problem has the same least price.
+#[test]
+fn a_unicycle_moves_sideways() {
+    let start = Matrix3::identity();
+    let solve = |target: Matrix3<f64>| {
+        let control = free_unicycle().control(0.02).expect("regular");
+        let mut plan = [control.stage(&start); 50];
+        let found = control.solve(&start, Target::Place(target), &mut plan);
+        let found = found.unwrap_or_else(|error| panic!("{target}: {error}"));
+        assert!(found.gap() < 1e-11 && found.is_minimum(), "{found:?}");
+        (found.price(), found.iterations())
+    };
+    let mut census = Census::default();
+    for (angle, x, y) in [(0.0, 0.0, 1.0), (0.0, 0.0, 0.1), (0.0, 0.0, 0.01), (1e-3, 1e-3, 1.0), (PI - 1e-14, 0.0, 1.0)]
+    {
+        let ((price, taken), (mirrored, others)) = (solve(place(angle, x, y)), solve(place(-angle, x, -y)));
+        assert!((price - mirrored).abs() < 1e-9 * price, "{angle} {x} {y}: {price} and {mirrored}");
+        census.count(taken.max(others));
+    }
+    assert!(census.most < 700, "{census:?}");
+}
+
+/// To a free end that is priced, straight ahead is a saddle where the goal is to the side: it is left for the minimum.
+#[test]
+fn a_saddle_is_left() -> Result<(), Error> {
+    let start = Matrix3::identity();
+    let control = FreeUnicycle { miss_price: 20.0, goal: Vector2::new(0.0, 1.0) }.control(0.02)?;
+    let mut plan = [control.stage(&start); 50];
+    let found = control.solve(&start, Target::Free, &mut plan)?;
+    // standing still costs half of the price of the miss
+    assert!(found.is_minimum() && found.price() < 10.0 / 2.0, "{found:?}");
+    // where the miss is cheap, standing still is the minimum: turning towards the goal pays only once it saves more than it costs
+    let control = FreeUnicycle { miss_price: 2.0, goal: Vector2::new(0.0, 0.1) }.control(0.02)?;
+    let mut plan = [control.stage(&start); 50];
+    let found = control.solve(&start, Target::Free, &mut plan)?;
+    assert!(found.is_minimum() && (found.price() - 0.01).abs() < 1e-15, "{found:?}");
+    Ok(())
+}
+
+/// Behind and to the side, without reverse gear and from standing still: closing the gap at once would be to drive back.
+#[test]
+fn a_unicycle_turns_back_without_reverse_gear() -> Result<(), Error> {
+    let start = Matrix3::identity();
+    let system = Unicycle { top_turn: 7.0, ..unicycle() };
+    let mut census = Census::default();
+    for target in [place(PI, -1.0, 0.5), place(-2.05, -0.85, -1.15), place(3.0, -0.01, -0.6), place(0.99, -1.5, 0.65)] {
+        let control = system.clone().control(0.02)?;
+        let mut plan = [control.stage(&start); 50];
+        let found = control.solve(&start, Target::Place(target), &mut plan)?;
+        assert!(found.gap() < 1e-11 && found.is_minimum(), "{found:?}");
+        first_order(&system, 0.02, &start, &target, &found, 1e-8)?;
+        census.count(found.iterations());
+    }
+    assert!(census.most < 400, "{census:?}");
+    Ok(())
 }
 
 /// From rest to rest, at any attitude.
