@@ -1,9 +1,10 @@
 //! Fixed endpoints and derivatives of steps: `cargo bench -p clebsch-tests --bench boundary`.
 //!
 //! Solutions of P5 and P5v, cold and warm, beside Newton's method by hand, timed in turn in the same run, with time and bytes of each
-//! edge of paths of any length; the share of random endpoints that is solved; plans of least price within bounds; then derivatives of steps
+//! edge of paths of any length; the share of random endpoints that is solved; plans of least price within bounds, and the share of random goals that is reached; then derivatives of steps
 //! as multiples of the step.
 
+mod goals;
 mod hand;
 #[path = "../../tests/boundary/pairs.rs"]
 mod pairs;
@@ -75,6 +76,26 @@ fn main() {
             again / 1e3,
             line.held,
             line.price
+        );
+    }
+    println!(
+        "\nRandom goals of a unicycle within bounds, from standing still: reached; linearisations; errors of another kind\n"
+    );
+    println!(
+        "{:>8} {:>6} {:>7} {:>8} {:>6} {:>6} {:>6}",
+        "turning", "goals", "reached", "share", "median", "most", "others"
+    );
+    for line in goals::lines(2000) {
+        let iterations = &line.iterations;
+        println!(
+            "{:8} {:6} {:7} {:7.2}% {:6} {:6} {:6}",
+            line.top_turn,
+            line.goals,
+            line.solved,
+            100.0 * line.solved as f64 / line.goals as f64,
+            iterations.get(iterations.len() / 2).copied().unwrap_or_default(),
+            iterations.last().copied().unwrap_or_default(),
+            line.otherwise
         );
     }
     println!("\nDerivatives: time of a step, ns, and multiples of it with the tangent map, with sensitivities too\n");
