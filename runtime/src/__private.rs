@@ -3,6 +3,7 @@
 //! What is the same for every problem is here and compiled once; what depends on the problem is generated. The other side of
 //! this file is the module of paths in the compiler's `emit` stage.
 
+pub use crate::composition::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17, compose, compose_symmetric};
 pub use crate::element::{check_sine_squared, from_increment, inverse, quaternion, quaternion_from_increment};
 pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
 pub use crate::exponential::{exponential, phi};

@@ -67,6 +67,7 @@ extern crate std;
 pub mod __private;
 mod boundary;
 mod bracket;
+mod composition;
 mod conserved;
 mod control;
 mod controlled;

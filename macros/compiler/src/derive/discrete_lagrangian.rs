@@ -44,7 +44,7 @@ fn placed_potential<'g>(model: &Model<'g>) -> (Expr<'g>, Expr<'g>) {
     match (model.potential, model.order) {
         (None, _) => (zero, zero),
         (Some(potential), Order::First) => (zero, -(h * potential)),
-        (Some(potential), Order::Second) => (-(h * potential / 2), -(h * potential / 2)),
+        (Some(potential), _) => (-(h * potential / 2), -(h * potential / 2)),
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], parts: i64) 
     let part = model.step_size / parts;
     let (first, last) = match model.order {
         Order::First => (model.graph.integer(0), part),
-        Order::Second => (part / 2, part / 2),
+        _ => (part / 2, part / 2),
     };
     let at_rest = |f: &Expr<'g>| {
         let rest: Vec<_> = velocities(model).iter().map(|xi| (*xi, xi.graph().zero(xi.shape()))).collect();

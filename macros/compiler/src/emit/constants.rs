@@ -93,17 +93,21 @@ impl Emitter<'_, '_> {
             &[],
             Some(&self.program.constants),
         );
+        let body = quote! {
+            #inertia
+            #locals
+            ::core::result::Result::Ok(#constants {
+                #(#fields)*
+                #(#orientations)*
+                #inverse
+            })
+        };
+        let made = self.made_for_steps(&body);
         quote! {
             #documentation
             fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
                 #checks
-                #inertia
-                #locals
-                ::core::result::Result::Ok(#constants {
-                    #(#fields)*
-                    #(#orientations)*
-                    #inverse
-                })
+                #made
             }
         }
     }

@@ -204,7 +204,8 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
 /// How a step goes and how accurate it is.
 fn scheme(program: &Program<'_>) -> String {
     let model = &program.formulas.model;
-    let order = match (model.order, program.formulas.parts) {
+    let second = if model.order == Order::First { Order::First } else { Order::Second };
+    let order = match (second, program.formulas.parts) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
         (Order::Second, 1) if program.formulas.lagrangian.couples => {
             "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
@@ -215,11 +216,18 @@ fn scheme(program: &Program<'_>) -> String {
         (Order::Second, 1) => {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), with −h/2·V at each end: half kick, drift, half kick, second order, one gradient a step."
         }
-        (Order::Second, _) => {
+        _ => {
             "The discrete Lagrangian is not time-symmetric, ℓd(q, F; h) ≠ −ℓd(Φ_F q, F⁻¹; −h): half a step is composed with half a step of its adjoint, which is of second order and costs two solves."
         }
     };
     let mut text = format!("{order}\n");
+    if let Some(stages) = model.order.stages() {
+        text += &format!(
+            "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
+            model.order,
+            if program.formulas.potential_energy.is_zero() { "" } else { "; kicks between them are merged" }
+        );
+    }
     let mut told: Vec<String> = Vec::new();
     for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts) {
         for equation in &substep.equations {

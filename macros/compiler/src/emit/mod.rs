@@ -2,6 +2,7 @@
 
 mod call;
 mod code;
+mod composition;
 mod constants;
 mod control;
 mod derivation;

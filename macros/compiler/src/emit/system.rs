@@ -9,7 +9,7 @@ use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::Formula;
 use crate::lower::Kernel;
-use crate::model::{Order, Space};
+use crate::model::Space;
 
 impl Emitter<'_, '_> {
     /// The impl block.
@@ -18,11 +18,11 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (impulse, (_, constants_arguments)) = (self.impulse_type(), self.constants_generics());
-        let (constants_name, input) = (&self.names.constants, self.input_type());
+        let (impulse, input) = (self.impulse_type(), self.input_type());
         let private = &self.paths.private;
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
-        let order: u32 = if self.model.order == Order::First { 1 } else { 2 };
+        let order = self.model.order.number();
+        let constants_type = self.constants_of_steps();
         let derivation = super::derivation(self.program);
         let (constants, formulas, dynamics, checks) =
             (self.constants(), self.formulas(), self.dynamics(), self.space_checks());
@@ -37,7 +37,7 @@ impl Emitter<'_, '_> {
                 type Impulse = #impulse;
                 type Input = #input;
                 type Time = #time;
-                type Constants = #constants_name #constants_arguments;
+                type Constants = #constants_type;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
@@ -204,7 +204,10 @@ impl Emitter<'_, '_> {
                 let inertia = code::body(&scope, &self.program.inertia, None);
                 quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
             }
-            false => quote!(#private::kinetic_energy(&constants.inertia_inverse, #mu)),
+            false => {
+                let whole = self.whole_of("constants");
+                quote!(#private::kinetic_energy(&#whole.inertia_inverse, #mu))
+            }
         };
         quote!(#shift #energy)
     }
@@ -251,16 +254,16 @@ impl Emitter<'_, '_> {
     /// Steps, handed to the type `Step`.
     fn dynamics(&self) -> TokenStream {
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
-        let (time, input) = (self.time_argument(), self.input_argument());
-        let symmetric = match self.model.force.is_some() {
-            true => quote!(::core::result::Result::Err(#krate::Error::NoCovector)),
-            false => quote!(#step::symmetric(&#step { system: self, constants }, #time q, p)),
-        };
+        let time = self.time_argument();
+        let (taken, taken_symmetric) = (self.step_taken(), self.symmetric_step_taken());
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
+        let first = self.first_of_composed();
         let impulse = match self.shares_impulse() {
-            true => quote!(#step::#kick(&#step { system: self, constants }, #time q)),
+            true => quote!(#step::#kick(&#step { system: self, constants: #first }, #time q)),
             false => quote!(()),
         };
+        let whole = self.whole_of("constants");
+        let whole = if self.model.order.stages().is_some() { quote!(constants: &#whole) } else { quote!(constants) };
         quote! {
             /// The group element that is connected to the identity and has this momentum.
             fn inverse_legendre(
@@ -270,7 +273,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 mu: &Self::Momentum,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                #step::inverse_legendre(&#step { system: self, constants }, #time q, mu)
+                #step::inverse_legendre(&#step { system: self, #whole }, #time q, mu)
             }
             /// The kick that the end of a step and the start of the next share.
             #[inline]
@@ -288,7 +291,7 @@ impl Emitter<'_, '_> {
                 impulse: &Self::Impulse,
                 u: &Self::Input,
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
-                #step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input)
+                #taken
             }
             /// One step of the discrete symmetric representation.
             fn step_symmetric(
@@ -298,7 +301,7 @@ impl Emitter<'_, '_> {
                 q: &Self::Configuration,
                 p: &Self::Configuration,
             ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                #symmetric
+                #taken_symmetric
             }
         }
     }

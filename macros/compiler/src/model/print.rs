@@ -123,10 +123,7 @@ impl fmt::Display for Side {
 
 impl fmt::Display for Order {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Order::First => "1",
-            Order::Second => "2",
-        })
+        write!(f, "{}", self.number())
     }
 }
 

@@ -88,6 +88,21 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics
     }
 }
 
+/// Derivatives are those of one step of second order, not of a composition.
+pub(super) fn check_order(keys: &Keys, diagnostics: &mut Diagnostics) {
+    let Some(order) = keys.dials.order.as_ref().filter(|order| order.value.stages().is_some()) else { return };
+    let emit = keys.dials.emit;
+    let asked = [
+        (emit.tangent, "`emit = [tangent]`"),
+        (emit.boundary, "`emit = [boundary]`"),
+        (keys.was_given("effort"), "`effort`"),
+    ];
+    for (_, word) in asked.into_iter().filter(|(asked, _)| *asked) {
+        let error = Diagnostic::later(order.span, format!("`order = {}` with {word}", order.value));
+        diagnostics.push(error.help("write `order = 2`"));
+    }
+}
+
 /// Where inputs move the configuration there is no mechanics.
 fn refuse(keys: &Keys, motion: &Ident, diagnostics: &mut Diagnostics) {
     let (kept, why) = (

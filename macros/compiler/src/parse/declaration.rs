@@ -137,6 +137,7 @@ pub(super) fn assemble(
         Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
         None => (keys.action.take(), kinetic, None),
     };
+    control::check_order(&keys, &mut diagnostics);
     control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
     if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
         diagnostics.push(

@@ -43,13 +43,42 @@ pub enum Isotropy {
     Free,
 }
 
-/// Where the potential is placed in a step.
+/// The order of accuracy: where the potential is placed in a step, and of how many steps it is composed.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Order {
     /// −h V(Φ_F q).
     First,
     /// −h/2 (V(q) + V(Φ_F q)).
     Second,
+    /// Five steps of second order.
+    Fourth,
+    /// Nine steps of second order.
+    Sixth,
+    /// Seventeen steps of second order.
+    Eighth,
+}
+
+impl Order {
+    /// The exponent of h in the error at a fixed time.
+    pub fn number(self) -> u32 {
+        match self {
+            Order::First => 1,
+            Order::Second => 2,
+            Order::Fourth => 4,
+            Order::Sixth => 6,
+            Order::Eighth => 8,
+        }
+    }
+
+    /// Of how many steps of second order a step is composed, where it is.
+    pub fn stages(self) -> Option<usize> {
+        match self {
+            Order::First | Order::Second => None,
+            Order::Fourth => Some(5),
+            Order::Sixth => Some(9),
+            Order::Eighth => Some(17),
+        }
+    }
 }
 
 /// What is emitted beside the integrator.

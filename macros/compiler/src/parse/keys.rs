@@ -86,8 +86,7 @@ pub(super) const EMITTED: [(&str, Option<Emit>); 4] = [
 ];
 
 /// Orders by number.
-pub(super) const ORDERS: [(i64, Option<Order>); 5] =
-    [(1, Some(Order::First)), (2, Some(Order::Second)), (4, None), (6, None), (8, None)];
+pub(super) const ORDERS: [Order; 5] = [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth];
 
 /// The keys that are no closures; each has a default.
 #[derive(Clone, Default, Debug)]

@@ -142,16 +142,15 @@ fn only_potentials_are_opaque(key: &Ident, stream: ParseStream) -> Diagnostic {
 
 fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located<Order>> {
     let span = literal.span();
-    let number = literal.base10_parse::<i64>().ok();
-    match ORDERS.iter().find(|&&(order, _)| Some(order) == number) {
-        Some(&(_, Some(value))) => return Some(Located { value, span }),
-        Some(_) => diagnostics.push(Diagnostic::later(span, format!("`order = {literal}`")).help("write `order = 2`")),
-        None => diagnostics.push(
-            Diagnostic::new(span, format!("there is no step of order {literal}"))
-                .help("write `order = 2`, or `order = 1` for the papers' step, drift then kick"),
-        ),
+    let number = literal.base10_parse::<u32>().ok();
+    let found = ORDERS.into_iter().find(|order| Some(order.number()) == number);
+    if found.is_none() {
+        let error = Diagnostic::new(span, format!("there is no step of order {literal}"));
+        diagnostics.push(
+            error.help("write `order = 2`; 4, 6 or 8 for more digits, or 1 for the papers' step, drift then kick"),
+        );
     }
-    None
+    found.map(|value| Located { value, span })
 }
 
 /// A name of a table.

@@ -1,0 +1,78 @@
+//! Steps of higher order: those of second order, composed.
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emitter;
+
+impl Emitter<'_, '_> {
+    /// The type of the constants of a stepper: those of one step, or of all that a step is composed of.
+    pub(super) fn constants_of_steps(&self) -> TokenStream {
+        let (private, scalar, name) = (&self.paths.private, &self.paths.scalar, &self.names.constants);
+        let (_, arguments) = self.constants_generics();
+        match self.distinct_stages() {
+            Some(distinct) => quote!(#private::Composed<#scalar, #name #arguments, #distinct>),
+            None => quote!(#name #arguments),
+        }
+    }
+
+    /// How many of the step sizes of a composed step differ: it is the same forwards and backwards.
+    fn distinct_stages(&self) -> Option<Literal> {
+        self.model.order.stages().map(|stages| Literal::usize_unsuffixed(stages.div_ceil(2)))
+    }
+
+    /// The constants made by a closure of the step size: of one step, or of all.
+    pub(super) fn made_for_steps(&self, body: &TokenStream) -> TokenStream {
+        let Some(stages) = self.model.order.stages() else { return body.clone() };
+        let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
+        let (name, (_, arguments)) = (&self.names.constants, self.constants_generics());
+        let sizes = format_ident!("SIZES_OF_{stages}");
+        quote! {
+            #private::Composed::new(h, &#private::#sizes, |h: #scalar| -> ::core::result::Result<#name #arguments, #krate::Error> {
+                #body
+            })
+        }
+    }
+
+    /// The constants of a step of the whole size.
+    pub(super) fn whole_of(&self, constants: &str) -> TokenStream {
+        let constants = Ident::new(constants, Span::call_site());
+        if self.model.order.stages().is_some() { quote!(#constants.whole) } else { quote!(#constants) }
+    }
+
+    /// The constants of the first step that is made.
+    pub(super) fn first_of_composed(&self) -> TokenStream {
+        if self.model.order.stages().is_some() { quote!(&constants.stages[0]) } else { quote!(constants) }
+    }
+
+    /// A step of the discrete Euler–Poincaré representation.
+    pub(super) fn step_taken(&self) -> TokenStream {
+        let (private, step) = (&self.paths.private, &self.names.step);
+        let (time, input) = (self.time_argument(), self.input_argument());
+        if self.model.order.stages().is_none() {
+            return quote!(#step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input));
+        }
+        quote! {
+            #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, impulse)| {
+                #step::euler_poincare(&#step { system: self, constants }, #time &q, &mu, &impulse, #input)
+            })
+        }
+    }
+
+    /// A step of the discrete symmetric representation.
+    pub(super) fn symmetric_step_taken(&self) -> TokenStream {
+        let (private, krate, step) = (&self.paths.private, &self.paths.krate, &self.names.step);
+        let time = self.time_argument();
+        if self.model.force.is_some() {
+            return quote!(::core::result::Result::Err(#krate::Error::NoCovector));
+        }
+        if self.model.order.stages().is_none() {
+            return quote!(#step::symmetric(&#step { system: self, constants }, #time q, p));
+        }
+        quote! {
+            #private::compose_symmetric(constants, t, (*q, *p), |constants, t, (q, p)| {
+                #step::symmetric(&#step { system: self, constants }, #time &q, &p)
+            })
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Steps of order 4, 6 and 8: symmetric compositions of time-symmetric steps of second order.
+//!
+//! ```text
+//! Ψ_h = Φ_{γ_1 h} ∘ Φ_{γ_2 h} ∘ … ∘ Φ_{γ_m h},    γ_i = γ_{m+1−i},    Σ γ_i = 1
+//! ```
+//! What every Φ keeps, Ψ keeps: the group, momenta, the symplectic form. Where a kick ends one step and starts the next, it is the same but
+//! for the ratio of their sizes, so that its gradient is evaluated once.
+//!
+//! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
+//! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
+
+use crate::{Error, Scalar};
+use nalgebra::SMatrix;
+
+/// γ_1, γ_2, γ_3 of order 4: 1/(4 − ∛4) and what is left for the middle.
+pub const SIZES_OF_5: [f64; 3] =
+    [0.414_490_771_794_375_737_14, 0.414_490_771_794_375_737_14, -0.657_963_087_177_502_948_56];
+
+/// γ_1, …, γ_5 of order 6.
+pub const SIZES_OF_9: [f64; 5] = [
+    0.392_161_444_007_314_139_28,
+    0.332_599_136_789_359_438_60,
+    -0.706_246_172_557_639_359_81,
+    0.082_213_596_293_550_800_230,
+    0.798_543_990_934_829_963_40,
+];
+
+/// γ_1, …, γ_9 of order 8.
+pub const SIZES_OF_17: [f64; 9] = [
+    0.130_202_483_088_890_080_88,
+    0.561_162_981_775_108_384_56,
+    -0.389_474_962_644_847_286_41,
+    0.158_841_906_555_155_600_90,
+    -0.395_903_894_133_237_577_34,
+    0.184_539_640_978_315_707_09,
+    0.258_374_387_686_322_047_29,
+    0.295_011_723_609_310_298_87,
+    -0.605_508_533_830_034_511_70,
+];
+
+/// The constants of a composed step: of a step of the whole size, and of those that it is made of.
+#[derive(Clone, Debug)]
+pub struct Composed<T, C, const K: usize> {
+    /// Those of a step of size h.
+    pub whole: C,
+    /// Those of the steps of sizes γ_1 h, …, γ_K h.
+    pub stages: [C; K],
+    /// γ_1 h, …, γ_K h
+    sizes: [T; K],
+}
+
+impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
+    /// The constants for the step size `h`, those of each size made by `make`.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub fn new(h: T, sizes: &[f64; K], make: impl Fn(T) -> Result<C, Error>) -> Result<Self, Error> {
+        let whole = make(h)?;
+        let sizes = sizes.map(|size| T::from_f64(size) * h);
+        let mut stages = core::array::from_fn(|_| whole.clone());
+        for (stage, size) in stages.iter_mut().zip(sizes) {
+            *stage = make(size)?;
+        }
+        Ok(Self { whole, stages, sizes })
+    }
+
+    /// The steps in the order in which they are made: constants, size and the size of the next, the first one again after the last.
+    #[inline]
+    fn steps(&self) -> impl Iterator<Item = (&C, T, T)> {
+        let at = |i: usize| if i < K { i } else { (2 * K - 1).saturating_sub(i + 1) };
+        let stages = self.stages.iter().zip(self.sizes);
+        let back = stages.clone().rev().skip(1);
+        let next = (1..2 * K).map(move |i| self.sizes[if i == 2 * K - 1 { 0 } else { at(i) }]);
+        stages.chain(back).zip(next).map(|((constants, size), next)| (constants, size, next))
+    }
+}
+
+/// What a kick leaves for the next step, as the kick is linear in the step size.
+pub trait Impulse<T> {
+    /// The impulse of a step that is `ratio` times as long.
+    fn scaled(self, ratio: T) -> Self;
+}
+
+impl<T> Impulse<T> for () {
+    #[inline]
+    fn scaled(self, _: T) {}
+}
+
+impl<T: Scalar, const M: usize> Impulse<T> for SMatrix<T, M, 1> {
+    #[inline]
+    fn scaled(self, ratio: T) -> Self {
+        self * ratio
+    }
+}
+
+/// (q, N, impulse) after a composed step from the time `t`.
+///
+/// # Errors
+/// Those of a step.
+#[inline]
+pub fn compose<T: Scalar, C: Clone, Q, N, I: Impulse<T>, const K: usize>(
+    composed: &Composed<T, C, K>,
+    t: T,
+    start: (Q, N, I),
+    step: impl Fn(&C, T, (Q, N, I)) -> Result<(Q, N, I), Error>,
+) -> Result<(Q, N, I), Error> {
+    let (mut state, mut t) = (start, t);
+    for (constants, size, next) in composed.steps() {
+        let (q, n, impulse) = step(constants, t, state)?;
+        state = (q, n, impulse.scaled(next / size));
+        t += size;
+    }
+    Ok(state)
+}
+
+/// (q, p) after a composed step from the time `t`.
+///
+/// # Errors
+/// Those of a step.
+#[inline]
+pub fn compose_symmetric<T: Scalar, C: Clone, Q, const K: usize>(
+    composed: &Composed<T, C, K>,
+    t: T,
+    start: (Q, Q),
+    step: impl Fn(&C, T, (Q, Q)) -> Result<(Q, Q), Error>,
+) -> Result<(Q, Q), Error> {
+    let (mut state, mut t) = (start, t);
+    for (constants, size, _) in composed.steps() {
+        state = step(constants, t, state)?;
+        t += size;
+    }
+    Ok(state)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17};
+
+    fn all<const K: usize>(sizes: &[f64; K]) -> Vec<f64> {
+        let composed = Composed::new(1.0, sizes, |h: f64| Ok(h)).expect("constants");
+        let steps: Vec<_> = composed.steps().collect();
+        for pair in steps.windows(2) {
+            assert_eq!(pair[0].2, pair[1].1, "each knows the size of the next");
+        }
+        assert_eq!(steps.len(), 2 * K - 1);
+        assert_eq!(steps[2 * K - 2].2, sizes[0]);
+        assert!(steps.iter().all(|(constants, size, _)| **constants == *size));
+        steps.into_iter().map(|(_, size, _)| size).collect()
+    }
+
+    fn sum_of_powers(sizes: &[f64], power: i32) -> f64 {
+        sizes.iter().map(|size| size.powi(power)).sum()
+    }
+
+    /// Σ γ = 1 and Σ γ³ = 0 for order 4, Σ γ⁵ = 0 too for 6, Σ γ⁷ = 0 too for 8; the conditions that mix them show in the measured orders.
+    #[test]
+    fn the_odd_powers_of_the_sizes_cancel() {
+        let [four, six, eight] = [all(&SIZES_OF_5), all(&SIZES_OF_9), all(&SIZES_OF_17)];
+        for (sizes, highest) in [(four, 3), (six, 5), (eight, 7)] {
+            assert!((sum_of_powers(&sizes, 1) - 1.0).abs() < 1e-15);
+            assert!(sizes.iter().eq(sizes.iter().rev()), "the same forwards and backwards");
+            for power in (3..=highest).step_by(2) {
+                assert!(sum_of_powers(&sizes, power).abs() < 1e-15, "{power}: {}", sum_of_powers(&sizes, power));
+            }
+        }
+    }
+}
