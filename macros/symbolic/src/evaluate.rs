@@ -1,11 +1,7 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
-use std::collections::HashMap;
-
-use num_traits::ToPrimitive;
-
 use crate::node::{Analytic, Exponent, Function, Id, Node};
-use crate::{Expr, Graph, Rational, Shape};
+use crate::{Expr, Graph, Rational, Shape, Table};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
@@ -31,7 +27,7 @@ pub trait Number: Copy + PartialEq {
 
 impl Number for f64 {
     fn from_rational(value: &Rational) -> f64 {
-        value.to_f64().unwrap_or(f64::NAN)
+        value.to_f64()
     }
     fn add(self, other: f64) -> f64 {
         self + other
@@ -206,7 +202,7 @@ pub(crate) fn negative<K: Number>(value: K) -> K {
 impl<'g> Expr<'g> {
     /// The value where each symbol has the value that `values` gives it.
     pub fn evaluate<K: Number>(self, values: &mut impl FnMut(Expr<'g>) -> Matrix<K>) -> Matrix<K> {
-        let mut known: HashMap<Id, Matrix<K>> = HashMap::new();
+        let mut known: Table<Id, Matrix<K>> = Table::default();
         for id in self.reachable() {
             let expr = self.graph.expr(id);
             let value = match &*expr.node() {
@@ -215,11 +211,10 @@ impl<'g> Expr<'g> {
             };
             known.insert(id, value);
         }
-        // by construction: an expression is reachable from itself
-        known.remove(&self.id).expect("the value of the root")
+        known[&self.id].clone()
     }
 
-    fn evaluate_node<K: Number>(self, known: &HashMap<Id, Matrix<K>>) -> Matrix<K> {
+    fn evaluate_node<K: Number>(self, known: &Table<Id, Matrix<K>>) -> Matrix<K> {
         let shape = self.shape();
         let scalar = |value: K| Matrix::new(Shape::scalar(), vec![value]);
         let product = |word: &[Id]| word.iter().map(|id| known[id].clone()).reduce(|a, b| a.multiply(&b));
@@ -280,12 +275,12 @@ impl<'g> Expr<'g> {
 
 /// base^exponent: the integer part by multiplication, the fraction by the field's own root.
 fn power<K: Number>(base: K, exponent: Exponent) -> K {
-    let whole = exponent.floor().to_integer();
-    let fraction = exponent - exponent.floor();
+    let whole = exponent.floor();
+    let fraction = exponent + Exponent::integer(-whole);
     let factor = if whole < 0 { base.reciprocal() } else { base };
     let mut result = (0..whole.unsigned_abs()).fold(one(), |product: K, _| product.multiply(factor));
-    if fraction != Exponent::from_integer(0) {
-        result = result.multiply(base.fractional_power((*fraction.numer(), *fraction.denom())));
+    if !fraction.is_zero() {
+        result = result.multiply(base.fractional_power(fraction.parts()));
     }
     result
 }

@@ -1,28 +1,26 @@
 //! Derivatives: gradients by reverse accumulation, directional derivatives by the product rule.
 
-use std::collections::HashMap;
-
-use num_traits::One;
-
 use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
-use crate::{Expr, Rational, Shape};
+use crate::{Expr, Rational, Shape, Table};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
     pub fn gradient(self, symbol: Expr<'g>) -> Expr<'g> {
         assert!(self.shape().is_scalar(), "the gradient of `{self}`, which is not a scalar");
-        let mut adjoints: HashMap<Id, Expr<'g>> = HashMap::from([(self.id, self.graph.integer(1))]);
+        let mut adjoints: Table<Id, Option<Expr<'g>>> = Table::default();
+        adjoints.insert(self.id, Some(self.graph.integer(1)));
         for id in self.reachable().into_iter().rev() {
             if id != symbol.id
-                && let Some(adjoint) = adjoints.remove(&id)
+                && let Some(adjoint) = adjoints.entry(id).take()
             {
                 self.graph.expr(id).pull_back(adjoint, &mut |child, contribution| {
-                    let entry = adjoints.entry(child).or_insert_with(|| contribution.graph.zero(contribution.shape()));
-                    *entry = *entry + contribution;
+                    let entry = adjoints.entry(child);
+                    let known = entry.unwrap_or_else(|| contribution.graph.zero(contribution.shape()));
+                    *entry = Some(known + contribution);
                 });
             }
         }
-        adjoints.get(&symbol.id).copied().unwrap_or_else(|| self.graph.zero(symbol.shape()))
+        adjoints.entry(symbol.id).unwrap_or_else(|| self.graph.zero(symbol.shape()))
     }
 
     /// Hands the adjoint of this node on to its children: `add(child, Ā)` with ⟨Ā_node, d node⟩ = Σ ⟨Ā, d child⟩.
@@ -77,8 +75,8 @@ impl<'g> Expr<'g> {
         }
         for (base, exponent) in &term.scalars {
             let mut rest = Term { word: term.word.clone(), ..term.clone() };
-            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
-            rest.multiply_scalars(&[(*base, -Exponent::one())]);
+            rest.coefficient *= Rational::short(*exponent);
+            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
             let rest = graph.collect(self.shape(), [rest]);
             add(*base, adjoint.pairing(rest));
         }
@@ -114,7 +112,7 @@ impl<'g> Expr<'g> {
 
     /// The derivative in the direction in which the symbols move: d/dε of the expression at x + ε dx.
     pub fn differential(self, directions: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-        let mut tangents: HashMap<Id, Expr<'g>> = HashMap::new();
+        let mut tangents: Table<Id, Expr<'g>> = Table::default();
         for id in self.reachable() {
             let tangent = match directions.iter().find(|(symbol, _)| symbol.id == id) {
                 Some((_, direction)) => *direction,
@@ -125,7 +123,7 @@ impl<'g> Expr<'g> {
         tangents[&self.id]
     }
 
-    fn push_forward(self, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward(self, tangents: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let expr = |id: &Id| graph.expr(*id);
         let zero = graph.zero(self.shape());
@@ -161,13 +159,13 @@ impl<'g> Expr<'g> {
         }
     }
 
-    fn push_forward_term(self, term: &Term, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward_term(self, term: &Term, tangents: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let mut sum = graph.zero(self.shape());
         for (base, exponent) in &term.scalars {
             let mut rest = term.clone();
-            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
-            rest.multiply_scalars(&[(*base, -Exponent::one())]);
+            rest.coefficient *= Rational::short(*exponent);
+            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
             sum = sum + tangents[base] * graph.collect(self.shape(), [rest]);
         }
         if !term.word.is_empty() {
@@ -177,7 +175,7 @@ impl<'g> Expr<'g> {
         sum
     }
 
-    fn push_forward_word(self, word: &[Id], tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward_word(self, word: &[Id], tangents: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let moved = |position: usize| {
             let letters = word

@@ -5,15 +5,13 @@
 //! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
 //! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
 
-use std::collections::HashMap;
-
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
 
 use crate::evaluate::{Matrix, Number, negative, one, zero};
 use crate::group::sample;
 use crate::node::{Analytic, Function, Term};
-use crate::{Expr, Group, Property, Rational, Shape};
+use crate::{Expr, Group, Property, Rational, Shape, Table};
 
 const PRIME: u64 = (1 << 61) - 1;
 const POINTS: u64 = 3;
@@ -44,13 +42,13 @@ impl Residue {
 
 impl Number for Residue {
     fn from_rational(value: &Rational) -> Residue {
-        let reduce = |part: &BigInt| {
+        let reduce = |part: BigInt| {
             let prime = BigInt::from(PRIME);
             let residue: BigInt = ((part % &prime) + &prime) % &prime;
             Residue(residue.to_u64().unwrap_or(0))
         };
-        match (i64::try_from(value.numer()), i64::try_from(value.denom())) {
-            (Ok(numerator), Ok(1)) if numerator.unsigned_abs() < PRIME => {
+        match value.parts() {
+            Some((numerator, 1)) if numerator.unsigned_abs() < PRIME => {
                 Residue(if numerator < 0 { PRIME - numerator.unsigned_abs() } else { numerator as u64 })
             }
             _ => reduce(value.numer()).multiply(reduce(value.denom()).reciprocal()),
@@ -106,13 +104,13 @@ impl Number for Residue {
 /// A random point: each symbol has a value that its property allows.
 pub struct Point<'g> {
     seed: u64,
-    known: HashMap<Expr<'g>, Matrix<Residue>>,
+    known: Table<Expr<'g>, Matrix<Residue>>,
 }
 
 impl<'g> Point<'g> {
     /// The point number `seed`.
     pub fn new(seed: u64) -> Point<'g> {
-        Point { seed, known: HashMap::new() }
+        Point { seed, known: Table::default() }
     }
 
     /// Sets the value of one symbol.
@@ -126,7 +124,7 @@ impl<'g> Point<'g> {
     }
 
     fn value(&mut self, symbol: Expr<'g>) -> Matrix<Residue> {
-        if !self.known.contains_key(&symbol) {
+        if !self.known.contains(&symbol) {
             let value = self.sample(symbol);
             self.known.insert(symbol, value);
         }

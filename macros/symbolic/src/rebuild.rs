@@ -1,11 +1,11 @@
 //! Rewriting an expression from its leaves: substitution, expansion, dependence.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
-use crate::{Expr, Graph, Rational, Shape};
+use crate::{Expr, Graph, Rational, Shape, Table};
 
 impl Node {
     /// The identities of the direct children.
@@ -65,7 +65,8 @@ impl<'g> Expr<'g> {
 
     /// Whether a root, an elementary function, a power series or a method of the user's occurs.
     pub fn has_functions(self) -> bool {
-        let fractional = |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| !e.is_integer()));
+        let fractional =
+            |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| e.as_integer().is_none()));
         self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
             Node::Function(..) | Node::Analytic(..) | Node::Opaque(..) => true,
             Node::Sum(terms) => fractional(terms),
@@ -75,9 +76,9 @@ impl<'g> Expr<'g> {
 
     /// The expression with symbols replaced by expressions of the same shape.
     pub fn substitute(self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = replacements.iter().map(|(from, to)| (from.id, *to)).collect();
+        let mut images: Table<Id, Expr<'g>> = replacements.iter().map(|(from, to)| (from.id, *to)).collect();
         for id in self.reachable() {
-            if !images.contains_key(&id) {
+            if !images.contains(&id) {
                 let image = self.graph.expr(id).rebuild(&images);
                 images.insert(id, image);
             }
@@ -86,7 +87,7 @@ impl<'g> Expr<'g> {
     }
 
     /// The same node over the images of its children.
-    pub(crate) fn rebuild(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    pub(crate) fn rebuild(self, images: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         let node = self.node();
         if node.children().iter().all(|child| images[child].id == *child) {
@@ -96,10 +97,7 @@ impl<'g> Expr<'g> {
         match &*node {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => self,
             Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| {
-                let powers = term
-                    .scalars
-                    .iter()
-                    .map(|(base, e)| images[base].power(Rational::new((*e.numer()).into(), (*e.denom()).into())));
+                let powers = term.scalars.iter().map(|(base, e)| images[base].power(Rational::short(*e)));
                 let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
                 let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
                 sum + scale * word
@@ -128,7 +126,7 @@ impl<'g> Expr<'g> {
 
     /// All products distributed over sums, and the relations between resolvents (I + aL)⁻¹ and their letter L applied.
     pub fn expand(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
+        let mut images: Table<Id, Expr<'g>> = Table::default();
         for id in self.reachable() {
             let image = self.graph.expr(id).expand_node(&images);
             images.insert(id, image);
@@ -138,7 +136,7 @@ impl<'g> Expr<'g> {
 
     /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is what is looked for.
     pub fn expand_all(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
+        let mut images: Table<Id, Expr<'g>> = Table::default();
         for id in self.reachable() {
             let expr = self.graph.expr(id);
             let rebuilt = expr.rebuild(&images);
@@ -151,14 +149,14 @@ impl<'g> Expr<'g> {
     pub fn is_defined(self) -> bool {
         let zero = self.graph.integer(0).id;
         let fails =
-            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::zero());
+            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::ZERO);
         !self
             .reachable()
             .into_iter()
             .any(|id| matches!(&*self.graph.node(id), Node::Sum(terms) if terms.iter().any(fails)))
     }
 
-    fn expand_node(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn expand_node(self, images: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
             Node::Function(..) => self,
@@ -176,7 +174,7 @@ impl<'g> Expr<'g> {
 }
 
 impl Graph {
-    fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &Table<Id, Expr<'g>>) -> Expr<'g> {
         let mut scale = self.number(term.coefficient.clone());
         for (base, exponent) in &term.scalars {
             scale =
@@ -192,15 +190,15 @@ impl Graph {
     /// Positive integer powers are multiplied out. The base of any other power stays as it was written: |x − y|² under a root
     /// must not become x² − 2xy + y², which cancels.
     fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
-        match exponent.is_integer().then(|| exponent.to_integer().to_u32()).flatten() {
-            Some(count) if count <= 16 => {
+        match exponent.as_integer() {
+            Some(count) if (0..=16).contains(&count) => {
                 (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar()))
             }
-            _ => base.power(Rational::new((*exponent.numer()).into(), (*exponent.denom()).into())),
+            _ => base.power(Rational::short(exponent)),
         }
     }
 
-    fn expand_word<'g>(&'g self, word: &[Id], images: &HashMap<Id, Expr<'g>>, shape: Shape) -> Expr<'g> {
+    fn expand_word<'g>(&'g self, word: &[Id], images: &Table<Id, Expr<'g>>, shape: Shape) -> Expr<'g> {
         let mut product: Option<Expr<'g>> = None;
         for letter in word {
             let factor = images[letter];

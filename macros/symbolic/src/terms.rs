@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
 use crate::rational::product;
@@ -76,7 +76,7 @@ impl<'g> Expr<'g> {
     fn atom(self) -> Term {
         let mut term = Term::number(Rational::one());
         match self.shape().is_scalar() {
-            true => term.scalars.push((self.id, Exponent::one())),
+            true => term.scalars.push((self.id, Exponent::ONE)),
             false => term.word.push(self.id),
         }
         term
@@ -375,6 +375,6 @@ impl Graph {
 
     /// An exponent as a small integer, if it is one.
     pub(crate) fn small_integer(exponent: &Exponent) -> Option<i32> {
-        exponent.is_integer().then(|| exponent.to_integer().to_i32()).flatten()
+        exponent.as_integer().and_then(|exponent| i32::try_from(exponent).ok())
     }
 }

@@ -3,12 +3,10 @@
 //!
 //! Expressions are not kept in this form: (F − I)(F + I)⁻¹ has to stay whole until F is put in, for then it simplifies as a whole.
 
-use std::collections::HashMap;
-
 use num_traits::Zero;
 
 use crate::node::{Id, Node, Term};
-use crate::{Expr, Shape};
+use crate::{Expr, Shape, Table};
 
 /// A matrix that is zero outside of a part of it.
 struct Window<'g> {
@@ -22,7 +20,7 @@ struct Window<'g> {
 impl<'g> Expr<'g> {
     /// The same with products freed of zeros and blocks taken of their letters.
     pub fn blockwise(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
+        let mut images: Table<Id, Expr<'g>> = Table::default();
         for id in self.reachable() {
             let expr = self.graph.expr(id);
             let image = match &*expr.node() {

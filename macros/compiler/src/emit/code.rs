@@ -212,11 +212,10 @@ impl Scope<'_, '_> {
     /// A number, rounded once to the scalar.
     pub fn number(&self, value: &Rational) -> TokenStream {
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let parts = (i64::try_from(value.numer()), i64::try_from(value.denom()));
-        match (&self.model.item.scalar, parts) {
-            (ScalarType::Parameter(_), (Ok(0), Ok(1))) => quote!(<#scalar as #private::Zero>::zero()),
-            (ScalarType::Parameter(_), (Ok(1), Ok(1))) => quote!(<#scalar as #private::One>::one()),
-            (ScalarType::Parameter(_), (Ok(numerator), Ok(denominator))) => {
+        match (&self.model.item.scalar, value.parts()) {
+            (ScalarType::Parameter(_), Some((0, 1))) => quote!(<#scalar as #private::Zero>::zero()),
+            (ScalarType::Parameter(_), Some((1, 1))) => quote!(<#scalar as #private::One>::one()),
+            (ScalarType::Parameter(_), Some((numerator, denominator))) => {
                 let (numerator, denominator) =
                     (Literal::i64_unsuffixed(numerator), Literal::i64_unsuffixed(denominator));
                 quote!(<#scalar as #private::Scalar>::from_ratio(#numerator, #denominator))
@@ -249,7 +248,7 @@ fn float(value: &Rational) -> TokenStream {
 fn decimal(value: &Rational) -> Option<String> {
     let mut scaled = value.clone();
     for digits in 0..=40_usize {
-        if *scaled.denom() == *integer(1).numer() {
+        if scaled.is_integer() {
             let text = scaled.numer().to_string();
             if text.len() > 60 {
                 return None;

@@ -3,9 +3,9 @@
 //! Factors that do not change during a step are gathered before they meet those that do: `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant
 //! matrix times `x^`, however the derivation has distributed it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
-use clebsch_symbolic::{Algebra, Basis, Expr, Graph, Rational, Role, Shape, Sparse, View, WordTerm, integer};
+use clebsch_symbolic::{Algebra, Basis, Expr, Graph, Rational, Role, Shape, Sparse, Table, View, WordTerm, integer};
 
 use super::scalar::{Call, Callee, Input, Scalar, Scalars};
 
@@ -33,13 +33,13 @@ impl Grid {
 pub struct Lowering<'a, 'g> {
     /// The arena of the scalars.
     pub scalars: &'a mut Scalars,
-    known: HashMap<Expr<'g>, Grid>,
+    known: Table<Expr<'g>, Grid>,
 }
 
 impl<'a, 'g> Lowering<'a, 'g> {
     /// A lowering into an arena.
     pub fn new(scalars: &'a mut Scalars) -> Lowering<'a, 'g> {
-        Lowering { scalars, known: HashMap::new() }
+        Lowering { scalars, known: Table::default() }
     }
 
     /// Lets a symbol stand for a grid.

@@ -8,6 +8,7 @@ mod cost;
 mod grid;
 mod kernel;
 mod names;
+mod pairs;
 mod print;
 mod scalar;
 mod stepping;

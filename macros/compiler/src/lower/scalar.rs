@@ -1,9 +1,9 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
+use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, HashMap};
 
-use clebsch_symbolic::{Analytic, Function, One, Rational, Role, Shape, Zero, integer, product};
+use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product};
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -100,30 +100,28 @@ pub enum Node {
 /// Owns scalars.
 #[derive(Default)]
 pub struct Scalars {
-    nodes: Vec<(Node, Rate)>,
-    index: HashMap<Node, Scalar>,
+    nodes: Interner<Node>,
+    rates: Vec<Rate>,
     calls: Vec<Call>,
 }
 
 impl Scalars {
     /// The expression behind an identity.
     pub fn node(&self, scalar: Scalar) -> &Node {
-        &self.nodes[scalar.0 as usize].0
+        self.nodes.value(scalar.0 as usize)
     }
 
     /// How often its value changes.
     pub fn rate(&self, scalar: Scalar) -> Rate {
-        self.nodes[scalar.0 as usize].1
+        self.rates[scalar.0 as usize]
     }
 
     fn intern(&mut self, node: Node, rate: Rate) -> Scalar {
-        if let Some(&known) = self.index.get(&node) {
-            return known;
+        let (position, is_new) = self.nodes.intern(node);
+        if is_new {
+            self.rates.push(rate);
         }
-        let scalar = Scalar(self.nodes.len() as u32);
-        self.nodes.push((node.clone(), rate));
-        self.index.insert(node, scalar);
-        scalar
+        Scalar(position as u32)
     }
 
     fn rate_of(&self, parts: impl Iterator<Item = Scalar>) -> Rate {
@@ -143,7 +141,7 @@ impl Scalars {
 
     /// Whether another entry of the same input occurs.
     pub fn has_other_entries(&self, input: &Input) -> bool {
-        self.nodes.iter().any(|(node, _)| {
+        self.nodes.values().iter().any(|node| {
             matches!(node, Node::Input(other) if other.role == input.role && (other.row, other.column) != (input.row, input.column))
         })
     }
