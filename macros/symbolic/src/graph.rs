@@ -7,6 +7,7 @@ use num_traits::{One, Zero};
 
 use crate::algebra::Basis;
 use crate::group::{Block, Definition};
+use crate::memory::{Images, Maps};
 use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
 use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational};
 
@@ -19,6 +20,9 @@ pub struct Graph {
     blocks: RefCell<Table<Group, Rc<[Block]>>>,
     definitions: RefCell<Vec<Rc<Definition>>>,
     methods: RefCell<Vec<String>>,
+    pub(crate) transposed: Images,
+    pub(crate) expanded: Images,
+    pub(crate) maps: Maps,
 }
 
 impl Graph {

@@ -24,6 +24,7 @@ mod graph;
 mod group;
 pub mod identity;
 mod linear;
+mod memory;
 mod node;
 mod powers;
 mod print;

@@ -5,6 +5,8 @@ use std::collections::btree_map::Entry;
 
 use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product};
 
+use super::grid::Grids;
+
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Rate {
@@ -103,6 +105,8 @@ pub struct Scalars {
     nodes: Interner<Node>,
     rates: Vec<Rate>,
     calls: Vec<Call>,
+    /// The grids of expressions whose scalars are here.
+    pub(super) lowered: Grids,
 }
 
 impl Scalars {
