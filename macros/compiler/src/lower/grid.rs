@@ -207,8 +207,10 @@ impl<'g> Lowering<'_> {
 
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
-            let terms: Vec<_> =
-                (0..a.shape.columns).map(|k| (self.scalars.product([a.at(i, k), b.at(k, j)]), integer(1))).collect();
+            let factors = (0..a.shape.columns).map(|k| (a.at(i, k), b.at(k, j)));
+            let factors: Vec<_> =
+                factors.filter(|(a, b)| !self.scalars.is_zero(*a) && !self.scalars.is_zero(*b)).collect();
+            let terms: Vec<_> = factors.into_iter().map(|(a, b)| (self.scalars.product([a, b]), integer(1))).collect();
             self.scalars.sum(integer(0), terms)
         })
     }

@@ -1,8 +1,5 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
 use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product};
 
 use super::grid::Grids;
@@ -181,25 +178,20 @@ impl Scalars {
     /// constant + Σ coefficient · scalar; sums inside are merged where the coefficient is ±1.
     pub fn sum(&mut self, constant: Rational, terms: impl IntoIterator<Item = (Scalar, Rational)>) -> Scalar {
         let mut total = constant;
-        let mut collected: BTreeMap<Scalar, Rational> = BTreeMap::new();
-        let mut add = |scalar: Scalar, coefficient: Rational| match collected.entry(scalar) {
-            Entry::Vacant(entry) => {
-                entry.insert(coefficient);
-            }
-            Entry::Occupied(mut entry) => *entry.get_mut() += coefficient,
-        };
+        let mut collected: Vec<(Scalar, Rational)> = Vec::new();
         for (scalar, coefficient) in terms {
             match self.node(scalar) {
-                Node::Sum(inner, parts) if parts.len() < 2 || coefficient.is_one() || coefficient == integer(-1) => {
+                Node::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
                     if !inner.is_zero() {
                         total += product(inner, &coefficient);
                     }
-                    parts.iter().for_each(|(part, factor)| add(*part, product(factor, &coefficient)));
+                    parts.iter().for_each(|(part, factor)| add(&mut collected, *part, product(factor, &coefficient)));
                 }
-                _ => add(scalar, coefficient),
+                _ => add(&mut collected, scalar, coefficient),
             }
         }
-        let terms: Vec<_> = collected.into_iter().filter(|(_, coefficient)| !coefficient.is_zero()).collect();
+        collected.retain(|(_, coefficient)| !coefficient.is_zero());
+        let terms = collected;
         match terms.as_slice() {
             [(only, coefficient)] if total.is_zero() && coefficient.is_one() => *only,
             _ => {
@@ -233,15 +225,15 @@ impl Scalars {
     /// The product of scalars.
     pub fn product(&mut self, factors: impl IntoIterator<Item = Scalar>) -> Scalar {
         let mut coefficient = integer(1);
-        let mut powers: BTreeMap<Scalar, u32> = BTreeMap::new();
+        let mut powers: Vec<(Scalar, u32)> = Vec::new();
         for factor in factors {
             let (number, rest) = self.factor(factor);
             coefficient = product(&coefficient, &number);
             match rest.map(|rest| (rest, self.node(rest))) {
                 Some((_, Node::Product(inner))) => {
-                    inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e)
+                    inner.iter().for_each(|&(base, exponent)| raise(&mut powers, base, exponent));
                 }
-                Some((rest, _)) => *powers.entry(rest).or_insert(0) += 1,
+                Some((rest, _)) => raise(&mut powers, rest, 1),
                 None => {}
             }
         }
@@ -249,7 +241,6 @@ impl Scalars {
             return self.zero();
         }
         self.cancel_reciprocals(&mut powers);
-        let powers: Vec<_> = powers.into_iter().filter(|&(_, exponent)| exponent > 0).collect();
         let product = match powers.as_slice() {
             [] => return self.number(coefficient),
             [(only, 1)] => *only,
@@ -261,17 +252,17 @@ impl Scalars {
         self.scale(product, coefficient)
     }
 
-    fn cancel_reciprocals(&self, powers: &mut BTreeMap<Scalar, u32>) {
-        let bases: Vec<_> = powers.keys().copied().collect();
-        for base in bases {
-            if let Node::Reciprocal(inner) = self.node(base)
-                && let Some(&other) = powers.get(inner)
+    fn cancel_reciprocals(&self, powers: &mut Vec<(Scalar, u32)>) {
+        for position in 0..powers.len() {
+            if let Node::Reciprocal(inner) = self.node(powers[position].0)
+                && let Ok(other) = powers.binary_search_by_key(inner, |(base, _)| *base)
             {
-                let common = other.min(powers[&base]);
-                powers.insert(*inner, other - common);
-                powers.insert(base, powers[&base] - common);
+                let common = powers[other].1.min(powers[position].1);
+                powers[other].1 -= common;
+                powers[position].1 -= common;
             }
         }
+        powers.retain(|(_, exponent)| *exponent > 0);
     }
 
     /// 1/x.
@@ -344,5 +335,25 @@ impl Scalars {
                 self.call_of(*call).arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
             }
         }
+    }
+}
+
+fn is_unit(coefficient: &Rational) -> bool {
+    coefficient.is_one() || *coefficient == integer(-1)
+}
+
+/// Adds a term to a sorted sum.
+fn add(terms: &mut Vec<(Scalar, Rational)>, scalar: Scalar, coefficient: Rational) {
+    match terms.binary_search_by_key(&scalar, |(term, _)| *term) {
+        Ok(position) => terms[position].1 += coefficient,
+        Err(position) => terms.insert(position, (scalar, coefficient)),
+    }
+}
+
+/// Multiplies a sorted product by a power.
+fn raise(powers: &mut Vec<(Scalar, u32)>, base: Scalar, exponent: u32) {
+    match powers.binary_search_by_key(&base, |(factor, _)| *factor) {
+        Ok(position) => powers[position].1 += exponent,
+        Err(position) => powers.insert(position, (base, exponent)),
     }
 }
