@@ -7,6 +7,10 @@ use crate::{Expr, Graph, Rational, Shape, Table};
 pub trait Number: Copy + PartialEq {
     /// The image of a rational number.
     fn from_rational(value: &Rational) -> Self;
+    /// The image of an integer.
+    fn from_integer(value: i64) -> Self {
+        Self::from_rational(&crate::integer(value))
+    }
     /// The sum.
     fn add(self, other: Self) -> Self;
     /// The product.
@@ -93,6 +97,9 @@ fn stumpff(k: u8, s: f64) -> f64 {
     }
     sum
 }
+
+/// The values of expressions.
+pub(crate) type Values<K> = Table<Id, Matrix<K>>;
 
 /// A matrix of numbers, row by row.
 #[derive(Clone, PartialEq, Debug)]
@@ -188,36 +195,47 @@ impl<K: Number> Matrix<K> {
 }
 
 pub(crate) fn zero<K: Number>() -> K {
-    K::from_rational(&crate::integer(0))
+    K::from_integer(0)
 }
 
 pub(crate) fn one<K: Number>() -> K {
-    K::from_rational(&crate::integer(1))
+    K::from_integer(1)
 }
 
 pub(crate) fn negative<K: Number>(value: K) -> K {
-    value.multiply(K::from_rational(&crate::integer(-1)))
+    value.multiply(K::from_integer(-1))
 }
 
 impl<'g> Expr<'g> {
     /// The value where each symbol has the value that `values` gives it.
     pub fn evaluate<K: Number>(self, values: &mut impl FnMut(Expr<'g>) -> Matrix<K>) -> Matrix<K> {
-        let mut known: Table<Id, Matrix<K>> = Table::default();
-        for id in self.reachable() {
+        self.evaluate_with(&mut Values::default(), values)
+    }
+
+    /// The value, and those of all parts that are not known yet.
+    pub(crate) fn evaluate_with<K: Number>(
+        self,
+        known: &mut Values<K>,
+        values: &mut impl FnMut(Expr<'g>) -> Matrix<K>,
+    ) -> Matrix<K> {
+        for id in self.reachable_where(|id| !known.contains(&id)) {
             let expr = self.graph.expr(id);
             let value = match &*expr.node() {
                 Node::Symbol(_) => values(expr),
-                _ => expr.evaluate_node(&known),
+                _ => expr.evaluate_node(known),
             };
             known.insert(id, value);
         }
         known[&self.id].clone()
     }
 
-    fn evaluate_node<K: Number>(self, known: &Table<Id, Matrix<K>>) -> Matrix<K> {
+    fn evaluate_node<K: Number>(self, known: &Values<K>) -> Matrix<K> {
         let shape = self.shape();
         let scalar = |value: K| Matrix::new(Shape::scalar(), vec![value]);
-        let product = |word: &[Id]| word.iter().map(|id| known[id].clone()).reduce(|a, b| a.multiply(&b));
+        let product = |word: &[Id]| {
+            let (first, rest) = word.split_first()?;
+            Some(rest.iter().fold(known[first].clone(), |product, letter| product.multiply(&known[letter])))
+        };
         match &*self.node() {
             Node::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
             Node::Pi => scalar(K::pi()),

@@ -7,6 +7,7 @@ use num_traits::{One, Zero};
 
 use crate::algebra::Basis;
 use crate::group::{Block, Definition};
+use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
 use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
 use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational};
@@ -23,6 +24,7 @@ pub struct Graph {
     pub(crate) transposed: Images,
     pub(crate) expanded: Images,
     pub(crate) maps: Maps,
+    pub(crate) evaluated: Evaluated,
 }
 
 impl Graph {

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::node::Id;
-use crate::{Algebra, Expr, Graph, Table};
+use crate::{Algebra, Expr, Graph, Group, Table};
 
 /// A map of expressions.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -17,6 +17,8 @@ pub(crate) enum Map {
     Differential(Vec<(Id, Id)>),
     /// The components of matrices.
     Components(Algebra),
+    /// The derivative of the exponential of a group.
+    ExponentialSlope(Group),
 }
 
 /// The images of expressions that are known.

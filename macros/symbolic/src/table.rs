@@ -135,6 +135,11 @@ impl<K: Hash + Eq, V> Table<K, V> {
         &mut self.values[position]
     }
 
+    /// Whether no key has a value.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
     /// Whether a key has a value.
     pub fn contains(&self, key: &K) -> bool {
         self.keys.position(key).is_some()

@@ -6,7 +6,9 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use clebsch_symbolic::{Algebra, Basis, Expr, Graph, Rational, Role, Shape, Sparse, Table, View, WordTerm, integer};
+use clebsch_symbolic::{
+    Algebra, Basis, Expr, Graph, One, Rational, Role, Shape, Sparse, Table, View, WordTerm, integer,
+};
 
 use super::scalar::{Call, Callee, Input, Scalar, Scalars};
 
@@ -238,6 +240,9 @@ impl<'g> Lowering<'_> {
     }
 
     fn total(&mut self, shape: Shape, grids: &[Grid]) -> Grid {
+        if let [only] = grids {
+            return only.clone();
+        }
         Grid::from_fn(shape, |(i, j)| {
             let terms: Vec<_> = grids.iter().map(|grid| (grid.at(i, j), integer(1))).collect();
             self.scalars.sum(integer(0), terms)
@@ -304,6 +309,9 @@ impl<'g> Lowering<'_> {
     }
 
     fn scaled(&mut self, grid: &Grid, scale: Scalar) -> Grid {
+        if self.scalars.as_number(scale).is_some_and(One::is_one) {
+            return grid.clone();
+        }
         Grid::from_fn(grid.shape, |(i, j)| self.scalars.product([scale, grid.at(i, j)]))
     }
 

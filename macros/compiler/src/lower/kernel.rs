@@ -282,11 +282,11 @@ impl Builder<'_, '_> {
 
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
     fn share_pairs(&mut self) {
-        for (id, operation) in self.operations.values().iter().enumerate() {
-            if let Operation::Product(factors) = operation {
-                self.products.insert(id, factors.clone());
-            }
-        }
+        let products = self.operations.values().iter().enumerate().filter_map(|(id, operation)| match operation {
+            Operation::Product(factors) => Some((id, factors.clone())),
+            _ => None,
+        });
+        self.products = Pairs::new(products);
         while let Some((a, b)) = self.products.most_common() {
             let (product, is_new) = self.operations.intern(Operation::Product(vec![a, b]));
             if is_new {

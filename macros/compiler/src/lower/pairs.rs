@@ -43,18 +43,35 @@ impl Pairs {
         &self.products[&product]
     }
 
+    /// Products with their factors, sorted.
+    pub fn new(products: impl Iterator<Item = (Id, Vec<Id>)>) -> Pairs {
+        let mut pairs = Pairs::default();
+        for (product, factors) in products {
+            distinct(&factors).into_iter().for_each(|pair| pairs.count(product, factors.len(), pair));
+            pairs.products.insert(product, factors);
+        }
+        let shared = pairs.uses.iter().filter(|(_, uses)| uses.are_shared());
+        pairs.queue = shared.map(|(pair, uses)| (uses.all, Reverse(*pair))).collect();
+        pairs
+    }
+
     /// Sets the factors of a product, sorted.
     pub fn insert(&mut self, product: Id, factors: Vec<Id>) {
         for pair in distinct(&factors) {
-            let uses = self.uses.entry(pair);
-            uses.all += 1;
-            uses.long += usize::from(factors.len() > 2);
-            uses.products.push(product);
+            self.count(product, factors.len(), pair);
+            let uses = &self.uses[&pair];
             if uses.are_shared() {
                 self.queue.push((uses.all, Reverse(pair)));
             }
         }
         self.products.insert(product, factors);
+    }
+
+    fn count(&mut self, product: Id, length: usize, pair: Pair) {
+        let uses = self.uses.entry(pair);
+        uses.all += 1;
+        uses.long += usize::from(length > 2);
+        uses.products.push(product);
     }
 
     /// The pair that most products share, the first of several; `None` if no product of more than two factors shares one.
@@ -138,10 +155,8 @@ mod tests {
 
     #[test]
     fn the_most_common_pair_is_taken_first() {
-        let mut pairs = Pairs::default();
-        for (product, factors) in [vec![1, 2, 3], vec![1, 2], vec![2, 3, 4], vec![2, 2, 3, 3]].into_iter().enumerate() {
-            pairs.insert(10 + product, factors);
-        }
+        let products = [vec![1, 2, 3], vec![1, 2], vec![2, 3, 4], vec![2, 2, 3, 3]];
+        let mut pairs = Pairs::new((10..).zip(products));
         assert_eq!(pairs.most_common(), Some((2, 3)));
         pairs.insert(20, vec![2, 3]);
         pairs.replace((2, 3), 20);

@@ -43,6 +43,10 @@ impl Number for Exact {
         }
     }
 
+    fn from_integer(value: i64) -> Exact {
+        Exact(Some((value.into(), 1)))
+    }
+
     fn add(self, other: Exact) -> Exact {
         let sum = self.0.zip(other.0).map(|((a, b), (c, d))| {
             let numerator = a.checked_mul(d).zip(c.checked_mul(b)).and_then(|(left, right)| left.checked_add(right));
