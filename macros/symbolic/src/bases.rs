@@ -2,6 +2,7 @@
 
 use num_traits::{One, Zero};
 
+use crate::memory::Map;
 use crate::node::{Node, Term};
 use crate::{Algebra, Expr, Graph, Group, Rational, Shape, integer};
 
@@ -56,6 +57,10 @@ impl<'g> Expr<'g> {
         if algebra.is_identification() {
             return self;
         }
+        self.remembered(&self.graph.images(Map::Components(algebra)), || self.components_by_terms(algebra, shape))
+    }
+
+    fn components_by_terms(self, algebra: Algebra, shape: Shape) -> Expr<'g> {
         self.linear(shape, |plain| {
             if let Node::Wedge(other, inner) = &*plain.node()
                 && *other == algebra

@@ -28,17 +28,13 @@ impl<'g> Expr<'g> {
         if self.shape().is_scalar() {
             return self;
         }
-        match &*self.node() {
+        self.remembered(&graph.transposed, || match &*self.node() {
             Node::Sum(_) => self.linear(self.shape().transposed(), |plain| {
                 let word = plain.factor().word;
-                word.iter()
-                    .rev()
-                    .map(|&letter| graph.expr(letter).transpose_letter())
-                    .reduce(Expr::product)
-                    .unwrap_or(plain)
+                word.iter().rev().map(|&letter| graph.expr(letter).transpose()).reduce(Expr::product).unwrap_or(plain)
             }),
             _ => self.transpose_letter(),
-        }
+        })
     }
 
     fn transpose_letter(self) -> Expr<'g> {

@@ -1,16 +1,16 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
-use std::collections::HashMap;
-
-use num_traits::ToPrimitive;
-
 use crate::node::{Analytic, Exponent, Function, Id, Node};
-use crate::{Expr, Graph, Rational, Shape};
+use crate::{Expr, Graph, Rational, Shape, Table};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
     /// The image of a rational number.
     fn from_rational(value: &Rational) -> Self;
+    /// The image of an integer.
+    fn from_integer(value: i64) -> Self {
+        Self::from_rational(&crate::integer(value))
+    }
     /// The sum.
     fn add(self, other: Self) -> Self;
     /// The product.
@@ -31,7 +31,7 @@ pub trait Number: Copy + PartialEq {
 
 impl Number for f64 {
     fn from_rational(value: &Rational) -> f64 {
-        value.to_f64().unwrap_or(f64::NAN)
+        value.to_f64()
     }
     fn add(self, other: f64) -> f64 {
         self + other
@@ -97,6 +97,9 @@ fn stumpff(k: u8, s: f64) -> f64 {
     }
     sum
 }
+
+/// The values of expressions.
+pub(crate) type Values<K> = Table<Id, Matrix<K>>;
 
 /// A matrix of numbers, row by row.
 #[derive(Clone, PartialEq, Debug)]
@@ -192,37 +195,47 @@ impl<K: Number> Matrix<K> {
 }
 
 pub(crate) fn zero<K: Number>() -> K {
-    K::from_rational(&crate::integer(0))
+    K::from_integer(0)
 }
 
 pub(crate) fn one<K: Number>() -> K {
-    K::from_rational(&crate::integer(1))
+    K::from_integer(1)
 }
 
 pub(crate) fn negative<K: Number>(value: K) -> K {
-    value.multiply(K::from_rational(&crate::integer(-1)))
+    value.multiply(K::from_integer(-1))
 }
 
 impl<'g> Expr<'g> {
     /// The value where each symbol has the value that `values` gives it.
     pub fn evaluate<K: Number>(self, values: &mut impl FnMut(Expr<'g>) -> Matrix<K>) -> Matrix<K> {
-        let mut known: HashMap<Id, Matrix<K>> = HashMap::new();
-        for id in self.reachable() {
+        self.evaluate_with(&mut Values::default(), values)
+    }
+
+    /// The value, and those of all parts that are not known yet.
+    pub(crate) fn evaluate_with<K: Number>(
+        self,
+        known: &mut Values<K>,
+        values: &mut impl FnMut(Expr<'g>) -> Matrix<K>,
+    ) -> Matrix<K> {
+        for id in self.reachable_where(|id| !known.contains(&id)) {
             let expr = self.graph.expr(id);
             let value = match &*expr.node() {
                 Node::Symbol(_) => values(expr),
-                _ => expr.evaluate_node(&known),
+                _ => expr.evaluate_node(known),
             };
             known.insert(id, value);
         }
-        // by construction: an expression is reachable from itself
-        known.remove(&self.id).expect("the value of the root")
+        known[&self.id].clone()
     }
 
-    fn evaluate_node<K: Number>(self, known: &HashMap<Id, Matrix<K>>) -> Matrix<K> {
+    fn evaluate_node<K: Number>(self, known: &Values<K>) -> Matrix<K> {
         let shape = self.shape();
         let scalar = |value: K| Matrix::new(Shape::scalar(), vec![value]);
-        let product = |word: &[Id]| word.iter().map(|id| known[id].clone()).reduce(|a, b| a.multiply(&b));
+        let product = |word: &[Id]| {
+            let (first, rest) = word.split_first()?;
+            Some(rest.iter().fold(known[first].clone(), |product, letter| product.multiply(&known[letter])))
+        };
         match &*self.node() {
             Node::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
             Node::Pi => scalar(K::pi()),
@@ -280,12 +293,12 @@ impl<'g> Expr<'g> {
 
 /// base^exponent: the integer part by multiplication, the fraction by the field's own root.
 fn power<K: Number>(base: K, exponent: Exponent) -> K {
-    let whole = exponent.floor().to_integer();
-    let fraction = exponent - exponent.floor();
+    let whole = exponent.floor();
+    let fraction = exponent + Exponent::integer(-whole);
     let factor = if whole < 0 { base.reciprocal() } else { base };
     let mut result = (0..whole.unsigned_abs()).fold(one(), |product: K, _| product.multiply(factor));
-    if fraction != Exponent::from_integer(0) {
-        result = result.multiply(base.fractional_power((*fraction.numer(), *fraction.denom())));
+    if !fraction.is_zero() {
+        result = result.multiply(base.fractional_power(fraction.parts()));
     }
     result
 }

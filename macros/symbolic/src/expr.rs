@@ -30,6 +30,11 @@ impl<'g> Expr<'g> {
         self.graph.shape(self.id)
     }
 
+    /// Its place in the order in which the expressions of its graph were made.
+    pub fn position(self) -> usize {
+        self.id.0 as usize
+    }
+
     pub(crate) fn node(self) -> Rc<Node> {
         self.graph.node(self.id)
     }

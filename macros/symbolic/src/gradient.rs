@@ -1,28 +1,27 @@
 //! Derivatives: gradients by reverse accumulation, directional derivatives by the product rule.
 
-use std::collections::HashMap;
-
-use num_traits::One;
-
+use crate::memory::{self, Images, Map};
 use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
-use crate::{Expr, Rational, Shape};
+use crate::{Expr, Rational, Shape, Table};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
     pub fn gradient(self, symbol: Expr<'g>) -> Expr<'g> {
         assert!(self.shape().is_scalar(), "the gradient of `{self}`, which is not a scalar");
-        let mut adjoints: HashMap<Id, Expr<'g>> = HashMap::from([(self.id, self.graph.integer(1))]);
+        let mut adjoints: Table<Id, Option<Expr<'g>>> = Table::default();
+        adjoints.insert(self.id, Some(self.graph.integer(1)));
         for id in self.reachable().into_iter().rev() {
             if id != symbol.id
-                && let Some(adjoint) = adjoints.remove(&id)
+                && let Some(adjoint) = adjoints.entry(id).take()
             {
                 self.graph.expr(id).pull_back(adjoint, &mut |child, contribution| {
-                    let entry = adjoints.entry(child).or_insert_with(|| contribution.graph.zero(contribution.shape()));
-                    *entry = *entry + contribution;
+                    let entry = adjoints.entry(child);
+                    let known = entry.unwrap_or_else(|| contribution.graph.zero(contribution.shape()));
+                    *entry = Some(known + contribution);
                 });
             }
         }
-        adjoints.get(&symbol.id).copied().unwrap_or_else(|| self.graph.zero(symbol.shape()))
+        adjoints.entry(symbol.id).unwrap_or_else(|| self.graph.zero(symbol.shape()))
     }
 
     /// Hands the adjoint of this node on to its children: `add(child, Ā)` with ⟨Ā_node, d node⟩ = Σ ⟨Ā, d child⟩.
@@ -77,8 +76,8 @@ impl<'g> Expr<'g> {
         }
         for (base, exponent) in &term.scalars {
             let mut rest = Term { word: term.word.clone(), ..term.clone() };
-            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
-            rest.multiply_scalars(&[(*base, -Exponent::one())]);
+            rest.coefficient *= Rational::short(*exponent);
+            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
             let rest = graph.collect(self.shape(), [rest]);
             add(*base, adjoint.pairing(rest));
         }
@@ -114,22 +113,19 @@ impl<'g> Expr<'g> {
 
     /// The derivative in the direction in which the symbols move: d/dε of the expression at x + ε dx.
     pub fn differential(self, directions: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-        let mut tangents: HashMap<Id, Expr<'g>> = HashMap::new();
-        for id in self.reachable() {
-            let tangent = match directions.iter().find(|(symbol, _)| symbol.id == id) {
-                Some((_, direction)) => *direction,
-                None => self.graph.expr(id).push_forward(&tangents),
-            };
-            tangents.insert(id, tangent);
-        }
-        tangents[&self.id]
+        let tangents = self.graph.images(Map::Differential(memory::pairs(directions)));
+        self.mapped(&tangents, |part| match directions.iter().find(|(symbol, _)| *symbol == part) {
+            Some((_, direction)) => *direction,
+            None => part.push_forward(&tangents),
+        })
     }
 
-    fn push_forward(self, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward(self, tangents: &Images) -> Expr<'g> {
         let graph = self.graph;
         let expr = |id: &Id| graph.expr(*id);
         let zero = graph.zero(self.shape());
-        if self.node().children().iter().all(|child| tangents[child].is_zero()) {
+        let tangent = |part: &Id| tangents.of(graph, part);
+        if self.node().all_children(|child| tangent(&child).is_zero()) {
             return zero;
         }
         match &*self.node() {
@@ -137,38 +133,38 @@ impl<'g> Expr<'g> {
             Node::Sum(terms) => terms.iter().fold(zero, |sum, term| sum + self.push_forward_term(term, tangents)),
             Node::Word(word) => self.push_forward_word(word, tangents),
             Node::Trace(word) => self.push_forward_word(word, tangents).trace(),
-            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(|entry| tangents[entry]).collect()),
-            Node::Transpose(a) => tangents[a].transpose(),
-            Node::Inverse(a) => -(self * tangents[a] * self),
-            Node::Determinant(a) => self * (expr(a).inverse() * tangents[a]).trace(),
-            Node::Function(function, a) => function.derivative(expr(a), self) * tangents[a],
-            Node::Analytic(function, a) => expr(a).analytic_slope(*function, tangents[a]),
+            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),
+            Node::Transpose(a) => tangent(a).transpose(),
+            Node::Inverse(a) => -(self * tangent(a) * self),
+            Node::Determinant(a) => self * (expr(a).inverse() * tangent(a)).trace(),
+            Node::Function(function, a) => function.derivative(expr(a), self) * tangent(a),
+            Node::Analytic(function, a) => expr(a).analytic_slope(*function, tangent(a)),
             Node::Opaque(name, output, arguments) => {
                 assert_eq!(*output, 0, "the second derivative of a method");
                 let gradient = |(index, argument): (usize, &Id)| {
                     let shape = graph.shape(*argument);
-                    graph.opaque_of(*name, index + 1, self.arguments(arguments), shape).pairing(tangents[argument])
+                    graph.opaque_of(*name, index + 1, self.arguments(arguments), shape).pairing(tangent(argument))
                 };
                 arguments.iter().enumerate().map(gradient).fold(zero, |sum, term| sum + term)
             }
-            Node::Block(a, row, column) => tangents[a].block(*row, *column, self.shape()),
-            Node::Embed(a, row, column) => tangents[a].embed(self.shape(), *row, *column),
-            Node::Hadamard(a, b) => tangents[a].hadamard(expr(b)) + expr(a).hadamard(tangents[b]),
-            Node::DiagonalMatrix(a) => tangents[a].diagonal_matrix(),
-            Node::Diagonal(a) => tangents[a].diagonal(),
-            Node::Wedge(algebra, a) => tangents[a].wedge(*algebra),
-            Node::Components(algebra, a) => tangents[a].components(*algebra),
+            Node::Block(a, row, column) => tangent(a).block(*row, *column, self.shape()),
+            Node::Embed(a, row, column) => tangent(a).embed(self.shape(), *row, *column),
+            Node::Hadamard(a, b) => tangent(a).hadamard(expr(b)) + expr(a).hadamard(tangent(b)),
+            Node::DiagonalMatrix(a) => tangent(a).diagonal_matrix(),
+            Node::Diagonal(a) => tangent(a).diagonal(),
+            Node::Wedge(algebra, a) => tangent(a).wedge(*algebra),
+            Node::Components(algebra, a) => tangent(a).components(*algebra),
         }
     }
 
-    fn push_forward_term(self, term: &Term, tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward_term(self, term: &Term, tangents: &Images) -> Expr<'g> {
         let graph = self.graph;
         let mut sum = graph.zero(self.shape());
         for (base, exponent) in &term.scalars {
             let mut rest = term.clone();
-            rest.coefficient *= Rational::new((*exponent.numer()).into(), (*exponent.denom()).into());
-            rest.multiply_scalars(&[(*base, -Exponent::one())]);
-            sum = sum + tangents[base] * graph.collect(self.shape(), [rest]);
+            rest.coefficient *= Rational::short(*exponent);
+            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
+            sum = sum + tangents.of(graph, base) * graph.collect(self.shape(), [rest]);
         }
         if !term.word.is_empty() {
             let scale = graph.collect(Shape::scalar(), [Term { word: Vec::new(), ..term.clone() }]);
@@ -177,13 +173,13 @@ impl<'g> Expr<'g> {
         sum
     }
 
-    fn push_forward_word(self, word: &[Id], tangents: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn push_forward_word(self, word: &[Id], tangents: &Images) -> Expr<'g> {
         let graph = self.graph;
         let moved = |position: usize| {
             let letters = word
                 .iter()
                 .enumerate()
-                .map(|(k, letter)| if k == position { tangents[letter] } else { graph.expr(*letter) });
+                .map(|(k, letter)| if k == position { tangents.of(graph, letter) } else { graph.expr(*letter) });
             letters.reduce(|a, b| a * b)
         };
         // by construction: a word has at least one letter

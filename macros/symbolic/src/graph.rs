@@ -1,26 +1,30 @@
 //! The arena of expressions: each distinct expression exists once, so equality is a comparison of indices.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::rc::Rc;
 
 use num_traits::{One, Zero};
 
 use crate::algebra::Basis;
 use crate::group::{Block, Definition};
+use crate::identity::Evaluated;
+use crate::memory::{Images, Maps};
 use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
-use crate::{Expr, Group, Property, Rational, Role, Shape, Symbol, integer, rational};
+use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
 pub struct Graph {
-    nodes: RefCell<Vec<(Rc<Node>, Shape)>>,
-    index: RefCell<HashMap<(Rc<Node>, Shape), Id>>,
+    nodes: RefCell<Interner<(Rc<Node>, Shape)>>,
     symbols: RefCell<Vec<Symbol>>,
     bases: RefCell<Vec<Rc<Basis>>>,
-    blocks: RefCell<HashMap<Group, Rc<[Block]>>>,
+    blocks: RefCell<Table<Group, Rc<[Block]>>>,
     definitions: RefCell<Vec<Rc<Definition>>>,
     methods: RefCell<Vec<String>>,
+    pub(crate) transposed: Images,
+    pub(crate) expanded: Images,
+    pub(crate) maps: Maps,
+    pub(crate) evaluated: Evaluated,
 }
 
 impl Graph {
@@ -40,14 +44,8 @@ impl Graph {
     }
 
     pub(crate) fn intern(&self, node: Node, shape: Shape) -> Expr<'_> {
-        let key = (Rc::new(node), shape);
-        if let Some(&id) = self.index.borrow().get(&key) {
-            return self.expr(id);
-        }
-        let id = Id(self.nodes.borrow().len() as u32);
-        self.nodes.borrow_mut().push(key.clone());
-        self.index.borrow_mut().insert(key, id);
-        self.expr(id)
+        let (position, _) = self.nodes.borrow_mut().intern((Rc::new(node), shape));
+        self.expr(Id(position as u32))
     }
 
     pub(crate) fn expr(&self, id: Id) -> Expr<'_> {
@@ -55,11 +53,11 @@ impl Graph {
     }
 
     pub(crate) fn node(&self, id: Id) -> Rc<Node> {
-        self.nodes.borrow()[id.0 as usize].0.clone()
+        self.nodes.borrow().value(id.0 as usize).0.clone()
     }
 
     pub(crate) fn shape(&self, id: Id) -> Shape {
-        self.nodes.borrow()[id.0 as usize].1
+        self.nodes.borrow().value(id.0 as usize).1
     }
 
     /// The index of a basis among those of this graph.

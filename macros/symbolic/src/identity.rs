@@ -5,15 +5,15 @@
 //! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
 //! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
 
-use std::collections::HashMap;
+use std::cell::RefCell;
 
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
 
-use crate::evaluate::{Matrix, Number, negative, one, zero};
+use crate::evaluate::{Matrix, Number, Values, negative, one, zero};
 use crate::group::sample;
 use crate::node::{Analytic, Function, Term};
-use crate::{Expr, Group, Property, Rational, Shape};
+use crate::{Expr, Group, Property, Rational, Shape, Table};
 
 const PRIME: u64 = (1 << 61) - 1;
 const POINTS: u64 = 3;
@@ -44,16 +44,22 @@ impl Residue {
 
 impl Number for Residue {
     fn from_rational(value: &Rational) -> Residue {
-        let reduce = |part: &BigInt| {
+        let reduce = |part: BigInt| {
             let prime = BigInt::from(PRIME);
             let residue: BigInt = ((part % &prime) + &prime) % &prime;
             Residue(residue.to_u64().unwrap_or(0))
         };
-        match (i64::try_from(value.numer()), i64::try_from(value.denom())) {
-            (Ok(numerator), Ok(1)) if numerator.unsigned_abs() < PRIME => {
+        match value.parts() {
+            Some((numerator, 1)) if numerator.unsigned_abs() < PRIME => {
                 Residue(if numerator < 0 { PRIME - numerator.unsigned_abs() } else { numerator as u64 })
             }
             _ => reduce(value.numer()).multiply(reduce(value.denom()).reciprocal()),
+        }
+    }
+    fn from_integer(value: i64) -> Residue {
+        match value {
+            0.. => Residue::new(value as u128),
+            _ => Residue(PRIME - value.unsigned_abs() % PRIME),
         }
     }
     fn add(self, other: Residue) -> Residue {
@@ -106,31 +112,41 @@ impl Number for Residue {
 /// A random point: each symbol has a value that its property allows.
 pub struct Point<'g> {
     seed: u64,
-    known: HashMap<Expr<'g>, Matrix<Residue>>,
+    /// The symbols whose values have been set.
+    fixed: Table<Expr<'g>, Matrix<Residue>>,
+    /// What has been evaluated with them.
+    known: Values<Residue>,
 }
+
+/// The values of expressions at points, by the numbers of the points: identities are asked for again and again.
+pub(crate) type Evaluated = RefCell<Table<u64, Values<Residue>>>;
 
 impl<'g> Point<'g> {
     /// The point number `seed`.
     pub fn new(seed: u64) -> Point<'g> {
-        Point { seed, known: HashMap::new() }
+        Point { seed, fixed: Table::default(), known: Table::default() }
     }
 
     /// Sets the value of one symbol.
     pub fn set(&mut self, symbol: Expr<'g>, value: Matrix<Residue>) {
-        self.known.insert(symbol, value);
+        self.fixed.insert(symbol, value);
+        self.known = Table::default();
     }
 
     /// The value of an expression here.
     pub fn evaluate(&mut self, expr: Expr<'g>) -> Matrix<Residue> {
-        expr.evaluate(&mut |symbol| self.value(symbol))
-    }
-
-    fn value(&mut self, symbol: Expr<'g>) -> Matrix<Residue> {
-        if !self.known.contains_key(&symbol) {
-            let value = self.sample(symbol);
-            self.known.insert(symbol, value);
+        if self.fixed.is_empty() {
+            let evaluated = &expr.graph.evaluated;
+            let mut known = std::mem::take(evaluated.borrow_mut().entry(self.seed));
+            let value = expr.evaluate_with(&mut known, &mut |symbol| self.sample(symbol));
+            evaluated.borrow_mut().insert(self.seed, known);
+            return value;
         }
-        self.known[&symbol].clone()
+        let mut known = std::mem::take(&mut self.known);
+        let mut values = |symbol| self.fixed.get(&symbol).cloned().unwrap_or_else(|| self.sample(symbol));
+        let value = expr.evaluate_with(&mut known, &mut values);
+        self.known = known;
+        value
     }
 
     fn sample(&self, symbol: Expr<'g>) -> Matrix<Residue> {

@@ -43,9 +43,9 @@ impl<'g> Expr<'g> {
     pub fn least_exponent(self, scalar: Expr<'g>) -> Option<Rational> {
         let exponent = |term: &Term| {
             let found = term.scalars.iter().find(|(base, _)| *base == scalar.id);
-            found.map_or(Exponent::from_integer(0), |(_, exponent)| *exponent)
+            found.map_or(Exponent::ZERO, |(_, exponent)| *exponent)
         };
         let least = self.expand().terms().iter().map(exponent).min()?;
-        Some(Rational::new((*least.numer()).into(), (*least.denom()).into()))
+        Some(Rational::short(least))
     }
 }

@@ -3,8 +3,7 @@
 //! Every expression is a *sum of terms*; a term is a rational coefficient times commuting scalar powers times a word of
 //! matrix letters. Whatever is not a sum is an atom: a letter of a word when it is a matrix, a scalar factor when it is 1×1.
 
-use num_rational::Ratio;
-
+use crate::fraction::Fraction;
 use crate::{Algebra, Rational};
 
 /// The identity of a node in its graph.
@@ -20,7 +19,7 @@ pub(crate) struct SymbolId(pub(crate) u32);
 pub struct OpaqueId(pub(crate) u32);
 
 /// The exponent of a scalar factor.
-pub(crate) type Exponent = Ratio<i64>;
+pub(crate) type Exponent = Fraction;
 
 /// A coefficient times scalar powers times a word; the empty word is the identity (the number one, if scalar).
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]

@@ -26,20 +26,20 @@ impl<'g> Expr<'g> {
         if exponent.is_zero() {
             return graph.integer(1);
         }
-        if self.is_zero() && exponent > Exponent::zero() {
+        if self.is_zero() && exponent > Exponent::ZERO {
             return self;
         }
         let Term { coefficient, scalars, word: _ } = self.factor();
         let mut term = Term::number(Rational::one());
         match Graph::small_integer(&exponent) {
             Some(power) if !coefficient.is_zero() => {
-                term.coefficient = num_traits::Pow::pow(&coefficient, power);
+                term.coefficient = coefficient.power(power);
                 let powers: Vec<(Id, Exponent)> = scalars.iter().map(|&(id, e)| (id, e * exponent)).collect();
                 term.multiply_scalars(&powers);
             }
             _ => match self
                 .as_number()
-                .filter(|number| number.is_one() || (number.is_zero() && exponent > Exponent::zero()))
+                .filter(|number| number.is_one() || (number.is_zero() && exponent > Exponent::ZERO))
             {
                 Some(number) => return graph.number(number),
                 None => term.multiply_scalars(&[(self.id, exponent)]),
@@ -109,7 +109,6 @@ impl<'g> Expr<'g> {
 
 /// An exponent with small numerator and denominator.
 fn small_exponent(exponent: &Rational) -> Option<Exponent> {
-    let numerator = i64::try_from(exponent.numer()).ok().filter(|n| n.abs() <= 1 << 20)?;
-    let denominator = i64::try_from(exponent.denom()).ok().filter(|d| *d <= 1 << 20)?;
-    Some(Exponent::new(numerator, denominator))
+    let small = |(numerator, denominator): (i64, i64)| numerator.abs() <= 1 << 20 && denominator <= 1 << 20;
+    exponent.as_fraction().filter(|fraction| small(fraction.parts()))
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use num_traits::{One, Signed};
+use num_traits::One;
 
 use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
 use crate::{Expr, Graph, Rational, Shape};
@@ -202,7 +202,7 @@ impl Printer<'_> {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         let coefficient = term.coefficient.abs();
         for &(base, exponent) in &term.scalars {
-            match exponent < Exponent::from_integer(0) {
+            match exponent.is_negative() {
                 true => below.push(self.scalar_power(base, -exponent)),
                 false => above.push(self.scalar_power(base, exponent)),
             }
@@ -231,7 +231,7 @@ impl Printer<'_> {
     }
 
     fn scalar_power(&self, base: Id, exponent: Exponent) -> String {
-        if exponent == Exponent::new(1, 2) {
+        if exponent.parts() == (1, 2) {
             let inner = self.print(base, Binding::Sum);
             return if self.style == Style::Latex { format!("\\sqrt{{{inner}}}") } else { format!("√({inner})") };
         }
@@ -241,8 +241,10 @@ impl Printer<'_> {
         let base = self.print(base, Binding::Atom);
         match self.style {
             Style::Latex => format!("{base}^{{{exponent}}}"),
-            Style::Unicode if exponent.is_integer() => format!("{base}{}", superscript(exponent.to_integer())),
-            Style::Unicode => format!("{base}^({exponent})"),
+            Style::Unicode => match exponent.as_integer() {
+                Some(whole) => format!("{base}{}", superscript(whole)),
+                None => format!("{base}^({exponent})"),
+            },
         }
     }
 

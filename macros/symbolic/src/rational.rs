@@ -1,18 +1,41 @@
 //! Exact rational numbers: the coefficients of every expression.
+//!
+//! They may have any size, but nearly all of them are fractions of machine words, and these take neither heap nor long arithmetic.
 
-pub use num_rational::BigRational as Rational;
-pub use num_traits::{One, Signed, Zero};
+use std::cmp::Ordering;
+use std::fmt;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_bigint::BigInt;
+use num_rational::BigRational;
+pub use num_traits::{One, Zero};
+use num_traits::{Pow, ToPrimitive};
+
+use crate::fraction::Fraction;
+
+/// A rational number of any size.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Rational(Size);
+
+/// What fits is short, so that equal numbers are equal values.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Size {
+    Short(Fraction),
+    Long(Box<BigRational>),
+}
 
 /// The rational `numerator / denominator`; the denominator is not zero.
 pub fn rational(numerator: i64, denominator: i64) -> Rational {
-    Rational::new(BigInt::from(numerator), BigInt::from(denominator))
+    Rational::new(numerator.into(), denominator.into())
 }
 
 /// The rational that equals an integer.
 pub fn integer(value: i64) -> Rational {
-    Rational::from_integer(BigInt::from(value))
+    match value {
+        i64::MIN => Rational::from(BigRational::from_integer(value.into())),
+        _ => Rational::short(Fraction::integer(value)),
+    }
 }
 
 /// a·b. Most coefficients are ±1, and a product with one costs nothing.
@@ -21,5 +44,288 @@ pub fn product(a: &Rational, b: &Rational) -> Rational {
         (true, _) => b.clone(),
         (_, true) => a.clone(),
         _ => a * b,
+    }
+}
+
+impl Rational {
+    /// The rational `numerator / denominator`; the denominator is not zero.
+    pub fn new(numerator: i128, denominator: i128) -> Rational {
+        match Fraction::reduced(numerator, denominator) {
+            Some(fraction) => Rational::short(fraction),
+            None => Rational::from(BigRational::new(numerator.into(), denominator.into())),
+        }
+    }
+
+    pub(crate) fn short(fraction: Fraction) -> Rational {
+        Rational(Size::Short(fraction))
+    }
+
+    /// The value as a fraction of machine words, if it is one.
+    pub(crate) fn as_fraction(&self) -> Option<Fraction> {
+        match &self.0 {
+            Size::Short(fraction) => Some(*fraction),
+            Size::Long(_) => None,
+        }
+    }
+
+    /// Numerator and denominator, if they are machine words.
+    pub fn parts(&self) -> Option<(i64, i64)> {
+        self.as_fraction().map(Fraction::parts)
+    }
+
+    fn long(&self) -> BigRational {
+        match &self.0 {
+            Size::Short(fraction) => BigRational::new_raw(fraction.numerator().into(), fraction.denominator().into()),
+            Size::Long(value) => (**value).clone(),
+        }
+    }
+
+    /// The numerator in lowest terms.
+    pub fn numer(&self) -> BigInt {
+        match &self.0 {
+            Size::Short(fraction) => fraction.numerator().into(),
+            Size::Long(value) => value.numer().clone(),
+        }
+    }
+
+    /// The denominator in lowest terms, positive.
+    pub fn denom(&self) -> BigInt {
+        match &self.0 {
+            Size::Short(fraction) => fraction.denominator().into(),
+            Size::Long(value) => value.denom().clone(),
+        }
+    }
+
+    /// Whether it is whole.
+    pub fn is_integer(&self) -> bool {
+        match &self.0 {
+            Size::Short(fraction) => fraction.denominator() == 1,
+            Size::Long(value) => value.is_integer(),
+        }
+    }
+
+    /// Whether it is below zero.
+    pub fn is_negative(&self) -> bool {
+        match &self.0 {
+            Size::Short(fraction) => fraction.is_negative(),
+            Size::Long(value) => num_traits::Signed::is_negative(&**value),
+        }
+    }
+
+    /// |a|.
+    pub fn abs(&self) -> Rational {
+        if self.is_negative() { -self } else { self.clone() }
+    }
+
+    /// 1/a of a number that is not zero.
+    pub fn recip(&self) -> Rational {
+        match self.as_fraction().and_then(Fraction::reciprocal) {
+            Some(fraction) => Rational::short(fraction),
+            None => Rational::from(self.long().recip()),
+        }
+    }
+
+    /// The largest integer that is not above it.
+    pub fn floor(&self) -> Rational {
+        match &self.0 {
+            Size::Short(fraction) => integer(fraction.floor()),
+            Size::Long(value) => Rational::from(value.floor()),
+        }
+    }
+
+    /// aⁿ; a is not zero where n is negative.
+    pub(crate) fn power(&self, exponent: i32) -> Rational {
+        match exponent {
+            0 => Rational::one(),
+            1 => self.clone(),
+            _ => Rational::from(Pow::pow(&self.long(), exponent)),
+        }
+    }
+
+    /// The nearest floating-point number.
+    pub fn to_f64(&self) -> f64 {
+        self.long().to_f64().unwrap_or(f64::NAN)
+    }
+}
+
+impl From<BigRational> for Rational {
+    fn from(value: BigRational) -> Rational {
+        let parts = value.numer().to_i128().zip(value.denom().to_i128());
+        match parts.and_then(|(numerator, denominator)| Fraction::reduced(numerator, denominator)) {
+            Some(fraction) => Rational::short(fraction),
+            None => Rational(Size::Long(Box::new(value))),
+        }
+    }
+}
+
+impl Zero for Rational {
+    fn zero() -> Rational {
+        Rational::short(Fraction::ZERO)
+    }
+    fn is_zero(&self) -> bool {
+        self.as_fraction().is_some_and(Fraction::is_zero)
+    }
+}
+
+impl One for Rational {
+    fn one() -> Rational {
+        Rational::short(Fraction::ONE)
+    }
+    fn is_one(&self) -> bool {
+        self.as_fraction().is_some_and(Fraction::is_one)
+    }
+}
+
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Rational) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Rational {
+    fn cmp(&self, other: &Rational) -> Ordering {
+        match (&self.0, &other.0) {
+            (Size::Short(a), Size::Short(b)) => a.cmp(b),
+            _ => self.long().cmp(&other.long()),
+        }
+    }
+}
+
+impl fmt::Display for Rational {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Size::Short(fraction) => fraction.fmt(f),
+            Size::Long(value) => value.fmt(f),
+        }
+    }
+}
+
+impl fmt::Debug for Rational {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl Neg for &Rational {
+    type Output = Rational;
+    fn neg(self) -> Rational {
+        match &self.0 {
+            Size::Short(fraction) => Rational::short(-*fraction),
+            Size::Long(value) => Rational::from(-&**value),
+        }
+    }
+}
+
+impl Neg for Rational {
+    type Output = Rational;
+    fn neg(self) -> Rational {
+        -&self
+    }
+}
+
+impl Add for &Rational {
+    type Output = Rational;
+    fn add(self, other: &Rational) -> Rational {
+        let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.checked_add(b));
+        short.map_or_else(|| Rational::from(self.long() + other.long()), Rational::short)
+    }
+}
+
+impl Sub for &Rational {
+    type Output = Rational;
+    fn sub(self, other: &Rational) -> Rational {
+        self + &-other
+    }
+}
+
+impl Mul for &Rational {
+    type Output = Rational;
+    fn mul(self, other: &Rational) -> Rational {
+        let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.checked_mul(b));
+        short.map_or_else(|| Rational::from(self.long() * other.long()), Rational::short)
+    }
+}
+
+impl Div for &Rational {
+    type Output = Rational;
+    fn div(self, other: &Rational) -> Rational {
+        product(self, &other.recip())
+    }
+}
+
+/// The operators on values, by those on references.
+macro_rules! by_reference {
+    ($($operator:ident $function:ident),*) => {$(
+        impl $operator for Rational {
+            type Output = Rational;
+            fn $function(self, other: Rational) -> Rational {
+                $operator::$function(&self, &other)
+            }
+        }
+
+        impl $operator<&Rational> for Rational {
+            type Output = Rational;
+            fn $function(self, other: &Rational) -> Rational {
+                $operator::$function(&self, other)
+            }
+        }
+    )*};
+}
+
+by_reference!(Add add, Sub sub, Mul mul, Div div);
+
+/// The assignments, by the operators.
+macro_rules! assigned {
+    ($($assignment:ident $function:ident: $operator:tt),*) => {$(
+        impl $assignment for Rational {
+            fn $function(&mut self, other: Rational) {
+                *self = &*self $operator &other;
+            }
+        }
+
+        impl $assignment<&Rational> for Rational {
+            fn $function(&mut self, other: &Rational) {
+                *self = &*self $operator other;
+            }
+        }
+    )*};
+}
+
+assigned!(AddAssign add_assign: +, SubAssign sub_assign: -, MulAssign mul_assign: *);
+
+impl Sum for Rational {
+    fn sum<I: Iterator<Item = Rational>>(terms: I) -> Rational {
+        terms.fold(Rational::zero(), |sum, term| sum + term)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_any_size_are_exact() {
+        let large = integer(i64::MAX);
+        let square = &large * &large;
+        assert_eq!(square.to_string(), "85070591730234615847396907784232501249");
+        assert_eq!(&square / &large, large);
+        assert_eq!(&square - &square, Rational::zero());
+        assert_eq!((&large + &Rational::one()) - Rational::one(), large);
+        assert_eq!(integer(i64::MIN) + Rational::one(), -large.clone());
+        assert_eq!(-integer(i64::MIN), &large + &Rational::one());
+        assert!(square > large && -&square < -&large);
+        assert_eq!(square.recip() * square.clone(), Rational::one());
+        assert_eq!(square.power(-2) * square.power(3), square);
+        assert_eq!((square / integer(2)).floor() * integer(2) + Rational::one(), &large * &large);
+    }
+
+    #[test]
+    fn what_fits_is_held_as_it_fits() {
+        let large = integer(i64::MAX);
+        assert_eq!((&(&large * &large) / &large).parts(), Some((i64::MAX, 1)));
+        assert_eq!((&large * &large).parts(), None);
+        assert_eq!(rational(6, -4).to_string(), "-3/2");
+        assert_eq!((rational(-3, 2).abs(), rational(-3, 2).floor()), (rational(3, 2), integer(-2)));
+        assert_eq!(rational(1, 3).to_f64(), 1.0 / 3.0);
     }
 }

@@ -1,50 +1,71 @@
 //! Rewriting an expression from its leaves: substitution, expansion, dependence.
 
-use std::collections::{BTreeSet, HashMap};
+use num_traits::{One, Zero};
 
-use num_traits::{One, ToPrimitive, Zero};
-
+use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, Id, Node, Term};
 use crate::{Expr, Graph, Rational, Shape};
 
 impl Node {
-    /// The identities of the direct children.
-    pub(crate) fn children(&self) -> Vec<Id> {
+    /// Hands the identities of the direct children on, one after the other.
+    pub(crate) fn each_child(&self, mut visit: impl FnMut(Id)) {
         match self {
-            Node::Symbol(_) | Node::Pi | Node::Literal(_) => Vec::new(),
+            Node::Symbol(_) | Node::Pi | Node::Literal(_) => {}
             Node::Sum(terms) => {
-                terms.iter().flat_map(|t| t.scalars.iter().map(|s| s.0).chain(t.word.iter().copied())).collect()
+                for term in terms {
+                    term.scalars.iter().for_each(|(base, _)| visit(*base));
+                    term.word.iter().for_each(|letter| visit(*letter));
+                }
             }
-            Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) | Node::Opaque(_, _, ids) => ids.clone(),
-            Node::Hadamard(a, b) => vec![*a, *b],
+            Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) | Node::Opaque(_, _, ids) => {
+                ids.iter().for_each(|id| visit(*id));
+            }
+            Node::Hadamard(a, b) => {
+                visit(*a);
+                visit(*b);
+            }
             Node::Transpose(a)
             | Node::Inverse(a)
             | Node::Determinant(a)
             | Node::Function(_, a)
             | Node::Analytic(_, a)
-            | Node::Block(a, _, _) => vec![*a],
-            Node::Embed(a, _, _)
+            | Node::Block(a, _, _)
+            | Node::Embed(a, _, _)
             | Node::DiagonalMatrix(a)
             | Node::Diagonal(a)
             | Node::Wedge(_, a)
-            | Node::Components(_, a) => {
-                vec![*a]
-            }
+            | Node::Components(_, a) => visit(*a),
         }
+    }
+
+    /// Whether all direct children have a property.
+    pub(crate) fn all_children(&self, property: impl Fn(Id) -> bool) -> bool {
+        let mut all = true;
+        self.each_child(|child| all = all && property(child));
+        all
     }
 }
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
-    pub(crate) fn reachable(self) -> BTreeSet<Id> {
-        let mut seen = BTreeSet::new();
-        let mut open = vec![self.id];
+    pub(crate) fn reachable(self) -> Vec<Id> {
+        self.reachable_where(|_| true)
+    }
+
+    /// The nodes that this expression is made of, as far as there is a way to them over nodes that are wanted.
+    pub(crate) fn reachable_where(self, wanted: impl Fn(Id) -> bool) -> Vec<Id> {
+        // children come before their parents
+        let mut seen = vec![false; self.id.0 as usize + 1];
+        let (mut reached, mut open) = (Vec::new(), vec![self.id]);
         while let Some(id) = open.pop() {
-            if seen.insert(id) {
-                open.extend(self.graph.node(id).children());
+            if !seen[id.0 as usize] && wanted(id) {
+                seen[id.0 as usize] = true;
+                reached.push(id);
+                self.graph.node(id).each_child(|child| open.push(child));
             }
         }
-        seen
+        reached.sort_unstable();
+        reached
     }
 
     /// The symbols that occur, in the order of their creation.
@@ -55,7 +76,7 @@ impl<'g> Expr<'g> {
 
     /// Whether the symbol occurs.
     pub fn depends_on(self, symbol: Expr<'g>) -> bool {
-        self.reachable().contains(&symbol.id)
+        self.reachable_where(|id| id >= symbol.id).contains(&symbol.id)
     }
 
     /// Whether the inverse of a matrix occurs.
@@ -65,7 +86,8 @@ impl<'g> Expr<'g> {
 
     /// Whether a root, an elementary function, a power series or a method of the user's occurs.
     pub fn has_functions(self) -> bool {
-        let fractional = |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| !e.is_integer()));
+        let fractional =
+            |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| e.as_integer().is_none()));
         self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
             Node::Function(..) | Node::Analytic(..) | Node::Opaque(..) => true,
             Node::Sum(terms) => fractional(terms),
@@ -75,90 +97,75 @@ impl<'g> Expr<'g> {
 
     /// The expression with symbols replaced by expressions of the same shape.
     pub fn substitute(self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = replacements.iter().map(|(from, to)| (from.id, *to)).collect();
-        for id in self.reachable() {
-            if !images.contains_key(&id) {
-                let image = self.graph.expr(id).rebuild(&images);
-                images.insert(id, image);
-            }
-        }
-        images[&self.id]
+        let replacements = memory::pairs(replacements);
+        let images = self.graph.images(Map::Substitution(replacements.clone()));
+        replacements.iter().for_each(|(from, to)| images.set(*from, *to));
+        self.mapped(&images, |part| part.rebuild(&images))
     }
 
     /// The same node over the images of its children.
-    pub(crate) fn rebuild(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    pub(crate) fn rebuild(self, images: &Images) -> Expr<'g> {
         let graph = self.graph;
         let node = self.node();
-        if node.children().iter().all(|child| images[child].id == *child) {
+        if node.all_children(|child| images.get(child) == Some(child)) {
             return self;
         }
-        let product = |word: &[Id]| word.iter().map(|letter| images[letter]).reduce(|a, b| a * b);
+        let image = |part: &Id| images.of(graph, part);
+        let product = |word: &[Id]| word.iter().map(image).reduce(|a, b| a * b);
         match &*node {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => self,
             Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| {
-                let powers = term
-                    .scalars
-                    .iter()
-                    .map(|(base, e)| images[base].power(Rational::new((*e.numer()).into(), (*e.denom()).into())));
+                let powers = term.scalars.iter().map(|(base, e)| image(base).power(Rational::short(*e)));
                 let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
                 let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
                 sum + scale * word
             }),
-            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(|entry| images[entry]).collect()),
+            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(image).collect()),
             // by construction: words of `Word` and `Trace` nodes are not empty
             Node::Word(word) => product(word).expect("a word has letters"),
             Node::Trace(word) => product(word).expect("a word has letters").trace(),
-            Node::Transpose(a) => images[a].transpose(),
-            Node::Inverse(a) => images[a].inverse(),
-            Node::Determinant(a) => images[a].determinant(),
-            Node::Function(function, a) => images[a].function(*function),
-            Node::Analytic(function, a) => images[a].analytic(*function),
+            Node::Transpose(a) => image(a).transpose(),
+            Node::Inverse(a) => image(a).inverse(),
+            Node::Determinant(a) => image(a).determinant(),
+            Node::Function(function, a) => image(a).function(*function),
+            Node::Analytic(function, a) => image(a).analytic(*function),
             Node::Opaque(name, output, arguments) => {
-                graph.opaque_of(*name, *output, arguments.iter().map(|a| images[a]).collect(), self.shape())
+                graph.opaque_of(*name, *output, arguments.iter().map(image).collect(), self.shape())
             }
-            Node::Block(a, row, column) => images[a].block(*row, *column, self.shape()),
-            Node::Embed(a, row, column) => images[a].embed(self.shape(), *row, *column),
-            Node::Hadamard(a, b) => images[a].hadamard(images[b]),
-            Node::DiagonalMatrix(a) => images[a].diagonal_matrix(),
-            Node::Diagonal(a) => images[a].diagonal(),
-            Node::Wedge(algebra, a) => images[a].wedge(*algebra),
-            Node::Components(algebra, a) => images[a].components(*algebra),
+            Node::Block(a, row, column) => image(a).block(*row, *column, self.shape()),
+            Node::Embed(a, row, column) => image(a).embed(self.shape(), *row, *column),
+            Node::Hadamard(a, b) => image(a).hadamard(image(b)),
+            Node::DiagonalMatrix(a) => image(a).diagonal_matrix(),
+            Node::Diagonal(a) => image(a).diagonal(),
+            Node::Wedge(algebra, a) => image(a).wedge(*algebra),
+            Node::Components(algebra, a) => image(a).components(*algebra),
         }
     }
 
     /// All products distributed over sums, and the relations between resolvents (I + aL)⁻¹ and their letter L applied.
     pub fn expand(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
-        for id in self.reachable() {
-            let image = self.graph.expr(id).expand_node(&images);
-            images.insert(id, image);
-        }
-        images[&self.id]
+        let images = &self.graph.expanded;
+        self.mapped(images, |part| part.expand_node(images))
     }
 
     /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is what is looked for.
     pub fn expand_all(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
-        for id in self.reachable() {
-            let expr = self.graph.expr(id);
-            let rebuilt = expr.rebuild(&images);
-            images.insert(id, rebuilt.expand());
-        }
-        images[&self.id]
+        let images = Images::default();
+        self.mapped(&images, |part| part.rebuild(&images).expand())
     }
 
     /// Whether no reciprocal of zero occurs.
     pub fn is_defined(self) -> bool {
         let zero = self.graph.integer(0).id;
         let fails =
-            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::zero());
+            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::ZERO);
         !self
             .reachable()
             .into_iter()
             .any(|id| matches!(&*self.graph.node(id), Node::Sum(terms) if terms.iter().any(fails)))
     }
 
-    fn expand_node(self, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn expand_node(self, images: &Images) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
             Node::Function(..) => self,
@@ -176,11 +183,14 @@ impl<'g> Expr<'g> {
 }
 
 impl Graph {
-    fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &HashMap<Id, Expr<'g>>) -> Expr<'g> {
+    fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &Images) -> Expr<'g> {
         let mut scale = self.number(term.coefficient.clone());
         for (base, exponent) in &term.scalars {
-            scale =
-                self.distribute(scale, self.expanded_power(self.expr(*base), images[base], *exponent), Shape::scalar());
+            scale = self.distribute(
+                scale,
+                self.expanded_power(self.expr(*base), images.of(self, base), *exponent),
+                Shape::scalar(),
+            );
         }
         let word = match term.word.is_empty() {
             true => self.identity(shape.rows),
@@ -192,18 +202,18 @@ impl Graph {
     /// Positive integer powers are multiplied out. The base of any other power stays as it was written: |x − y|² under a root
     /// must not become x² − 2xy + y², which cancels.
     fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
-        match exponent.is_integer().then(|| exponent.to_integer().to_u32()).flatten() {
-            Some(count) if count <= 16 => {
+        match exponent.as_integer() {
+            Some(count) if (0..=16).contains(&count) => {
                 (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar()))
             }
-            _ => base.power(Rational::new((*exponent.numer()).into(), (*exponent.denom()).into())),
+            _ => base.power(Rational::short(exponent)),
         }
     }
 
-    fn expand_word<'g>(&'g self, word: &[Id], images: &HashMap<Id, Expr<'g>>, shape: Shape) -> Expr<'g> {
+    fn expand_word<'g>(&'g self, word: &[Id], images: &Images, shape: Shape) -> Expr<'g> {
         let mut product: Option<Expr<'g>> = None;
         for letter in word {
-            let factor = images[letter];
+            let factor = images.of(self, letter);
             product = Some(match product {
                 None => factor,
                 Some(left) => self.distribute(left, factor, Shape::new(left.shape().rows, factor.shape().columns)),

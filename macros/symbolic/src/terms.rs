@@ -1,20 +1,31 @@
 //! The algebra of terms: sums collect like terms, products merge scalar powers and reduce words of letters.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use std::cmp::Ordering;
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
 use crate::rational::product;
 use crate::{Expr, Graph, Group, Property, Rational, Shape, integer};
 
-/// The scalar powers and the word of a term: what like terms share.
-type Monomial = (Vec<(Id, Exponent)>, Vec<Id>);
-
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
         Term { coefficient, scalars: Vec::new(), word: Vec::new() }
+    }
+
+    /// The order of terms in sums: by their scalar powers, then by their words, like terms being equal.
+    fn compare(&self, other: &Term) -> Ordering {
+        for ((base, exponent), (other_base, other_exponent)) in self.scalars.iter().zip(&other.scalars) {
+            match base.0.cmp(&other_base.0) {
+                Ordering::Equal if exponent == other_exponent => {}
+                Ordering::Equal => return exponent.cmp(other_exponent),
+                different => return different,
+            }
+        }
+        match self.scalars.len().cmp(&other.scalars.len()) {
+            Ordering::Equal => self.word.cmp(&other.word),
+            different => different,
+        }
     }
 
     /// Multiplies by scalar powers, keeping them sorted and without zero exponents.
@@ -33,23 +44,29 @@ impl Term {
     }
 }
 
+/// Adds a term to a sorted sum of distinct ones, to a like term where there is one.
+fn add(sum: &mut Vec<Term>, term: Term) {
+    let place = match sum.last() {
+        Some(last) if last.compare(&term) != Ordering::Less => sum.binary_search_by(|other| other.compare(&term)),
+        _ => Err(sum.len()),
+    };
+    match place {
+        Ok(position) => sum[position].coefficient += term.coefficient,
+        Err(position) => sum.insert(position, term),
+    }
+}
+
 impl Graph {
     /// The sum of terms of one shape, like terms collected; a single plain letter is that letter.
     pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
-        let mut collected: BTreeMap<Monomial, Rational> = BTreeMap::new();
-        for term in terms {
-            match collected.entry((term.scalars, term.word)) {
-                Entry::Vacant(entry) => {
-                    entry.insert(term.coefficient);
-                }
-                Entry::Occupied(mut entry) => *entry.get_mut() += term.coefficient,
-            }
-        }
-        let terms: Vec<Term> = collected
-            .into_iter()
-            .filter(|(_, coefficient)| !coefficient.is_zero())
-            .map(|((scalars, word), coefficient)| Term { coefficient, scalars, word })
-            .collect();
+        let mut sum: Vec<Term> = Vec::new();
+        terms.into_iter().for_each(|term| add(&mut sum, term));
+        self.settle(shape, sum)
+    }
+
+    /// The sum of terms that are sorted and distinct.
+    fn settle(&self, shape: Shape, mut terms: Vec<Term>) -> Expr<'_> {
+        terms.retain(|term| !term.coefficient.is_zero());
         if let [Term { coefficient, scalars, word }] = terms.as_slice()
             && coefficient.is_one()
         {
@@ -76,7 +93,7 @@ impl<'g> Expr<'g> {
     fn atom(self) -> Term {
         let mut term = Term::number(Rational::one());
         match self.shape().is_scalar() {
-            true => term.scalars.push((self.id, Exponent::one())),
+            true => term.scalars.push((self.id, Exponent::ONE)),
             false => term.word.push(self.id),
         }
         term
@@ -93,20 +110,30 @@ impl<'g> Expr<'g> {
     /// self + coefficient · other.
     pub(crate) fn sum(self, other: Expr<'g>, coefficient: Rational) -> Expr<'g> {
         assert_eq!(self.shape(), other.shape(), "a sum of `{self}` and `{other}`");
-        let scaled = other.terms().into_iter().map(|mut term| {
+        if other.is_zero() {
+            return self;
+        }
+        if self.is_zero() {
+            return other.times(&coefficient);
+        }
+        let mut sum = self.terms();
+        for mut term in other.terms() {
             term.coefficient = product(&term.coefficient, &coefficient);
-            term
-        });
-        self.graph.collect(self.shape(), self.terms().into_iter().chain(scaled))
+            add(&mut sum, term);
+        }
+        self.graph.settle(self.shape(), sum)
     }
 
     /// coefficient · self, distributed over a sum.
     pub(crate) fn times(self, coefficient: &Rational) -> Expr<'g> {
-        let terms = self.terms().into_iter().map(|mut term| {
+        if coefficient.is_one() {
+            return self;
+        }
+        let mut terms = self.terms();
+        for term in &mut terms {
             term.coefficient = product(&term.coefficient, coefficient);
-            term
-        });
-        self.graph.collect(self.shape(), terms)
+        }
+        self.graph.settle(self.shape(), terms)
     }
 
     /// Each term of the sum times a scalar, which meets the powers that the terms hold of it.
@@ -375,6 +402,6 @@ impl Graph {
 
     /// An exponent as a small integer, if it is one.
     pub(crate) fn small_integer(exponent: &Exponent) -> Option<i32> {
-        exponent.is_integer().then(|| exponent.to_integer().to_i32()).flatten()
+        exponent.as_integer().and_then(|exponent| i32::try_from(exponent).ok())
     }
 }

@@ -1,6 +1,6 @@
 //! Looking into an expression from outside of this crate: what the lowering to scalars walks over.
 
-use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Function, Id, Node, Term};
 use crate::{Algebra, Expr, Rational, Symbol};
 
 /// The outermost operation of an expression.
@@ -87,10 +87,9 @@ impl<'g> Expr<'g> {
     }
 
     fn word_term(self, term: Term) -> WordTerm<'g> {
-        let exponent = |e: Exponent| (*e.numer(), *e.denom());
         WordTerm {
             coefficient: term.coefficient,
-            scalars: term.scalars.into_iter().map(|(base, e)| (self.graph.expr(base), exponent(e))).collect(),
+            scalars: term.scalars.into_iter().map(|(base, e)| (self.graph.expr(base), e.parts())).collect(),
             word: self.exprs(&term.word),
         }
     }

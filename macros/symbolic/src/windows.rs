@@ -3,10 +3,9 @@
 //!
 //! Expressions are not kept in this form: (F − I)(F + I)⁻¹ has to stay whole until F is put in, for then it simplifies as a whole.
 
-use std::collections::HashMap;
-
 use num_traits::Zero;
 
+use crate::memory::Images;
 use crate::node::{Id, Node, Term};
 use crate::{Expr, Shape};
 
@@ -22,27 +21,23 @@ struct Window<'g> {
 impl<'g> Expr<'g> {
     /// The same with products freed of zeros and blocks taken of their letters.
     pub fn blockwise(self) -> Expr<'g> {
-        let mut images: HashMap<Id, Expr<'g>> = HashMap::new();
-        for id in self.reachable() {
-            let expr = self.graph.expr(id);
-            let image = match &*expr.node() {
-                Node::Sum(terms) => terms.iter().fold(self.graph.zero(expr.shape()), |sum, term| {
-                    let scale = Term { word: Vec::new(), ..term.clone() };
-                    let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
-                    let word = match term.word.is_empty() {
-                        true => self.graph.identity(expr.shape().rows),
-                        false => product(term.word.iter().map(|letter| images[letter])),
-                    };
-                    sum + scale * word
-                }),
-                Node::Word(word) => product(word.iter().map(|letter| images[letter])),
-                Node::Trace(word) => product(word.iter().map(|letter| images[letter])).trace(),
-                Node::Block(inner, row, column) => images[inner].cut(*row, *column, expr.shape()),
-                _ => expr.rebuild(&images),
-            };
-            images.insert(id, image);
-        }
-        images[&self.id]
+        let images = Images::default();
+        let image = |part: &Id| images.of(self.graph, part);
+        self.mapped(&images, |expr| match &*expr.node() {
+            Node::Sum(terms) => terms.iter().fold(self.graph.zero(expr.shape()), |sum, term| {
+                let scale = Term { word: Vec::new(), ..term.clone() };
+                let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
+                let word = match term.word.is_empty() {
+                    true => self.graph.identity(expr.shape().rows),
+                    false => product(term.word.iter().map(image)),
+                };
+                sum + scale * word
+            }),
+            Node::Word(word) => product(word.iter().map(image)),
+            Node::Trace(word) => product(word.iter().map(image)).trace(),
+            Node::Block(inner, row, column) => image(inner).cut(*row, *column, expr.shape()),
+            _ => expr.rebuild(&images),
+        })
     }
 
     /// The block at (row, column), in a product that of its letters.

@@ -1,8 +1,10 @@
 //! Tokens of straight-line code.
 
-use clebsch_symbolic::{Function, Group, Rational, Role, Shape, integer};
-use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use std::cell::RefCell;
+
+use clebsch_symbolic::{Function, Group, Rational, Role, Shape, Table, integer};
+use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
 use crate::lower::{Code, Input, Kernel};
@@ -30,6 +32,15 @@ pub struct Scope<'a, 'g> {
     pub momentum: &'static str,
     /// The user's struct as a type, for the methods behind an opaque potential.
     pub item: TokenStream,
+    /// What has been spelled.
+    pub spelled: Spelled,
+}
+
+/// The tokens of entries and numbers, which stand in code many times.
+#[derive(Default)]
+pub struct Spelled {
+    reads: RefCell<Table<Input, TokenStream>>,
+    numbers: RefCell<Table<Rational, TokenStream>>,
 }
 
 /// The nesting of what a kernel returns.
@@ -57,6 +68,15 @@ pub fn accessor(text: &str) -> TokenStream {
 
 impl Scope<'_, '_> {
     fn read(&self, input: &Input) -> TokenStream {
+        if let Some(known) = self.spelled.reads.borrow().get(input) {
+            return known.clone();
+        }
+        let spelled = self.spell_read(input);
+        self.spelled.reads.borrow_mut().insert(input.clone(), spelled.clone());
+        spelled
+    }
+
+    fn spell_read(&self, input: &Input) -> TokenStream {
         let (row, column) = (Literal::usize_unsuffixed(input.row), Literal::usize_unsuffixed(input.column));
         let index = if input.is_vector { quote!([#row]) } else { quote!([(#row, #column)]) };
         let leaf = |name: &str, access: &str| {
@@ -124,53 +144,80 @@ impl Scope<'_, '_> {
 
     /// Tokens of a code; `tight` where it stands beside a multiplication.
     pub fn code(&self, code: &Code, tight: bool) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let mut tokens = TokenStream::new();
+        self.write(&mut tokens, code, tight);
+        tokens
+    }
+
+    /// Appends the tokens of a code: sums and products are long, and would be copied at each level.
+    fn write(&self, tokens: &mut TokenStream, code: &Code, tight: bool) {
         match code {
-            Code::Read(input) => self.read(input),
-            Code::Pi => quote!(<#scalar as #private::Scalar>::PI),
-            Code::Number(value) => self.number(value),
+            Code::Read(input) => tokens.extend(self.read(input)),
+            Code::Number(value) => tokens.extend(self.number(value)),
             Code::Constant(index) => {
-                let (constants, name) = (&self.constants, format_ident!("{}", self.constant_names[*index]));
-                quote!(#constants.#name)
+                tokens.extend(self.constants.clone());
+                operator(tokens, '.');
+                word(tokens, &self.constant_names[*index]);
             }
             Code::Term(index) => {
-                let index = Literal::usize_unsuffixed(*index);
-                quote!(terms[#index])
+                word(tokens, "terms");
+                let index = TokenTree::from(Literal::usize_unsuffixed(*index));
+                group(tokens, Delimiter::Bracket, index.into());
             }
-            Code::Local(index) => {
-                let name = format_ident!("t{index}");
-                quote!(#name)
+            Code::Local(index) => word(tokens, &format!("t{index}")),
+            Code::Sum(constant, terms) if tight && !is_single(constant, terms) => {
+                let mut inner = TokenStream::new();
+                self.write_sum(&mut inner, constant, terms);
+                group(tokens, Delimiter::Parenthesis, inner);
             }
-            Code::Sum(constant, terms) => self.sum(constant, terms, tight),
+            Code::Sum(constant, terms) => self.write_sum(tokens, constant, terms),
             Code::Product(factors) => {
-                let factors = factors.iter().map(|factor| self.code(factor, true));
-                factors.reduce(|product, factor| quote!(#product * #factor)).unwrap_or_else(|| self.number(&integer(1)))
+                for (position, factor) in factors.iter().enumerate() {
+                    if position > 0 {
+                        operator(tokens, '*');
+                    }
+                    self.write(tokens, factor, true);
+                }
             }
-            Code::Reciprocal(x) => {
-                let one = self.number(&integer(1));
-                // `1 / a * b` would divide by a alone
-                let compound = matches!(**x, Code::Product(_) | Code::Sum(..));
-                let x = self.code(x, !compound);
-                let x = if compound { quote!((#x)) } else { x };
-                if tight { quote!((#one / #x)) } else { quote!(#one / #x) }
+            Code::Pi => {
+                let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+                tokens.extend(quote!(<#scalar as #private::Scalar>::PI));
             }
-            Code::Root(x, (1, 2)) => {
-                let x = self.code(x, false);
-                quote!(#private::Scalar::sqrt(#x))
-            }
-            Code::Root(x, (numerator, denominator)) => {
-                let (x, exponent) =
-                    (self.code(x, false), self.number(&clebsch_symbolic::rational(*numerator, *denominator)));
-                quote!(#private::Scalar::powf(#x, #exponent))
-            }
-            Code::Call(callee, arguments) => self.call(callee, arguments),
-            Code::Output(local, callee, output) => self.output(*local, callee, *output),
-            Code::Function(Function::Stumpff(k), x) => {
-                let (k, x) = (Literal::u8_unsuffixed(*k), self.code(x, false));
+            Code::Reciprocal(x) => tokens.extend(self.reciprocal(x, tight)),
+            Code::Root(x, exponent) => tokens.extend(self.root(x, *exponent)),
+            Code::Call(callee, arguments) => tokens.extend(self.call(callee, arguments)),
+            Code::Output(local, callee, output) => tokens.extend(self.output(*local, callee, *output)),
+            Code::Function(function, x) => tokens.extend(self.function(*function, x)),
+        }
+    }
+
+    fn reciprocal(&self, x: &Code, tight: bool) -> TokenStream {
+        let one = self.number(&integer(1));
+        // `1 / a * b` would divide by a alone
+        let compound = matches!(x, Code::Product(_) | Code::Sum(..));
+        let x = self.code(x, !compound);
+        let x = if compound { quote!((#x)) } else { x };
+        if tight { quote!((#one / #x)) } else { quote!(#one / #x) }
+    }
+
+    fn root(&self, x: &Code, (numerator, denominator): (i64, i64)) -> TokenStream {
+        let (private, x) = (&self.paths.private, self.code(x, false));
+        if (numerator, denominator) == (1, 2) {
+            return quote!(#private::Scalar::sqrt(#x));
+        }
+        let exponent = self.number(&clebsch_symbolic::rational(numerator, denominator));
+        quote!(#private::Scalar::powf(#x, #exponent))
+    }
+
+    fn function(&self, function: Function, x: &Code) -> TokenStream {
+        let (private, x) = (&self.paths.private, self.code(x, false));
+        match function {
+            Function::Stumpff(k) => {
+                let k = Literal::u8_unsuffixed(k);
                 quote!(#private::stumpff(#k, #x))
             }
-            Code::Function(function, x) => {
-                let (name, x) = (format_ident!("{}", function.name()), self.code(x, false));
+            _ => {
+                let name = format_ident!("{}", function.name());
                 quote!(#private::Scalar::#name(#x))
             }
         }
@@ -184,39 +231,46 @@ impl Scope<'_, '_> {
         }
     }
 
-    fn sum(&self, constant: &Rational, terms: &[(Rational, Code)], tight: bool) -> TokenStream {
-        let mut tokens = TokenStream::new();
-        // positive terms first, so that no sum begins with a sign
-        let mut ordered: Vec<&(Rational, Code)> = terms.iter().collect();
-        ordered.sort_by_key(|(coefficient, _)| *coefficient < integer(0));
-        if *constant != integer(0) {
+    fn write_sum(&self, tokens: &mut TokenStream, constant: &Rational, terms: &[(Rational, Code)]) {
+        let zero = integer(0);
+        let mut is_first = *constant == zero;
+        if !is_first {
             tokens.extend(self.number(constant));
         }
-        for (coefficient, term) in ordered {
-            let negative = *coefficient < integer(0);
-            let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
-            let factor = (magnitude != integer(1)).then(|| self.number(&magnitude)).map(|number| quote!(#number *));
-            let sign = match (tokens.is_empty(), negative) {
-                (true, false) => quote!(),
-                (_, true) => quote!(-),
-                (false, false) => quote!(+),
-            };
-            let term = self.code(term, true);
-            tokens.extend(quote!(#sign #factor #term));
+        // positive terms first, so that no sum begins with a sign
+        let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(coefficient, _)| *coefficient < zero);
+        for (coefficient, term) in positive.into_iter().chain(negative) {
+            match (is_first, *coefficient < zero) {
+                (true, false) => {}
+                (_, true) => operator(tokens, '-'),
+                (false, false) => operator(tokens, '+'),
+            }
+            is_first = false;
+            let magnitude = coefficient.abs();
+            if magnitude != integer(1) {
+                tokens.extend(self.number(&magnitude));
+                operator(tokens, '*');
+            }
+            self.write(tokens, term, true);
         }
-        let single = terms.len() + usize::from(*constant != integer(0)) == 1
-            && terms.first().is_none_or(|(c, _)| *c > integer(0));
-        if tight && !single { quote!((#tokens)) } else { tokens }
     }
 
     /// A number, rounded once to the scalar.
     pub fn number(&self, value: &Rational) -> TokenStream {
+        if let Some(known) = self.spelled.numbers.borrow().get(value) {
+            return known.clone();
+        }
+        let spelled = self.spell_number(value);
+        self.spelled.numbers.borrow_mut().insert(value.clone(), spelled.clone());
+        spelled
+    }
+
+    fn spell_number(&self, value: &Rational) -> TokenStream {
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let parts = (i64::try_from(value.numer()), i64::try_from(value.denom()));
-        match (&self.model.item.scalar, parts) {
-            (ScalarType::Parameter(_), (Ok(0), Ok(1))) => quote!(<#scalar as #private::Zero>::zero()),
-            (ScalarType::Parameter(_), (Ok(1), Ok(1))) => quote!(<#scalar as #private::One>::one()),
-            (ScalarType::Parameter(_), (Ok(numerator), Ok(denominator))) => {
+        match (&self.model.item.scalar, value.parts()) {
+            (ScalarType::Parameter(_), Some((0, 1))) => quote!(<#scalar as #private::Zero>::zero()),
+            (ScalarType::Parameter(_), Some((1, 1))) => quote!(<#scalar as #private::One>::one()),
+            (ScalarType::Parameter(_), Some((numerator, denominator))) => {
                 let (numerator, denominator) =
                     (Literal::i64_unsuffixed(numerator), Literal::i64_unsuffixed(denominator));
                 quote!(<#scalar as #private::Scalar>::from_ratio(#numerator, #denominator))
@@ -228,6 +282,35 @@ impl Scope<'_, '_> {
             _ => float(value),
         }
     }
+}
+
+/// Whether a sum is written as one positive number or term.
+fn is_single(constant: &Rational, terms: &[(Rational, Code)]) -> bool {
+    terms.len() + usize::from(*constant != integer(0)) == 1 && terms.first().is_none_or(|(c, _)| !c.is_negative())
+}
+
+fn operator(tokens: &mut TokenStream, symbol: char) {
+    tokens.append(Punct::new(symbol, Spacing::Alone));
+}
+
+fn word(tokens: &mut TokenStream, name: &str) {
+    tokens.append(Ident::new(name, Span::call_site()));
+}
+
+fn group(tokens: &mut TokenStream, delimiter: Delimiter, inner: TokenStream) {
+    tokens.append(proc_macro2::Group::new(delimiter, inner));
+}
+
+/// `[a, b, c]`.
+fn list(parts: impl IntoIterator<Item = TokenStream>) -> TokenTree {
+    let mut inner = TokenStream::new();
+    for (position, part) in parts.into_iter().enumerate() {
+        if position > 0 {
+            operator(&mut inner, ',');
+        }
+        inner.extend(part);
+    }
+    proc_macro2::Group::new(Delimiter::Bracket, inner).into()
 }
 
 /// A floating-point literal: the decimal fraction where it ends, a quotient where it does not.
@@ -249,7 +332,7 @@ fn float(value: &Rational) -> TokenStream {
 fn decimal(value: &Rational) -> Option<String> {
     let mut scaled = value.clone();
     for digits in 0..=40_usize {
-        if *scaled.denom() == *integer(1).numer() {
+        if scaled.is_integer() {
             let text = scaled.numer().to_string();
             if text.len() > 60 {
                 return None;
@@ -290,33 +373,43 @@ pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, nesting: Option<Nesting>) ->
 
 /// The shared terms of a kernel.
 pub fn locals(scope: &Scope<'_, '_>, kernel: &Kernel) -> TokenStream {
-    let locals = kernel.locals.iter().enumerate().map(|(index, code)| {
-        let (name, code) = (format_ident!("t{index}"), scope.code(code, false));
-        quote!(let #name = #code;)
-    });
-    quote!(#(#locals)*)
+    let mut tokens = TokenStream::new();
+    for (index, code) in kernel.locals.iter().enumerate() {
+        word(&mut tokens, "let");
+        word(&mut tokens, &format!("t{index}"));
+        operator(&mut tokens, '=');
+        scope.write(&mut tokens, code, false);
+        operator(&mut tokens, ';');
+    }
+    tokens
 }
 
 /// A matrix of entries, row by row, whatever its shape.
 pub fn matrix(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStream {
     let private = &scope.paths.private;
-    let entries: Vec<TokenStream> = entries.iter().map(|entry| scope.code(entry, false)).collect();
-    let rows = entries.chunks(shape.columns.max(1)).map(|row| quote!([#(#row),*]));
-    quote!(#private::matrix([#(#rows),*]))
+    let rows = entries.chunks(shape.columns.max(1)).map(|row| entries_of(scope, row).into());
+    let rows = list(rows);
+    quote!(#private::matrix(#rows))
 }
 
 /// A matrix, vector or quaternion of entries.
 pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code], is_quaternion: bool) -> TokenStream {
     let private = &scope.paths.private;
-    let entries: Vec<TokenStream> = entries.iter().map(|entry| scope.code(entry, false)).collect();
     match shape.columns {
-        _ if is_quaternion => quote!(#private::quaternion([#(#entries),*])),
-        1 => quote!(#private::vector([#(#entries),*])),
-        columns => {
-            let rows = entries.chunks(columns).map(|row| quote!([#(#row),*]));
-            quote!(#private::matrix([#(#rows),*]))
+        _ if is_quaternion => {
+            let entries = entries_of(scope, entries);
+            quote!(#private::quaternion(#entries))
         }
+        1 => {
+            let entries = entries_of(scope, entries);
+            quote!(#private::vector(#entries))
+        }
+        _ => matrix(scope, shape, entries),
     }
+}
+
+fn entries_of(scope: &Scope<'_, '_>, entries: &[Code]) -> TokenTree {
+    list(entries.iter().map(|entry| scope.code(entry, false)))
 }
 
 /// Tuples and arrays of leaves.

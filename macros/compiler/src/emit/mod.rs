@@ -23,7 +23,7 @@ use quote::quote;
 
 use crate::lower::Program;
 use crate::model::Model;
-use code::{Scope, nested_type};
+use code::{Scope, Spelled, nested_type};
 use names::Names;
 use path::Paths;
 
@@ -187,6 +187,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
             blocks: self.program.formulas.symbols.blocks.iter().map(|block| block.offset).collect(),
             momentum: "mu",
             item: self.item_type(),
+            spelled: Spelled::default(),
         }
     }
 

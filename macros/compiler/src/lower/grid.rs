@@ -3,9 +3,12 @@
 //! Factors that do not change during a step are gathered before they meet those that do: `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant
 //! matrix times `x^`, however the derivation has distributed it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+use std::rc::Rc;
 
-use clebsch_symbolic::{Algebra, Basis, Expr, Graph, Rational, Role, Shape, Sparse, View, WordTerm, integer};
+use clebsch_symbolic::{
+    Algebra, Basis, Expr, Graph, One, Rational, Role, Shape, Sparse, Table, View, WordTerm, integer,
+};
 
 use super::scalar::{Call, Callee, Input, Scalar, Scalars};
 
@@ -29,31 +32,27 @@ impl Grid {
     }
 }
 
-/// Lowers expressions to grids, remembering what it has lowered.
-pub struct Lowering<'a, 'g> {
-    /// The arena of the scalars.
-    pub scalars: &'a mut Scalars,
-    known: HashMap<Expr<'g>, Grid>,
+/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
+#[derive(Default)]
+pub struct Grids {
+    grids: Table<usize, Rc<Grid>>,
+    constant: Table<usize, bool>,
 }
 
-impl<'a, 'g> Lowering<'a, 'g> {
-    /// A lowering into an arena.
-    pub fn new(scalars: &'a mut Scalars) -> Lowering<'a, 'g> {
-        Lowering { scalars, known: HashMap::new() }
-    }
+/// Lowers expressions to grids, remembering what it has lowered.
+pub struct Lowering<'a> {
+    /// The arena of the scalars.
+    pub scalars: &'a mut Scalars,
+}
 
-    /// Lets a symbol stand for a grid.
-    pub fn bind(&mut self, symbol: Expr<'g>, grid: Grid) {
-        self.known.insert(symbol, grid);
-    }
-
+impl<'g> Lowering<'_> {
     /// The scalars of an expression.
-    pub fn grid(&mut self, expr: Expr<'g>) -> Grid {
-        if let Some(grid) = self.known.get(&expr) {
+    pub fn grid(&mut self, expr: Expr<'g>) -> Rc<Grid> {
+        if let Some(grid) = self.scalars.lowered.grids.get(&expr.position()) {
             return grid.clone();
         }
-        let grid = self.lower(expr);
-        self.known.insert(expr, grid.clone());
+        let grid = Rc::new(self.lower(expr));
+        self.scalars.lowered.grids.insert(expr.position(), grid.clone());
         grid
     }
 
@@ -144,8 +143,8 @@ impl<'a, 'g> Lowering<'a, 'g> {
         }
     }
 
-    fn call(&mut self, callee: Callee, arguments: Vec<Grid>, leaf: usize, shape: Shape) -> Grid {
-        let arguments = arguments.into_iter().map(|grid| (grid.shape, grid.entries)).collect();
+    fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
+        let arguments = arguments.into_iter().map(|grid| (grid.shape, grid.entries.clone())).collect();
         Grid { shape, entries: self.scalars.call(Call { callee, arguments }, leaf, shape) }
     }
 
@@ -195,21 +194,25 @@ impl<'a, 'g> Lowering<'a, 'g> {
     /// The product of letters, associated so that vectors are multiplied first.
     fn word(&mut self, word: &[Expr<'g>]) -> Grid {
         let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
-        let mut grids: Vec<Grid> = word.iter().map(|letter| self.grid(*letter)).collect();
+        let mut grids: Vec<Rc<Grid>> = word.iter().map(|letter| self.grid(*letter)).collect();
         if from_right {
-            // by construction: words are not empty
-            let last = grids.pop().expect("a word has letters");
-            return grids.iter().rev().fold(last, |product, letter| self.multiply(letter, &product));
+            grids.reverse();
         }
         let mut grids = grids.into_iter();
+        // by construction: words are not empty
         let first = grids.next().expect("a word has letters");
-        grids.fold(first, |product, letter| self.multiply(&product, &letter))
+        grids.fold((*first).clone(), |product, letter| match from_right {
+            true => self.multiply(&letter, &product),
+            false => self.multiply(&product, &letter),
+        })
     }
 
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
-            let terms: Vec<_> =
-                (0..a.shape.columns).map(|k| (self.scalars.product([a.at(i, k), b.at(k, j)]), integer(1))).collect();
+            let factors = (0..a.shape.columns).map(|k| (a.at(i, k), b.at(k, j)));
+            let factors: Vec<_> =
+                factors.filter(|(a, b)| !self.scalars.is_zero(*a) && !self.scalars.is_zero(*b)).collect();
+            let terms: Vec<_> = factors.into_iter().map(|(a, b)| (self.scalars.product([a, b]), integer(1))).collect();
             self.scalars.sum(integer(0), terms)
         })
     }
@@ -237,6 +240,9 @@ impl<'a, 'g> Lowering<'a, 'g> {
     }
 
     fn total(&mut self, shape: Shape, grids: &[Grid]) -> Grid {
+        if let [only] = grids {
+            return only.clone();
+        }
         Grid::from_fn(shape, |(i, j)| {
             let terms: Vec<_> = grids.iter().map(|grid| (grid.at(i, j), integer(1))).collect();
             self.scalars.sum(integer(0), terms)
@@ -281,10 +287,16 @@ impl<'a, 'g> Lowering<'a, 'g> {
     }
 
     /// Whether an expression is fixed once per stepper.
-    fn is_constant(&self, expr: Expr<'g>) -> bool {
+    fn is_constant(&mut self, expr: Expr<'g>) -> bool {
         let once =
             |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::Auxiliary(_));
-        expr.symbols().into_iter().all(|symbol| symbol.as_symbol().is_some_and(|data| once(data.role)))
+        let constant = &mut self.scalars.lowered.constant;
+        if let Some(known) = constant.get(&expr.position()) {
+            return *known;
+        }
+        let found = expr.symbols().into_iter().all(|symbol| symbol.as_symbol().is_some_and(|data| once(data.role)));
+        constant.insert(expr.position(), found);
+        found
     }
 
     fn monomial(&mut self, coefficient: &Rational, scalars: &[(Expr<'g>, (i64, i64))]) -> Scalar {
@@ -297,6 +309,9 @@ impl<'a, 'g> Lowering<'a, 'g> {
     }
 
     fn scaled(&mut self, grid: &Grid, scale: Scalar) -> Grid {
+        if self.scalars.as_number(scale).is_some_and(One::is_one) {
+            return grid.clone();
+        }
         Grid::from_fn(grid.shape, |(i, j)| self.scalars.product([scale, grid.at(i, j)]))
     }
 
@@ -370,7 +385,7 @@ impl<'a, 'g> Lowering<'a, 'g> {
 }
 
 /// prefix · middle · suffix, vectors first.
-fn suffix_product<'g>(lowering: &mut Lowering<'_, 'g>, middle: Grid, suffix: &[Expr<'g>], prefix: &[Expr<'g>]) -> Grid {
+fn suffix_product<'g>(lowering: &mut Lowering<'_>, middle: Grid, suffix: &[Expr<'g>], prefix: &[Expr<'g>]) -> Grid {
     let mut product = middle;
     if let Some(last) = suffix.last()
         && last.shape().columns == 1

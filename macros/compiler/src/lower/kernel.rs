@@ -1,9 +1,8 @@
 //! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, integer};
 
-use clebsch_symbolic::{Function, Rational, Role, Shape, integer};
-
+use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
 use super::{Input, Node, Rate, Scalar, Scalars};
 
@@ -100,8 +99,8 @@ pub enum Hoisting<'a> {
 
 /// Makes a kernel of grids of outputs.
 pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
-    let mut builder =
-        Builder { scalars, hoisting, operations: Vec::new(), index: HashMap::new(), known: HashMap::new() };
+    let (operations, products, known) = (Interner::default(), Pairs::default(), Table::default());
+    let mut builder = Builder { scalars, hoisting, operations, products, known };
     let outputs: Vec<(Shape, Vec<Id>)> = outputs
         .iter()
         .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
@@ -135,9 +134,10 @@ enum Operation {
 struct Builder<'a, 'b> {
     scalars: &'a mut Scalars,
     hoisting: Hoisting<'b>,
-    operations: Vec<Operation>,
-    index: HashMap<Operation, Id>,
-    known: HashMap<Scalar, Id>,
+    operations: Interner<Operation>,
+    /// The factors of products once pairs are shared.
+    products: Pairs,
+    known: Table<Scalar, Id>,
 }
 
 impl Builder<'_, '_> {
@@ -164,12 +164,7 @@ impl Builder<'_, '_> {
     }
 
     fn intern(&mut self, operation: Operation) -> Id {
-        if let Some(&known) = self.index.get(&operation) {
-            return known;
-        }
-        self.operations.push(operation.clone());
-        self.index.insert(operation, self.operations.len() - 1);
-        self.operations.len() - 1
+        self.operations.intern(operation).0
     }
 
     /// The operation that computes a scalar, slow parts of sums and products taken out.
@@ -287,44 +282,25 @@ impl Builder<'_, '_> {
 
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
     fn share_pairs(&mut self) {
-        while let Some((a, b)) = self.most_common_pair() {
-            let pair = self.intern(Operation::Product(vec![a, b]));
-            for operation in &mut self.operations {
-                if let Operation::Product(factors) = operation {
-                    while factors.len() > 2 {
-                        let Some(mut rest) = without_pair(factors, a, b) else { break };
-                        rest.push(pair);
-                        rest.sort_unstable();
-                        *factors = rest;
-                    }
-                }
+        let products = self.operations.values().iter().enumerate().filter_map(|(id, operation)| match operation {
+            Operation::Product(factors) => Some((id, factors.clone())),
+            _ => None,
+        });
+        self.products = Pairs::new(products);
+        while let Some((a, b)) = self.products.most_common() {
+            let (product, is_new) = self.operations.intern(Operation::Product(vec![a, b]));
+            if is_new {
+                self.products.insert(product, vec![a, b]);
             }
+            self.products.replace((a, b), product);
         }
-    }
-
-    fn most_common_pair(&self) -> Option<(Id, Id)> {
-        let mut counts: BTreeMap<(Id, Id), (usize, bool)> = BTreeMap::new();
-        for operation in &self.operations {
-            let Operation::Product(factors) = operation else { continue };
-            let mut pairs = BTreeSet::new();
-            for (i, &a) in factors.iter().enumerate() {
-                pairs.extend(factors[i + 1..].iter().map(|&b| (a.min(b), a.max(b))));
-            }
-            for pair in pairs {
-                let (count, long) = counts.entry(pair).or_insert((0, false));
-                *count += 1;
-                *long |= factors.len() > 2;
-            }
-        }
-        let shared = counts.into_iter().filter(|(_, (count, long))| *count > 1 && *long);
-        shared.max_by_key(|(pair, (count, _))| (*count, std::cmp::Reverse(*pair))).map(|(pair, _)| pair)
     }
 
     fn operands(&self, id: Id) -> Vec<Id> {
-        match &self.operations[id] {
+        match self.operations.value(id) {
             Operation::Leaf(_) => Vec::new(),
             Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
-            Operation::Product(factors) => factors.clone(),
+            Operation::Product(_) => self.products.factors(id).to_vec(),
             Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
             Operation::Call(_, arguments) => {
                 arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
@@ -340,18 +316,19 @@ impl Builder<'_, '_> {
             self.count(entry, &mut uses, &mut order);
         }
         let mut locals = Vec::new();
-        let mut names: HashMap<Id, usize> = HashMap::new();
+        let mut names: Table<Id, usize> = Table::default();
         let mut sizes = vec![0; self.operations.len()];
         for id in order {
             let inner: usize = self
                 .operands(id)
                 .iter()
-                .filter(|&operand| !names.contains_key(operand))
+                .filter(|&operand| !names.contains(operand))
                 .map(|&operand| sizes[operand])
                 .sum();
             sizes[id] = 1 + inner;
             let long = sizes[id] > LONGEST_EXPRESSION;
-            if matches!(self.operations[id], Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id) {
+            if matches!(self.operations.value(id), Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id)
+            {
                 let code = self.operation(id, &names);
                 locals.push(code);
                 names.insert(id, locals.len() - 1);
@@ -376,7 +353,7 @@ impl Builder<'_, '_> {
 
     /// Whether a value is worth a name of its own when it is used more than once: a read or a change of sign is not.
     fn is_shared(&self, id: Id) -> bool {
-        match &self.operations[id] {
+        match self.operations.value(id) {
             Operation::Leaf(_) | Operation::Output(..) => false,
             Operation::Sum(constant, terms) => {
                 !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1))
@@ -385,22 +362,23 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn reference(&mut self, id: Id, names: &HashMap<Id, usize>) -> Code {
+    fn reference(&mut self, id: Id, names: &Table<Id, usize>) -> Code {
         match names.get(&id) {
             Some(&local) => Code::Local(local),
             None => self.operation(id, names),
         }
     }
 
-    fn operation(&mut self, id: Id, names: &HashMap<Id, usize>) -> Code {
-        match self.operations[id].clone() {
+    fn operation(&mut self, id: Id, names: &Table<Id, usize>) -> Code {
+        match self.operations.value(id).clone() {
             Operation::Leaf(scalar) => self.leaf(scalar),
             Operation::Sum(constant, terms) => {
                 let terms =
                     terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
                 Code::Sum(constant, terms)
             }
-            Operation::Product(factors) => {
+            Operation::Product(_) => {
+                let factors = self.products.factors(id).to_vec();
                 Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
             }
             Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),
@@ -434,13 +412,4 @@ impl Builder<'_, '_> {
             (_, node) => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
         }
     }
-}
-
-fn without_pair(factors: &[Id], a: Id, b: Id) -> Option<Vec<Id>> {
-    let mut rest = factors.to_vec();
-    let first = rest.iter().position(|&factor| factor == a)?;
-    rest.remove(first);
-    let second = rest.iter().position(|&factor| factor == b)?;
-    rest.remove(second);
-    Some(rest)
 }

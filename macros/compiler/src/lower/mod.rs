@@ -8,6 +8,7 @@ mod cost;
 mod grid;
 mod kernel;
 mod names;
+mod pairs;
 mod print;
 mod scalar;
 mod stepping;
@@ -196,10 +197,10 @@ fn stack(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
 }
 
 fn grids(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
-    let mut lowering = Lowering::new(scalars);
+    let mut lowering = Lowering { scalars };
     let grid = |expr: &Expr<'_>| expr.shape();
     let shapes: Vec<Shape> = expressions.iter().map(grid).collect();
-    expressions.iter().zip(shapes).map(|(&expr, shape)| (shape, lowering.grid(expr).entries)).collect()
+    expressions.iter().zip(shapes).map(|(&expr, shape)| (shape, lowering.grid(expr).entries.clone())).collect()
 }
 
 fn momentum_matrices<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {

@@ -1,9 +1,8 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
-use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, HashMap};
+use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product};
 
-use clebsch_symbolic::{Analytic, Function, One, Rational, Role, Shape, Zero, integer, product};
+use super::grid::Grids;
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -100,30 +99,30 @@ pub enum Node {
 /// Owns scalars.
 #[derive(Default)]
 pub struct Scalars {
-    nodes: Vec<(Node, Rate)>,
-    index: HashMap<Node, Scalar>,
+    nodes: Interner<Node>,
+    rates: Vec<Rate>,
     calls: Vec<Call>,
+    /// The grids of expressions whose scalars are here.
+    pub(super) lowered: Grids,
 }
 
 impl Scalars {
     /// The expression behind an identity.
     pub fn node(&self, scalar: Scalar) -> &Node {
-        &self.nodes[scalar.0 as usize].0
+        self.nodes.value(scalar.0 as usize)
     }
 
     /// How often its value changes.
     pub fn rate(&self, scalar: Scalar) -> Rate {
-        self.nodes[scalar.0 as usize].1
+        self.rates[scalar.0 as usize]
     }
 
     fn intern(&mut self, node: Node, rate: Rate) -> Scalar {
-        if let Some(&known) = self.index.get(&node) {
-            return known;
+        let (position, is_new) = self.nodes.intern(node);
+        if is_new {
+            self.rates.push(rate);
         }
-        let scalar = Scalar(self.nodes.len() as u32);
-        self.nodes.push((node.clone(), rate));
-        self.index.insert(node, scalar);
-        scalar
+        Scalar(position as u32)
     }
 
     fn rate_of(&self, parts: impl Iterator<Item = Scalar>) -> Rate {
@@ -143,7 +142,7 @@ impl Scalars {
 
     /// Whether another entry of the same input occurs.
     pub fn has_other_entries(&self, input: &Input) -> bool {
-        self.nodes.iter().any(|(node, _)| {
+        self.nodes.values().iter().any(|node| {
             matches!(node, Node::Input(other) if other.role == input.role && (other.row, other.column) != (input.row, input.column))
         })
     }
@@ -179,25 +178,20 @@ impl Scalars {
     /// constant + Σ coefficient · scalar; sums inside are merged where the coefficient is ±1.
     pub fn sum(&mut self, constant: Rational, terms: impl IntoIterator<Item = (Scalar, Rational)>) -> Scalar {
         let mut total = constant;
-        let mut collected: BTreeMap<Scalar, Rational> = BTreeMap::new();
-        let mut add = |scalar: Scalar, coefficient: Rational| match collected.entry(scalar) {
-            Entry::Vacant(entry) => {
-                entry.insert(coefficient);
-            }
-            Entry::Occupied(mut entry) => *entry.get_mut() += coefficient,
-        };
+        let mut collected: Vec<(Scalar, Rational)> = Vec::new();
         for (scalar, coefficient) in terms {
             match self.node(scalar) {
-                Node::Sum(inner, parts) if parts.len() < 2 || coefficient.is_one() || coefficient == integer(-1) => {
+                Node::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
                     if !inner.is_zero() {
                         total += product(inner, &coefficient);
                     }
-                    parts.iter().for_each(|(part, factor)| add(*part, product(factor, &coefficient)));
+                    parts.iter().for_each(|(part, factor)| add(&mut collected, *part, product(factor, &coefficient)));
                 }
-                _ => add(scalar, coefficient),
+                _ => add(&mut collected, scalar, coefficient),
             }
         }
-        let terms: Vec<_> = collected.into_iter().filter(|(_, coefficient)| !coefficient.is_zero()).collect();
+        collected.retain(|(_, coefficient)| !coefficient.is_zero());
+        let terms = collected;
         match terms.as_slice() {
             [(only, coefficient)] if total.is_zero() && coefficient.is_one() => *only,
             _ => {
@@ -231,15 +225,15 @@ impl Scalars {
     /// The product of scalars.
     pub fn product(&mut self, factors: impl IntoIterator<Item = Scalar>) -> Scalar {
         let mut coefficient = integer(1);
-        let mut powers: BTreeMap<Scalar, u32> = BTreeMap::new();
+        let mut powers: Vec<(Scalar, u32)> = Vec::new();
         for factor in factors {
             let (number, rest) = self.factor(factor);
             coefficient = product(&coefficient, &number);
             match rest.map(|rest| (rest, self.node(rest))) {
                 Some((_, Node::Product(inner))) => {
-                    inner.iter().for_each(|&(base, e)| *powers.entry(base).or_insert(0) += e)
+                    inner.iter().for_each(|&(base, exponent)| raise(&mut powers, base, exponent));
                 }
-                Some((rest, _)) => *powers.entry(rest).or_insert(0) += 1,
+                Some((rest, _)) => raise(&mut powers, rest, 1),
                 None => {}
             }
         }
@@ -247,7 +241,6 @@ impl Scalars {
             return self.zero();
         }
         self.cancel_reciprocals(&mut powers);
-        let powers: Vec<_> = powers.into_iter().filter(|&(_, exponent)| exponent > 0).collect();
         let product = match powers.as_slice() {
             [] => return self.number(coefficient),
             [(only, 1)] => *only,
@@ -259,17 +252,17 @@ impl Scalars {
         self.scale(product, coefficient)
     }
 
-    fn cancel_reciprocals(&self, powers: &mut BTreeMap<Scalar, u32>) {
-        let bases: Vec<_> = powers.keys().copied().collect();
-        for base in bases {
-            if let Node::Reciprocal(inner) = self.node(base)
-                && let Some(&other) = powers.get(inner)
+    fn cancel_reciprocals(&self, powers: &mut Vec<(Scalar, u32)>) {
+        for position in 0..powers.len() {
+            if let Node::Reciprocal(inner) = self.node(powers[position].0)
+                && let Ok(other) = powers.binary_search_by_key(inner, |(base, _)| *base)
             {
-                let common = other.min(powers[&base]);
-                powers.insert(*inner, other - common);
-                powers.insert(base, powers[&base] - common);
+                let common = powers[other].1.min(powers[position].1);
+                powers[other].1 -= common;
+                powers[position].1 -= common;
             }
         }
+        powers.retain(|(_, exponent)| *exponent > 0);
     }
 
     /// 1/x.
@@ -342,5 +335,25 @@ impl Scalars {
                 self.call_of(*call).arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
             }
         }
+    }
+}
+
+fn is_unit(coefficient: &Rational) -> bool {
+    coefficient.is_one() || *coefficient == integer(-1)
+}
+
+/// Adds a term to a sorted sum.
+fn add(terms: &mut Vec<(Scalar, Rational)>, scalar: Scalar, coefficient: Rational) {
+    match terms.binary_search_by_key(&scalar, |(term, _)| *term) {
+        Ok(position) => terms[position].1 += coefficient,
+        Err(position) => terms.insert(position, (scalar, coefficient)),
+    }
+}
+
+/// Multiplies a sorted product by a power.
+fn raise(powers: &mut Vec<(Scalar, u32)>, base: Scalar, exponent: u32) {
+    match powers.binary_search_by_key(&base, |(factor, _)| *factor) {
+        Ok(position) => powers[position].1 += exponent,
+        Err(position) => powers.insert(position, (base, exponent)),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::motion::{left_matrix, motion};
 use super::{Block, Group};
+use crate::memory::Map;
 use crate::node::{Analytic, Node};
 use crate::{Expr, Function, Graph, Shape, identity, rational};
 
@@ -293,6 +294,11 @@ impl Group {
 
     /// dexp_ξ = φ(ad_ξ), the right trivialisation of the derivative of exp: (d exp ξ) exp(−ξ) = dexp_ξ dξ.
     pub fn exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
+        let known = xi.graph().images(Map::ExponentialSlope(self));
+        xi.remembered(&known, || self.make_exponential_slope(xi))
+    }
+
+    fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
         let (graph, ad) = (xi.graph(), self.ad(xi));
         let square = ad * ad;
         let s = -square.trace() / 2;

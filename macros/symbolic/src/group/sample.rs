@@ -169,7 +169,7 @@ fn diagonal(element: &Sparse, n: usize, s: Residue) -> Option<Field> {
     };
     let exponent = |i: usize| -> Option<i64> {
         let found = element.iter().find(|(row, ..)| *row == i);
-        found.map_or(Some(0), |(_, _, value)| i64::try_from(value.numer()).ok().filter(|d| d.abs() < 64))
+        found.map_or(Some(0), |(_, _, value)| value.parts().map(|(d, _)| d).filter(|d| d.abs() < 64))
     };
     let exponents: Vec<i64> = (0..n).map(exponent).collect::<Option<_>>()?;
     integral.then(|| Matrix::from_fn(Shape::square(n), |(i, j)| if i == j { power(exponents[i]) } else { zero() }))

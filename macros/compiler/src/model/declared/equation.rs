@@ -234,7 +234,7 @@ impl<'g> Equation<'_, 'g> {
         let mut entries = vec![Rational::zero(); shape.len()];
         for (scale, element) in &direction {
             element.iter().for_each(|(i, j, value)| {
-                entries[i * shape.columns + j] += value * clebsch_symbolic::integer(*scale);
+                entries[i * shape.columns + j] += value * &clebsch_symbolic::integer(*scale);
             });
         }
         let along = spell_matrix(shape, &entries);

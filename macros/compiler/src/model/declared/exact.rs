@@ -24,7 +24,7 @@ impl Exact {
 
     /// The number, if it could be held.
     pub fn rational(self) -> Option<Rational> {
-        self.0.map(|(numerator, denominator)| Rational::new(numerator.into(), denominator.into()))
+        self.0.map(|(numerator, denominator)| Rational::new(numerator, denominator))
     }
 }
 
@@ -37,7 +37,14 @@ fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
 
 impl Number for Exact {
     fn from_rational(value: &Rational) -> Exact {
-        Exact::reduced(i128::try_from(value.numer()).ok(), i128::try_from(value.denom()).ok())
+        match value.parts() {
+            Some((numerator, denominator)) => Exact(Some((numerator.into(), denominator.into()))),
+            None => Exact::reduced(i128::try_from(value.numer()).ok(), i128::try_from(value.denom()).ok()),
+        }
+    }
+
+    fn from_integer(value: i64) -> Exact {
+        Exact(Some((value.into(), 1)))
     }
 
     fn add(self, other: Exact) -> Exact {

@@ -79,7 +79,7 @@ fn exponential(n: usize, direction: &[(i64, &Sparse)]) -> Matrix<Follow> {
     for (scale, element) in direction {
         for (i, j, value) in element.iter() {
             let entry = &mut generator.entries[i * n + j].0[1];
-            *entry = entry.add(residue(&(value * integer(*scale))));
+            *entry = entry.add(residue(&(value * &integer(*scale))));
         }
     }
     let mut power: Matrix<Follow> = Matrix::scaled_identity(n, Series::from_rational(&integer(1)));

@@ -147,8 +147,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
             );
             return self.error(error);
         };
-        match number.to_integer().to_string().parse::<usize>() {
-            Ok(position) if position < length => Some(position),
+        match number.parts().and_then(|(position, _)| usize::try_from(position).ok()) {
+            Some(position) if position < length => Some(position),
             _ => {
                 let error = Diagnostic::new(Place::of(syntax), format!("the index {number} is out of range"));
                 self.error(error.note(format!("{of} are counted from 0 to {}", length - 1)))

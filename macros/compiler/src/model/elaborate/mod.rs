@@ -19,9 +19,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
-
-use clebsch_symbolic::{Expr, Graph, Group, Shape};
+use clebsch_symbolic::{Expr, Graph, Group, Shape, Table};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -56,8 +54,8 @@ pub(super) struct Elaborator<'e, 'c, 'g> {
     pub key: &'e str,
     scope: Scope<'g>,
     /// Expressions whose values lie on a group.
-    members: HashMap<Expr<'g>, Group>,
-    sizes: HashMap<Expr<'g>, Size>,
+    members: Table<Expr<'g>, Group>,
+    sizes: Table<Expr<'g>, Size>,
     depth: usize,
     work: usize,
 }
@@ -86,7 +84,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     /// An elaborator for the closure of a key, with the names that its arguments introduce.
     pub fn new(context: &'e mut Context<'c, 'g>, key: &'e str, scope: Scope<'g>) -> Elaborator<'e, 'c, 'g> {
         let members = scope.elements().collect();
-        Elaborator { context, key, scope, members, sizes: HashMap::new(), depth: 0, work: 0 }
+        Elaborator { context, key, scope, members, sizes: Table::default(), depth: 0, work: 0 }
     }
 
     /// The group on which an expression is known to lie.

@@ -50,7 +50,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn powi(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
         let syntax = &call.args[0];
         let number = self.scalar(syntax)?.as_number().filter(Rational::is_integer);
-        let exponent = number.and_then(|number| number.to_integer().to_string().parse::<i64>().ok());
+        let exponent = number.and_then(|number| number.parts()).map(|(exponent, _)| exponent);
         match exponent {
             Some(exponent) if exponent < 0 && a.is_zero() => self.error(no_real_value(call)),
             Some(exponent) if exponent.abs() <= EXPONENT => self
@@ -82,8 +82,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let make = || (exponent * a.function(Function::Ln)).function(Function::Exp);
             return self.build(call, &[a, exponent], Growth::Power(1), make).map(Value::Matrix);
         };
-        let size = number.numer().to_string().parse::<i64>().ok().zip(number.denom().to_string().parse::<i64>().ok());
-        match size {
+        match number.parts() {
             Some((numerator, denominator)) if numerator.abs() <= 1 << 20 && denominator <= 1 << 20 => {
                 let zero_to_negative = numerator < 0 && a.is_zero();
                 let root_of_negative = denominator > 1 && a.as_number().is_some_and(|number| number < integer(0));

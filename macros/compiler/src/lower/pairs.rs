@@ -1,0 +1,168 @@
+//! Products that share pairs of factors: which pair most of them share, as pairs are taken out one after the other.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use clebsch_symbolic::Table;
+
+/// The index of an operation of a kernel.
+type Id = usize;
+
+/// Two factors, the lesser first.
+type Pair = (Id, Id);
+
+/// Products and the pairs of their factors.
+#[derive(Default)]
+pub struct Pairs {
+    products: Table<Id, Vec<Id>>,
+    uses: Table<Pair, Uses>,
+    /// The pairs that may be shared, each with at least the number of its uses.
+    queue: BinaryHeap<(usize, Reverse<Pair>)>,
+}
+
+/// Where a pair stands.
+#[derive(Default)]
+struct Uses {
+    /// The number of products with it.
+    all: usize,
+    /// The number of those with further factors.
+    long: usize,
+    /// The products, also some that had it once.
+    products: Vec<Id>,
+}
+
+impl Uses {
+    fn are_shared(&self) -> bool {
+        self.all > 1 && self.long > 0
+    }
+}
+
+impl Pairs {
+    /// The factors of a product.
+    pub fn factors(&self, product: Id) -> &[Id] {
+        &self.products[&product]
+    }
+
+    /// Products with their factors, sorted.
+    pub fn new(products: impl Iterator<Item = (Id, Vec<Id>)>) -> Pairs {
+        let mut pairs = Pairs::default();
+        for (product, factors) in products {
+            distinct(&factors).into_iter().for_each(|pair| pairs.count(product, factors.len(), pair));
+            pairs.products.insert(product, factors);
+        }
+        let shared = pairs.uses.iter().filter(|(_, uses)| uses.are_shared());
+        pairs.queue = shared.map(|(pair, uses)| (uses.all, Reverse(*pair))).collect();
+        pairs
+    }
+
+    /// Sets the factors of a product, sorted.
+    pub fn insert(&mut self, product: Id, factors: Vec<Id>) {
+        for pair in distinct(&factors) {
+            self.count(product, factors.len(), pair);
+            let uses = &self.uses[&pair];
+            if uses.are_shared() {
+                self.queue.push((uses.all, Reverse(pair)));
+            }
+        }
+        self.products.insert(product, factors);
+    }
+
+    fn count(&mut self, product: Id, length: usize, pair: Pair) {
+        let uses = self.uses.entry(pair);
+        uses.all += 1;
+        uses.long += usize::from(length > 2);
+        uses.products.push(product);
+    }
+
+    /// The pair that most products share, the first of several; `None` if no product of more than two factors shares one.
+    pub fn most_common(&mut self) -> Option<Pair> {
+        while let Some((count, Reverse(pair))) = self.queue.pop() {
+            let uses = &self.uses[&pair];
+            match uses.are_shared() {
+                true if uses.all == count => return Some(pair),
+                // some of its uses are gone
+                true => self.queue.push((uses.all, Reverse(pair))),
+                false => {}
+            }
+        }
+        None
+    }
+
+    /// Puts the product of a pair in its place wherever there are further factors.
+    pub fn replace(&mut self, pair: Pair, by: Id) {
+        for product in std::mem::take(&mut self.uses.entry(pair).products) {
+            let mut factors = self.products[&product].clone();
+            while factors.len() > 2 && take(&mut factors, pair) {
+                factors.push(by);
+                factors.sort_unstable();
+            }
+            if factors != self.products[&product] {
+                self.forget(product);
+                self.insert(product, factors);
+            }
+        }
+    }
+
+    fn forget(&mut self, product: Id) {
+        let factors = &self.products[&product];
+        for pair in distinct(factors) {
+            let uses = self.uses.entry(pair);
+            uses.all -= 1;
+            uses.long -= usize::from(factors.len() > 2);
+        }
+    }
+}
+
+/// The distinct pairs of sorted factors.
+fn distinct(factors: &[Id]) -> Vec<Pair> {
+    let mut pairs = Vec::with_capacity(factors.len() * factors.len() / 2);
+    for (i, &a) in factors.iter().enumerate() {
+        if i > 0 && factors[i - 1] == a {
+            continue;
+        }
+        for (j, &b) in factors.iter().enumerate().skip(i + 1) {
+            if j == i + 1 || factors[j - 1] != b {
+                pairs.push((a, b));
+            }
+        }
+    }
+    pairs
+}
+
+/// Removes both factors of a pair, if they are there.
+fn take(factors: &mut Vec<Id>, (a, b): Pair) -> bool {
+    let first = factors.iter().position(|&factor| factor == a);
+    let second = factors.iter().rposition(|&factor| factor == b);
+    match (first, second) {
+        (Some(first), Some(second)) if first < second => {
+            factors.remove(second);
+            factors.remove(first);
+            true
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Pairs, distinct};
+
+    #[test]
+    fn pairs_are_distinct() {
+        assert_eq!(distinct(&[1, 1, 2, 3, 3]), [(1, 1), (1, 2), (1, 3), (2, 3), (3, 3)]);
+        assert_eq!(distinct(&[4, 4]), [(4, 4)]);
+    }
+
+    #[test]
+    fn the_most_common_pair_is_taken_first() {
+        let products = [vec![1, 2, 3], vec![1, 2], vec![2, 3, 4], vec![2, 2, 3, 3]];
+        let mut pairs = Pairs::new((10..).zip(products));
+        assert_eq!(pairs.most_common(), Some((2, 3)));
+        pairs.insert(20, vec![2, 3]);
+        pairs.replace((2, 3), 20);
+        assert_eq!(pairs.factors(10), [1, 20]);
+        assert_eq!(pairs.factors(12), [4, 20]);
+        assert_eq!(pairs.factors(13), [20, 20]);
+        assert_eq!(pairs.most_common(), None);
+    }
+}

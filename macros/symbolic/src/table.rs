@@ -1,0 +1,234 @@
+//! Maps and interners whose order is that of insertion: what is made with them is the same in every process.
+//!
+//! Editors run the compiler unoptimised at every keystroke, and there the maps of the standard library, made to be optimised and
+//! hashing with care for hostile keys, take a third of its time.
+
+use std::hash::{Hash, Hasher};
+
+/// Distinct values with their positions, in the order of insertion.
+#[derive(Clone, Debug)]
+pub struct Interner<K> {
+    values: Vec<K>,
+    hashes: Vec<u64>,
+    /// 1 + the position of a value, or 0; a power of two of them, at most half of them taken.
+    slots: Vec<u32>,
+}
+
+impl<K> Default for Interner<K> {
+    fn default() -> Interner<K> {
+        Interner { values: Vec::new(), hashes: Vec::new(), slots: Vec::new() }
+    }
+}
+
+impl<K: Hash + Eq> Interner<K> {
+    /// The position of a value, where it is known.
+    pub fn position(&self, value: &K) -> Option<usize> {
+        self.find(hash_of(value), value)
+    }
+
+    /// The position of a value, and whether it is new.
+    pub fn intern(&mut self, value: K) -> (usize, bool) {
+        let hash = hash_of(&value);
+        if let Some(known) = self.find(hash, &value) {
+            return (known, false);
+        }
+        if 2 * (self.values.len() + 1) > self.slots.len() {
+            self.grow();
+        }
+        self.values.push(value);
+        self.hashes.push(hash);
+        self.take_slot(hash, self.values.len() as u32);
+        (self.values.len() - 1, true)
+    }
+
+    fn find(&self, hash: u64, value: &K) -> Option<usize> {
+        if self.slots.is_empty() {
+            return None;
+        }
+        let mask = self.slots.len() - 1;
+        let mut slot = hash as usize & mask;
+        while self.slots[slot] != 0 {
+            let position = self.slots[slot] as usize - 1;
+            if self.hashes[position] == hash && self.values[position] == *value {
+                return Some(position);
+            }
+            slot = (slot + 1) & mask;
+        }
+        None
+    }
+
+    fn take_slot(&mut self, hash: u64, entry: u32) {
+        let mask = self.slots.len() - 1;
+        let mut slot = hash as usize & mask;
+        while self.slots[slot] != 0 {
+            slot = (slot + 1) & mask;
+        }
+        self.slots[slot] = entry;
+    }
+
+    fn grow(&mut self) {
+        self.slots = vec![0; (2 * self.slots.len()).max(16)];
+        for position in 0..self.values.len() {
+            self.take_slot(self.hashes[position], position as u32 + 1);
+        }
+    }
+}
+
+impl<K> Interner<K> {
+    /// The value at a position.
+    pub fn value(&self, position: usize) -> &K {
+        &self.values[position]
+    }
+
+    /// All values, in the order of insertion.
+    pub fn values(&self) -> &[K] {
+        &self.values
+    }
+
+    /// The number of values.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+}
+
+/// A map without removal.
+#[derive(Clone, Debug)]
+pub struct Table<K, V> {
+    keys: Interner<K>,
+    values: Vec<V>,
+}
+
+impl<K, V> Default for Table<K, V> {
+    fn default() -> Table<K, V> {
+        Table { keys: Interner::default(), values: Vec::new() }
+    }
+}
+
+impl<K: Hash + Eq, V> Table<K, V> {
+    /// The value of a key.
+    pub fn get(&self, key: &K) -> Option<&V> {
+        self.keys.position(key).map(|position| &self.values[position])
+    }
+
+    /// Sets the value of a key.
+    pub fn insert(&mut self, key: K, value: V) {
+        match self.keys.intern(key) {
+            (_, true) => self.values.push(value),
+            (position, false) => self.values[position] = value,
+        }
+    }
+
+    /// The value of a key, to be changed; the default where it has none.
+    pub fn entry(&mut self, key: K) -> &mut V
+    where
+        V: Default,
+    {
+        let (position, is_new) = self.keys.intern(key);
+        if is_new {
+            self.values.push(V::default());
+        }
+        &mut self.values[position]
+    }
+
+    /// Whether no key has a value.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Whether a key has a value.
+    pub fn contains(&self, key: &K) -> bool {
+        self.keys.position(key).is_some()
+    }
+
+    /// Keys and values, in the order of insertion of the keys.
+    pub fn iter(&self) -> impl Iterator<Item = (&K, &V)> {
+        self.keys.values().iter().zip(&self.values)
+    }
+}
+
+impl<K: Hash + Eq, V> FromIterator<(K, V)> for Table<K, V> {
+    fn from_iter<I: IntoIterator<Item = (K, V)>>(entries: I) -> Table<K, V> {
+        let mut table = Table::default();
+        entries.into_iter().for_each(|(key, value)| table.insert(key, value));
+        table
+    }
+}
+
+impl<K: Hash + Eq, V> std::ops::Index<&K> for Table<K, V> {
+    type Output = V;
+    fn index(&self, key: &K) -> &V {
+        // by construction: as with every index, the caller knows that it is there
+        self.get(key).expect("a key of the table")
+    }
+}
+
+fn hash_of(value: &impl Hash) -> u64 {
+    let mut mixer = Mixer(0);
+    value.hash(&mut mixer);
+    mixer.finish()
+}
+
+/// One multiplication for each word.
+struct Mixer(u64);
+
+impl Mixer {
+    fn mix(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95);
+    }
+}
+
+impl Hasher for Mixer {
+    /// The upper bits are the better mixed ones.
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.mix(u64::from(*byte)));
+    }
+    fn write_u8(&mut self, word: u8) {
+        self.mix(u64::from(word));
+    }
+    fn write_u32(&mut self, word: u32) {
+        self.mix(u64::from(word));
+    }
+    fn write_u64(&mut self, word: u64) {
+        self.mix(word);
+    }
+    fn write_usize(&mut self, word: usize) {
+        self.mix(word as u64);
+    }
+    fn write_isize(&mut self, word: isize) {
+        self.mix(word as u64);
+    }
+    fn write_i64(&mut self, word: i64) {
+        self.mix(word as u64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Interner, Table};
+
+    #[test]
+    fn values_keep_their_positions() {
+        let mut interner = Interner::default();
+        let positions: Vec<(usize, bool)> = (0..2000_u64).map(|k| interner.intern(k * 7 % 1000)).collect();
+        assert!(positions.iter().enumerate().all(|(k, found)| *found == (k % 1000, k < 1000)));
+        assert_eq!((interner.len(), interner.value(2), interner.position(&1000)), (1000, &14, None));
+    }
+
+    #[test]
+    fn a_key_has_its_last_value() {
+        let mut table: Table<String, usize> =
+            ["b", "a", "b"].iter().zip(0..).map(|(k, v)| (k.to_string(), v)).collect();
+        *table.entry("c".into()) += 5;
+        let entries: Vec<(&str, usize)> = table.iter().map(|(key, value)| (key.as_str(), *value)).collect();
+        assert_eq!(entries, [("b", 2), ("a", 1), ("c", 5)]);
+        assert!(table.contains(&"a".into()) && !table.contains(&"d".into()) && table[&"c".into()] == 5);
+    }
+}
