@@ -162,9 +162,8 @@ macro_rules! orders {
                 let (weight, center) = (3.0, Vector3::new(0.2, -0.1, 0.6));
                 let start = (Random::new(51).attitude::<3>(), Vector3::new(1.0, -1.5, 2.0));
                 let exact = body(inertia, |r, _| -weight * center.cross(&(r.transpose() * Vector3::z())), start);
-                let error = |r: &Matrix3<f64>, pi: &Vector3<f64>| {
-                    (flat::<12>(&[r.as_slice(), pi.as_slice()]) - exact).amax()
-                };
+                let error =
+                    |r: &Matrix3<f64>, pi: &Vector3<f64>| (flat::<12>(&[r.as_slice(), pi.as_slice()]) - exact).amax();
                 assert_order(&Top { inertia, weight, center }, start, &(), &counts($order), error);
             }
 
@@ -176,9 +175,8 @@ macro_rules! orders {
                     flat(&[n.cross(&q).as_slice(), (-q.cross(&Vector3::z()) * gravity).as_slice()])
                 };
                 let exact = motion(velocity, flat(&[q.as_slice(), n.as_slice()]), DURATION, 64_000);
-                let error = |q: &Vector3<f64>, mu: &Vector3<f64>| {
-                    (flat::<6>(&[q.as_slice(), mu.as_slice()]) - exact).amax()
-                };
+                let error =
+                    |q: &Vector3<f64>, mu: &Vector3<f64>| (flat::<6>(&[q.as_slice(), mu.as_slice()]) - exact).amax();
                 assert_order(&Pendulum { gravity }, (q, n), &(), &counts($order), error);
             }
 
@@ -205,9 +203,8 @@ macro_rules! orders {
                     flat(&[p.as_slice(), (-x * (stiffness * x.norm_squared())).as_slice()])
                 };
                 let exact = motion(velocity, flat(&[x.as_slice(), p.as_slice()]), DURATION, 64_000);
-                let error = |x: &Vector2<f64>, p: &Vector2<f64>| {
-                    (flat::<4>(&[x.as_slice(), p.as_slice()]) - exact).amax()
-                };
+                let error =
+                    |x: &Vector2<f64>, p: &Vector2<f64>| (flat::<4>(&[x.as_slice(), p.as_slice()]) - exact).amax();
                 assert_order(&Lopsided { stiffness }, (x, p), &(), &counts($order), error);
             }
 
@@ -217,9 +214,8 @@ macro_rules! orders {
                 let torque = Vector3::new(0.5, -0.3, 0.8);
                 let start = (Random::new(52).attitude::<3>(), Vector3::new(1.0, -1.5, 2.0));
                 let exact = body(inertia, |_, omega| torque - omega * damping, start);
-                let error = |r: &Matrix3<f64>, pi: &Vector3<f64>| {
-                    (flat::<12>(&[r.as_slice(), pi.as_slice()]) - exact).amax()
-                };
+                let error =
+                    |r: &Matrix3<f64>, pi: &Vector3<f64>| (flat::<12>(&[r.as_slice(), pi.as_slice()]) - exact).amax();
                 assert_order(&Damped { inertia, damping }, start, &torque, &counts($order), error);
             }
 

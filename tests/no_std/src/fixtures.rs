@@ -47,7 +47,7 @@ modules! {
     annotated_body centred_body damped_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top regulator
-    relativistic_particle rigid_body4 sided_pair spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob steered_body two_bodies two_pendulums
+    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob steered_body two_bodies two_pendulums
     underwater_vehicle unicycle watched_top weighted_sl2
 }
 
@@ -80,6 +80,7 @@ steppers! {
     step_relativistic_particle: relativistic_particle::RelativisticParticle;
     step_rigid_body4: rigid_body4::RigidBody4;
     step_sided_pair: sided_pair::SidedPair;
+    step_sixth_order_top: sixth_order_top::SixthOrderTop;
     step_spatial_body: spatial_body::SpatialBody;
     step_sphere_geodesic: sphere_geodesic::SphereGeodesic;
     step_spherical_pendulum: spherical_pendulum::SphericalPendulum;

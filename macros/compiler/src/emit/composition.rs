@@ -1,6 +1,6 @@
 //! Steps of higher order: those of second order, composed.
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
@@ -35,14 +35,16 @@ impl Emitter<'_, '_> {
     }
 
     /// The constants of a step of the whole size.
-    pub(super) fn whole_of(&self, constants: &str) -> TokenStream {
-        let constants = Ident::new(constants, Span::call_site());
-        if self.model.order.stages().is_some() { quote!(#constants.whole) } else { quote!(#constants) }
+    pub(super) fn whole(&self) -> TokenStream {
+        if self.model.order.stages().is_some() { quote!(constants.whole) } else { quote!(constants) }
     }
 
-    /// The constants of the first step that is made.
-    pub(super) fn first_of_composed(&self) -> TokenStream {
-        if self.model.order.stages().is_some() { quote!(&constants.stages[0]) } else { quote!(constants) }
+    /// The same as a field of `Step`, and those of the first step that is made.
+    pub(super) fn whole_and_first(&self) -> [TokenStream; 2] {
+        match self.model.order.stages() {
+            Some(_) => [quote!(constants: &constants.whole), quote!(constants: &constants.stages[0])],
+            None => [quote!(constants), quote!(constants)],
+        }
     }
 
     /// A step of the discrete Euler–Poincaré representation.

@@ -205,7 +205,7 @@ impl Emitter<'_, '_> {
                 quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
             }
             false => {
-                let whole = self.whole_of("constants");
+                let whole = self.whole();
                 quote!(#private::kinetic_energy(&#whole.inertia_inverse, #mu))
             }
         };
@@ -257,13 +257,11 @@ impl Emitter<'_, '_> {
         let time = self.time_argument();
         let (taken, taken_symmetric) = (self.step_taken(), self.symmetric_step_taken());
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
-        let first = self.first_of_composed();
+        let [whole, first] = self.whole_and_first();
         let impulse = match self.shares_impulse() {
-            true => quote!(#step::#kick(&#step { system: self, constants: #first }, #time q)),
+            true => quote!(#step::#kick(&#step { system: self, #first }, #time q)),
             false => quote!(()),
         };
-        let whole = self.whole_of("constants");
-        let whole = if self.model.order.stages().is_some() { quote!(constants: &#whole) } else { quote!(constants) };
         quote! {
             /// The group element that is connected to the identity and has this momentum.
             fn inverse_legendre(
