@@ -36,6 +36,11 @@ impl<T: Scalar> Progress<T> {
         self.size * self.size <= T::EPSILON.sqrt()
     }
 
+    /// Whether the correction is so small beside the path that an extremal near it was to be expected.
+    fn is_small(&self) -> bool {
+        self.size <= T::from_ratio(1, 8)
+    }
+
     /// Whether the next correction is half of this one at most. Written so that NaN is none.
     fn is_halved_by(&self, size: T) -> bool {
         size <= T::from_ratio(1, 2) * self.size
@@ -51,10 +56,11 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
-    /// taken back and the gap is closed. Near an extremal, or where one of any index will do, they go on from there with a steadied Hessian:
-    /// where extremals are a family, as between opposite points of a sphere, it is singular along the family, and how far a step goes there is
-    /// left to round-off. Else, or where that fails too, the action is made smaller, with its Hessian made definite, steps halved (Armijo's
-    /// rule) and, where that happens often, the Hessian damped.
+    /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
+    /// as between opposite points of a sphere, it is singular along the family, and how far a step goes there is left to round-off. Else, or
+    /// where that fails too, the action is made smaller, with its Hessian made definite, steps halved (Armijo's rule) and, where that happens
+    /// often, the Hessian damped.
+    ///
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
     ///
     /// # Errors
@@ -112,11 +118,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
                     return Ok(Solved { summary, end, sweeps });
                 }
             } else {
+                let is_near_any = any_index && before.as_ref().is_some_and(Progress::is_small);
                 if before.is_some() {
                     end = self.take_back(path);
                 }
                 end = self.close(path, end, S::Scalar::zero());
-                (before, curvature) = (None, curvature.after_failure(any_index || is_astray));
+                (before, curvature) = (None, curvature.after_failure(is_near_any || is_astray));
                 continue;
             }
             before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
