@@ -30,12 +30,37 @@ struct Progress<T> {
     decrement: T,
 }
 
+impl<T: Scalar> Progress<T> {
+    /// Whether the correction takes so little from the action, √ε of it, that the action tells no more how good it was.
+    fn is_near(&self) -> bool {
+        self.size * self.size <= T::EPSILON.sqrt()
+    }
+
+    /// Whether the correction is so small beside the path that an extremal near it was to be expected.
+    fn is_small(&self) -> bool {
+        self.size <= T::from_ratio(1, 8)
+    }
+
+    /// Whether the next correction is half of this one at most. Written so that NaN is none.
+    fn is_halved_by(&self, size: T) -> bool {
+        size <= T::from_ratio(1, 2) * self.size
+    }
+
+    /// Whether the correction was small and the next one is not smaller: it has gone where the action does not bend, or is round-off.
+    fn is_astray(&self, size: T) -> bool {
+        self.is_near() && !self.is_halved_by(size)
+    }
+}
+
 impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
     /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
-    /// taken back and the action is made smaller from there, with its Hessian made definite, steps halved (Armijo's rule)
-    /// and, where that happens often, the Hessian damped.
+    /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
+    /// as between opposite points of a sphere, it is singular along the family, and how far a step goes there is left to round-off. Else, or
+    /// where that fails too, the action is made smaller, with its Hessian made definite, steps halved (Armijo's rule) and, where that happens
+    /// often, the Hessian damped.
+    ///
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
     ///
     /// # Errors
@@ -55,19 +80,23 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
             let gap = self.end(&end, path.len());
             let summary = self.eliminate(path, &end, &gap, curvature);
             size = summary.size();
-            if !summary.action.is_finite() && (sweeps == 1 || curvature != Curvature::Kept) {
+            if !summary.action.is_finite() && (sweeps == 1 || curvature.is_mirrored()) {
                 return Err(Error::NotFinite { name: "the action of the path" });
             }
             let damped = matches!(curvature, Curvature::Mirrored { damping } if damping > S::Scalar::zero());
-            if !damped && has_converged(&summary, before.as_ref(), gap.is_closed()) {
+            if !damped && has_converged(&summary, before.as_ref(), gap.is_closed() || gap.is_orthogonal(), curvature) {
                 return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
             }
             let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
-            if curvature != Curvature::Kept && at_saddle {
+            if curvature.is_mirrored() && at_saddle {
                 // By symmetry no gradient leads away from here, and the action has no digits left to go by.
                 (curvature, any_index, before) = (Curvature::Kept, true, None);
                 continue;
-            } else if let Curvature::Mirrored { damping } = &mut curvature {
+            }
+            let is_astray = before.as_ref().is_some_and(|before| before.is_astray(size));
+            if let Curvature::Mirrored { damping } = &mut curvature
+                && !is_astray
+            {
                 match self.descend(path, &summary) {
                     Some((q, fraction)) => {
                         end = q;
@@ -76,9 +105,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
                     None if *damping > S::Scalar::from_f64(DAMPING_LIMIT) => {
                         return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
                     }
-                    None => *damping = adapted(*damping, S::Scalar::zero()),
+                    None => {
+                        (*damping, before) = (adapted(*damping, S::Scalar::zero()), None);
+                        continue;
+                    }
                 }
-            } else if self.is_progress(&summary, before.as_ref(), any_index) {
+            } else if self.is_progress(&summary, before.as_ref(), any_index, curvature) {
                 end = self.correct(path, S::Scalar::one());
                 if is_last(&summary, before.as_ref())
                     && let Some(summary) = self.found(path, &end, &summary)
@@ -86,11 +118,12 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
                     return Ok(Solved { summary, end, sweeps });
                 }
             } else {
+                let is_near_any = any_index && before.as_ref().is_some_and(Progress::is_small);
                 if before.is_some() {
                     end = self.take_back(path);
                 }
                 end = self.close(path, end, S::Scalar::zero());
-                (before, curvature) = (None, Curvature::Mirrored { damping: S::Scalar::zero() });
+                (before, curvature) = (None, curvature.after_failure(is_near_any || is_astray));
                 continue;
             }
             before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
@@ -120,16 +153,19 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         summary: &Summary<S::Scalar, M>,
         before: Option<&Progress<S::Scalar>>,
         any_index: bool,
+        curvature: Curvature<S::Scalar>,
     ) -> bool {
         if summary.negative > 0 && !any_index {
             return false;
         }
         let size = summary.size();
         match before {
+            // One that is larger than the path leads to another extremal than that near the guess.
+            None if any_index && curvature == Curvature::Kept => size <= S::Scalar::one(),
             None => size.is_finite(),
             Some(before) => {
-                size <= S::Scalar::from_ratio(1, 2) * before.size
-                    || (summary.negative == 0 && self.is_lower(summary.action, before, S::Scalar::one()))
+                let is_lower = || summary.negative == 0 && self.is_lower(summary.action, before, S::Scalar::one());
+                before.is_halved_by(size) || (!before.is_near() && is_lower())
             }
         }
     }
@@ -151,7 +187,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
         let size = summary.size();
         let before = Progress { size, action: summary.action, decrement: summary.decrement };
         let mut fraction = S::Scalar::one();
-        if size * size <= S::Scalar::EPSILON.sqrt() && summary.negative == 0 {
+        if before.is_near() && summary.negative == 0 {
             return Some((self.correct(path, fraction), fraction));
         }
         for _ in 0..HALVINGS {
@@ -176,25 +212,27 @@ fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
     }
 }
 
-/// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off or it shrinks no more.
+/// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
 ///
-/// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray.
+/// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of
+/// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
 #[inline]
 fn has_converged<T: Scalar, const M: usize>(
     summary: &Summary<T, M>,
     before: Option<&Progress<T>>,
     closed: bool,
+    curvature: Curvature<T>,
 ) -> bool {
-    let size = summary.size();
+    let (size, seen) = (summary.size(), T::EPSILON.sqrt());
+    let is_stationary = |units| closed && summary.is_stationary(T::from_f64(units));
     if size <= T::from_f64(4.0) * T::EPSILON * summary.edges.sqrt() {
         return true;
     }
-    let seen = T::EPSILON.sqrt();
+    let last = before.filter(|before| curvature == Curvature::Steady && before.size <= seen);
     size <= seen
-        && match before {
-            Some(before) if before.size <= seen && closed && summary.is_stationary(T::from_f64(1024.0)) => true,
-            Some(before) if size > before.size * T::from_ratio(1, 8) => true,
-            _ => closed && summary.is_stationary(T::from_f64(16.0)),
+        && match last {
+            Some(before) => !before.is_halved_by(size) || is_stationary(1024.0),
+            None => is_stationary(16.0),
         }
 }
 

@@ -33,9 +33,36 @@ pub(super) struct Solution<T, const M: usize> {
 pub(super) enum Curvature<T> {
     /// As it is: the critical point of the quadratic model.
     Kept,
+    /// The same with √ε times the slowest stiffness added: motions for which the action does not bend are not left to round-off.
+    Steady,
     /// With the eigenvalues of pivots of the wrong sign turned over, so that the action goes down, and with this multiple of its
     /// own diagonal added to each diagonal block.
     Mirrored { damping: T },
+}
+
+impl<T: Scalar> Curvature<T> {
+    pub fn is_mirrored(self) -> bool {
+        matches!(self, Self::Mirrored { .. })
+    }
+
+    /// What is tried where that failed; `near` where the extremal that is looked for is that near the path.
+    pub fn after_failure(self, near: bool) -> Self {
+        match self {
+            Self::Kept if near => Self::Steady,
+            Self::Mirrored { .. } => Self::Steady,
+            _ => Self::Mirrored { damping: T::zero() },
+        }
+    }
+
+    /// The multiple of the slowest stiffness that is added.
+    #[inline]
+    pub fn damping(self) -> Option<T> {
+        match self {
+            Self::Kept => None,
+            Self::Steady => Some(T::EPSILON.sqrt()),
+            Self::Mirrored { damping } => Some(damping),
+        }
+    }
 }
 
 /// D⁻¹C and D⁻¹g of a symmetric D, both by rows, of which only the lower triangle is read; `sign` is that of a minimum.
@@ -234,8 +261,10 @@ fn indefinite<T: Scalar, const M: usize>(
     let spectrum = Spectrum::of(&d);
     let is_wrong = |value: T| value * sign < T::zero();
     let inverse = spectrum.map(|value| match curvature {
-        Curvature::Kept if is_wrong(value) => -sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
-        Curvature::Kept => sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
+        Curvature::Kept | Curvature::Steady if is_wrong(value) => {
+            -sign / larger(value.abs(), T::EPSILON * spectrum.largest())
+        }
+        Curvature::Kept | Curvature::Steady => sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
         Curvature::Mirrored { .. } if value * sign > T::zero() => value.recip(),
         Curvature::Mirrored { .. } => sign / larger(value.abs(), T::from_f64(MIRRORED) * spectrum.largest()),
     });

@@ -128,7 +128,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
             row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
         }
-        if let Curvature::Mirrored { damping } = curvature {
+        if let Some(damping) = curvature.damping() {
             damp(&mut pivot, edge, self.edges, damping * sign);
         }
         let gradient = pending.gradient + edge.after;
@@ -168,7 +168,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
         let pivot = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
         let coupling = -kernel * edge.before_by_end.transpose();
         let mut pivot = lower_half(&pivot);
-        if let Curvature::Mirrored { damping } = curvature {
+        if let Some(damping) = curvature.damping() {
             damp(&mut pivot, edge, self.edges, damping * sign);
         }
         let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
@@ -196,10 +196,9 @@ impl<T: Scalar, const M: usize> Pending<T, M> {
 /// the diagonal of a pivot: a finer path of the same motion is damped as much.
 #[cold]
 fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edges: T, damping: T) {
-    let mean = edge.after_by_end.trace().abs() / T::from_f64(M as f64);
-    let slowest = T::from_f64(10.0) / (edges * edges) * mean;
+    let slowest = T::from_f64(10.0) / (edges * edges);
     for (i, row) in pivot.iter_mut().enumerate() {
-        row[i] += damping * slowest;
+        row[i] += damping * slowest * edge.after_by_end[(i, i)].abs();
     }
 }
 
