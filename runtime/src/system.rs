@@ -39,7 +39,8 @@ pub trait Clebsch {
 
     /// The name of the struct.
     const NAME: &'static str;
-    /// Order of accuracy of `step` and `step_symmetric`.
+    /// Order of accuracy of `step` and `step_symmetric`: above 2 they are composed of steps of second order, of which
+    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms.
     const ORDER: u32;
     /// The derivation in words and formulas, with operation counts and what was left out and why.
     const DERIVATION: &'static str;
