@@ -54,11 +54,13 @@ impl<S: Clebsch> Stepper<S> {
     /// let mut path = [boundary.rest(&q0); 50];
     /// let extremal = boundary.solve(&q0, &target, Guess::Geodesic, &mut path)?;
     /// ```
+    /// Its paths are of steps of order 1 or 2; a composed step runs back in some of its parts, and does not compile here.
     #[inline]
     pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M>
     where
         S: Variational<M>,
     {
+        const { assert!(S::ORDER <= 2, "paths of least action are of steps of order 2: write `order = 2`") };
         Boundary { stepper: self, time: S::Scalar::zero() }
     }
 }

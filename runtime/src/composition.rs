@@ -46,6 +46,7 @@ pub struct Composed<T, C, const K: usize> {
     pub stages: [C; K],
     /// γ_1 h, …, γ_K h
     sizes: [T; K],
+    h: T,
 }
 
 impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
@@ -60,7 +61,7 @@ impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
         for (stage, size) in stages.iter_mut().zip(sizes) {
             *stage = make(size)?;
         }
-        Ok(Self { whole, stages, sizes })
+        Ok(Self { whole, stages, sizes, h })
     }
 
     /// The steps in the order in which they are made: constants, size and the size of the next, the first one again after the last.
@@ -71,6 +72,60 @@ impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
         let back = stages.clone().rev().skip(1);
         let next = (1..2 * K).map(move |i| self.sizes[if i == 2 * K - 1 { 0 } else { at(i) }]);
         stages.chain(back).zip(next).map(|((constants, size), next)| (constants, size, next))
+    }
+}
+
+/// One of the steps of a composed step.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a, T, C> {
+    /// What no step of its size changes.
+    pub constants: &'a C,
+    /// c_i h, the time from the start of the composed step to its own.
+    pub start: T,
+    /// γ_i h
+    size: T,
+    /// h
+    whole: T,
+}
+
+impl<T: Scalar, C, const K: usize> Composed<T, C, K> {
+    /// The step number `index` < 2K − 1.
+    #[inline]
+    pub fn stage(&self, index: usize) -> Stage<'_, T, C> {
+        let is_forward = index < K;
+        let mirrored = if is_forward { index } else { (2 * K - 2).saturating_sub(index) };
+        // one pass, without an index that could be out of range
+        let mut found = Stage { constants: &self.whole, start: T::zero(), size: self.h, whole: self.h };
+        let mut start = T::zero();
+        for (i, (constants, &size)) in self.stages.iter().zip(&self.sizes).enumerate() {
+            if i == mirrored {
+                let start = if is_forward { start } else { self.h - start - size };
+                found = Stage { constants, start, size, whole: self.h };
+            }
+            start += size;
+        }
+        found
+    }
+}
+
+impl<T: Scalar, C> Stage<'_, T, C> {
+    /// The slopes of its momenta along h and t, given those along its own size and time: γ_i ∂/∂h_i + c_i ∂/∂t_i for the column of h.
+    #[inline]
+    pub fn slopes<const M: usize, const P: usize>(
+        &self,
+        slopes: SMatrix<T, M, P>,
+        size: Option<usize>,
+        time: Option<usize>,
+    ) -> SMatrix<T, M, P> {
+        let (part, begun) = (self.size / self.whole, self.start / self.whole);
+        let along = |i: usize, column: Option<usize>| match column {
+            Some(j) if j < P => slopes[(i, j)],
+            _ => T::zero(),
+        };
+        SMatrix::from_fn(|i, j| match size {
+            Some(column) if column == j => along(i, size) * part + along(i, time) * begun,
+            _ => slopes[(i, j)],
+        })
     }
 }
 
@@ -146,6 +201,18 @@ mod tests {
         assert_eq!(steps[2 * K - 2].2, sizes[0]);
         assert!(steps.iter().all(|(constants, size, _)| **constants == *size));
         steps.into_iter().map(|(_, size, _)| size).collect()
+    }
+
+    #[test]
+    fn stages_start_where_the_one_before_ends() {
+        let composed = Composed::new(0.3, &SIZES_OF_17, |h: f64| Ok(h)).expect("constants");
+        let mut time = 0.0_f64;
+        for (number, (_, size, _)) in composed.steps().enumerate() {
+            let stage = composed.stage(number);
+            assert!((stage.start - time).abs() < 1e-15 && *stage.constants == size && stage.size == size);
+            time += size;
+        }
+        assert!((time - 0.3).abs() < 1e-15);
     }
 
     fn sum_of_powers(sizes: &[f64], power: i32) -> f64 {

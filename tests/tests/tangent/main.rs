@@ -379,6 +379,38 @@ fn forces_and_inputs() {
     }
 }
 
+/// Steps that are composed of others, at times of their own: with half kicks between them, and of two edges each with forces.
+#[test]
+fn composed_steps() {
+    let random = &mut Random::new(91);
+    for _ in 0..5 {
+        check::<systems::Sixth<f64>, systems::Sixth<Dual<K>>, 3, 9>(&Case {
+            plain: systems::sixth,
+            dual: systems::sixth,
+            numbers: numbers::<3>(random, &[1.7]),
+            q: random.attitude(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: Some(of_body),
+            input: Vec::new(),
+            plain_input: |_| (),
+            dual_input: |_| (),
+        });
+        check::<systems::Fourth<f64>, systems::Fourth<Dual<K>>, 3, 6>(&Case {
+            plain: systems::fourth,
+            dual: systems::fourth,
+            numbers: vec![1.6, 0.3],
+            q: random.vector(),
+            lift: constant,
+            mu: random.vector(),
+            bracket: None,
+            input: vec![0.4, -0.7],
+            plain_input: |u| Vector2::new(u[0], u[1]),
+            dual_input: |u| Vector2::new(u[0], u[1]),
+        });
+    }
+}
+
 /// The tangent map of many steps is the product of theirs, and its columns are central differences of the last momentum.
 #[test]
 fn long_runs_against_differences() {

@@ -143,6 +143,35 @@ pub struct Steered<T: Scalar> {
     pub drag: T,
 }
 
+/// Nine steps in one, each at its own time.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    potential  = |t, R| R[(0, 1)] * (self.rate * t).cos() + R[(2, 2)].powi(2),
+    order      = 6,
+    emit       = [tangent],
+)]
+pub struct Sixth<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<T>,
+    pub rate: T,
+}
+
+/// Five steps of two edges in one.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<3>, x: Vector3| x + a,
+    cost   = |t, h, x, a| a.norm_squared() / (2 * h) - h * self.stiffness * (x.norm_squared() + t * x.x).powi(2) / 4,
+    force  = |v, u: Vector2| vector![u.x, u.y, 0] - self.drag * v,
+    order  = 4,
+    emit   = [tangent],
+)]
+pub struct Fourth<T: Scalar> {
+    pub stiffness: T,
+    pub drag: T,
+}
+
 /// The symmetric matrix with this upper triangle, row by row.
 fn symmetric<T: Scalar, const N: usize>(upper: &[T]) -> SMatrix<T, N, N> {
     // rows before row i hold N, N − 1, …, N − i + 1 numbers
@@ -198,4 +227,14 @@ pub fn nil<T: Scalar>(numbers: &[T]) -> Nil<T> {
 /// As [`top`].
 pub fn steered<T: Scalar>(numbers: &[T]) -> Steered<T> {
     Steered { inertia: symmetric(numbers), drag: numbers[6] }
+}
+
+/// As [`top`].
+pub fn sixth<T: Scalar>(numbers: &[T]) -> Sixth<T> {
+    Sixth { inertia: symmetric(numbers), rate: numbers[6] }
+}
+
+/// As [`top`].
+pub fn fourth<T: Scalar>(numbers: &[T]) -> Fourth<T> {
+    Fourth { stiffness: numbers[0], drag: numbers[1] }
 }

@@ -77,4 +77,32 @@ impl Emitter<'_, '_> {
             })
         }
     }
+
+    /// The step to which an edge of a composed step belongs: its constants, its time and the number of the edge in it.
+    pub(super) fn stage_of_edge(&self) -> TokenStream {
+        if self.model.order.stages().is_none() {
+            return TokenStream::new();
+        }
+        let parts = Literal::usize_unsuffixed(self.program.formulas.parts);
+        quote! {
+            let stage = constants.stage(edge / #parts);
+            let (constants, t, edge) = (stage.constants, t + stage.start, edge % #parts);
+        }
+    }
+
+    /// The slopes of an edge, those along the size and the time of its own step made of those along h and t of the whole one.
+    pub(super) fn slopes_of_step(&self, slopes: TokenStream) -> TokenStream {
+        if self.model.order.stages().is_none() {
+            return slopes;
+        }
+        let position = |name: &str| self.program.formulas.quantities.iter().position(|quantity| quantity.name == name);
+        let [size, time] = ["h", "t"].map(|name| match position(name).map(Literal::usize_unsuffixed) {
+            Some(column) => quote!(::core::option::Option::Some(#column)),
+            None => quote!(::core::option::Option::None),
+        });
+        quote! {
+            let (before, after) = { #slopes };
+            (stage.slopes(before, #size, #time), stage.slopes(after, #size, #time))
+        }
+    }
 }

@@ -15,7 +15,7 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let ident = &self.model.item.ident;
         let dimension = Literal::usize_unsuffixed(self.dimension());
-        let edges = Literal::usize_unsuffixed(variations.edges.len());
+        let edges = Literal::usize_unsuffixed(variations.edges.len() * self.model.order.stages().unwrap_or(1));
         let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
         let scalar = &self.paths.scalar;
         let end = self.endpoint_expanded().map(|body| {
@@ -141,6 +141,7 @@ impl Emitter<'_, '_> {
     fn drift(&self) -> TokenStream {
         let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
         let (time, input) = (self.time_argument(), self.input_argument());
+        let stage = self.stage_of_edge();
         let call = self.on_edge(&|suffix| {
             let drift = format_ident!("drift{suffix}");
             quote!(step.#drift(#time q, mu, #input))
@@ -157,6 +158,7 @@ impl Emitter<'_, '_> {
                 mu: &Self::Momentum,
                 u: &Self::Input,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
+                #stage
                 let step = #step { system: self, constants };
                 #call
             }
@@ -189,6 +191,7 @@ impl Emitter<'_, '_> {
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let (method, answer) = (format_ident!("{name}"), format_ident!("{answer}"));
         let documentation = format!(" {documentation}");
+        let stage = self.stage_of_edge();
         let call = self.on_edge(&|suffix| {
             let method = format_ident!("{name}{suffix}");
             quote!(step.#method(#time q, d, next, #input))
@@ -206,6 +209,7 @@ impl Emitter<'_, '_> {
                 next: &Self::Configuration,
                 u: &Self::Input,
             ) -> #krate::#answer<#scalar, #dimension> {
+                #stage
                 let step = #step { system: self, constants };
                 #call
             }
@@ -225,10 +229,12 @@ impl Emitter<'_, '_> {
         let names = self.program.formulas.quantities.iter().map(|quantity| quantity.name.as_str());
         let count = Literal::usize_unsuffixed(self.program.formulas.quantities.len());
         let (slopes, time, input) = (self.slopes_type(), self.time_argument(), self.input_argument());
+        let stage = self.stage_of_edge();
         let call = self.on_edge(&|suffix| {
             let edge = format_ident!("edge_slopes{suffix}");
             quote!(step.#edge(#time q, d, next, #input))
         });
+        let slopes_of_step = self.slopes_of_step(call);
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Sensitive<#dimension, #count> for #ident<#arguments> #predicates {
@@ -246,8 +252,9 @@ impl Emitter<'_, '_> {
                     next: &Self::Configuration,
                     u: &Self::Input,
                 ) -> (#slopes, #slopes) {
-                    let step = #step { system: self, constants };
-                    #call
+                    #stage
+                let step = #step { system: self, constants };
+                    #slopes_of_step
                 }
             }
         }

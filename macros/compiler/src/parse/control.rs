@@ -88,18 +88,18 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics
     }
 }
 
-/// Derivatives are those of one step of second order, not of a composition.
+/// What is looked for by its action is a path of steps of second order: some of those of a composition run back in time.
 pub(super) fn check_order(keys: &Keys, diagnostics: &mut Diagnostics) {
     let Some(order) = keys.dials.order.as_ref().filter(|order| order.value.stages().is_some()) else { return };
-    let emit = keys.dials.emit;
-    let asked = [
-        (emit.tangent, "`emit = [tangent]`"),
-        (emit.boundary, "`emit = [boundary]`"),
-        (keys.was_given("effort"), "`effort`"),
-    ];
+    let asked = [(keys.dials.emit.boundary, "emit = [boundary]"), (keys.was_given("effort"), "effort")];
     for (_, word) in asked.into_iter().filter(|(asked, _)| *asked) {
-        let error = Diagnostic::later(order.span, format!("`order = {}` with {word}", order.value));
-        diagnostics.push(error.help("write `order = 2`"));
+        let error =
+            Diagnostic::new(order.span, format!("`{word}` is for steps of order 2, not of order {}", order.value));
+        diagnostics.push(
+            error
+                .help("write `order = 2`")
+                .note("a composed step runs back in some of its parts, where the least action is the greatest"),
+        );
     }
 }
 
