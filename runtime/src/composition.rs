@@ -64,14 +64,11 @@ impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
         Ok(Self { whole, stages, sizes, h })
     }
 
-    /// The steps in the order in which they are made: constants, size and the size of the next, the first one again after the last.
+    /// The constants and the size of the step number `number`; `None` after the last.
     #[inline]
-    fn steps(&self) -> impl Iterator<Item = (&C, T, T)> {
-        let at = |i: usize| if i < K { i } else { (2 * K - 1).saturating_sub(i + 1) };
-        let stages = self.stages.iter().zip(self.sizes);
-        let back = stages.clone().rev().skip(1);
-        let next = (1..2 * K).map(move |i| self.sizes[if i == 2 * K - 1 { 0 } else { at(i) }]);
-        stages.chain(back).zip(next).map(|((constants, size), next)| (constants, size, next))
+    fn at(&self, number: usize) -> Option<(&C, T)> {
+        let index = if number < K { number } else { (2 * K - 2).checked_sub(number)? };
+        Some((self.stages.get(index)?, *self.sizes.get(index)?))
     }
 }
 
@@ -159,8 +156,12 @@ pub fn compose<T: Scalar, C: Clone, Q, N, I: Impulse<T>, const K: usize>(
     step: impl Fn(&C, T, (Q, N, I)) -> Result<(Q, N, I), Error>,
 ) -> Result<(Q, N, I), Error> {
     let (mut state, mut t) = (start, t);
-    for (constants, size, next) in composed.steps() {
+    let mut number = 0;
+    while let Some((constants, size)) = composed.at(number) {
         let (q, n, impulse) = step(constants, t, state)?;
+        number += 1;
+        // the last step is of the size of the first of the next composed one
+        let next = composed.at(number).map_or(size, |(_, next)| next);
         state = (q, n, impulse.scaled(next / size));
         t += size;
     }
@@ -179,8 +180,10 @@ pub fn compose_symmetric<T: Scalar, C: Clone, Q, const K: usize>(
     step: impl Fn(&C, T, (Q, Q)) -> Result<(Q, Q), Error>,
 ) -> Result<(Q, Q), Error> {
     let (mut state, mut t) = (start, t);
-    for (constants, size, _) in composed.steps() {
+    let mut number = 0;
+    while let Some((constants, size)) = composed.at(number) {
         state = step(constants, t, state)?;
+        number += 1;
         t += size;
     }
     Ok(state)
@@ -193,24 +196,21 @@ mod tests {
 
     fn all<const K: usize>(sizes: &[f64; K]) -> Vec<f64> {
         let composed = Composed::new(1.0, sizes, |h: f64| Ok(h)).expect("constants");
-        let steps: Vec<_> = composed.steps().collect();
-        for pair in steps.windows(2) {
-            assert_eq!(pair[0].2, pair[1].1, "each knows the size of the next");
-        }
+        let steps: Vec<_> = (0..).map_while(|number| composed.at(number)).collect();
         assert_eq!(steps.len(), 2 * K - 1);
-        assert_eq!(steps[2 * K - 2].2, sizes[0]);
-        assert!(steps.iter().all(|(constants, size, _)| **constants == *size));
-        steps.into_iter().map(|(_, size, _)| size).collect()
+        assert!(steps.iter().all(|(constants, size)| **constants == *size));
+        steps.into_iter().map(|(_, size)| size).collect()
     }
 
     #[test]
     fn stages_start_where_the_one_before_ends() {
         let composed = Composed::new(0.3, &SIZES_OF_17, |h: f64| Ok(h)).expect("constants");
         let mut time = 0.0_f64;
-        for (number, (_, size, _)) in composed.steps().enumerate() {
+        for number in 0..17 {
             let stage = composed.stage(number);
-            assert!((stage.start - time).abs() < 1e-15 && *stage.constants == size && stage.size == size);
-            time += size;
+            assert!((stage.start - time).abs() < 1e-15 && *stage.constants == stage.size);
+            assert_eq!(composed.at(number).map(|(_, size)| size), Some(stage.size));
+            time += stage.size;
         }
         assert!((time - 0.3).abs() < 1e-15);
     }

@@ -20,7 +20,7 @@ pub(super) const ROUNDS: u32 = 20;
 /// Corrections of this size are near enough a solution for the exact curvature and a fixed weight of the target.
 const NEAR: (i64, i64) = (1, 100);
 /// The way down from a saddle is deeper than so many corrections that are still to be made.
-const DEPTH: f64 = 4.0;
+const DEPTH: f64 = 16.0;
 /// Corrections of this size are near enough a critical plan to raise the price of the gap.
 const CRITICAL: (i64, i64) = (1, 20);
 
@@ -118,7 +118,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         stiffer: &SMatrix<T, D, D>,
     ) -> Use {
         let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
-        if self.settings.curvature == Curvature::Kept {
+        if !self.settings.curvature.is_mirrored() {
             let index = if self.is_priced() { summary.negative } else { index(summary.negative, self.rank, gramian) };
             let depth = summary.fall.map_or(T::zero(), |(_, _, depth)| depth);
             let is_deep = matches!(self.before, Some(before) if depth > T::from_f64(DEPTH) * before);
@@ -128,7 +128,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             if self.is_below(NEAR) && self.is_exact() && (index == 0 || summary.negative <= FLAT) {
                 return Use::Correction;
             }
-            self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+            self.settings.curvature = self.mirrored();
             self.is_probed = true;
             if index == 0 && !self.is_priced() && stiffer.iter().all(|entry| entry.is_finite()) {
                 self.settings.weight = *stiffer;
@@ -141,7 +141,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let rank = gramian.rank();
         self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
         if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
-            self.settings.curvature = Curvature::Kept;
+            self.settings.curvature = Curvature::Kept { damping: self.steadiness() };
         } else if summary.negative > FLAT && is_bent {
             self.bend_less();
             self.is_probed = false;
@@ -183,7 +183,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
     /// Nothing is known any more of the corrections before.
     fn begin_again(&mut self) {
         (self.before, self.calm, self.is_cornered, self.is_probed) = (None, 0, false, false);
-        self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+        self.settings.curvature = self.mirrored();
     }
 
     /// Goes on from below a saddle, or stays at it.
@@ -191,19 +191,19 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         self.is_cornered = last.is_none();
         if let Some(last) = last {
             self.last = last;
-            self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+            self.settings.curvature = self.mirrored();
             (self.before, self.calm, self.is_probed) = (None, 0, false);
         }
     }
 
     /// Whether a critical plan may be a saddle that can be left; the next sweep tells.
     pub fn may_be_at_saddle(&mut self, negative: usize, size: T) -> bool {
-        let may_be = negative > 0 && !self.is_cornered && self.settings.curvature != Curvature::Kept;
+        let may_be = negative > 0 && !self.is_cornered && self.settings.curvature.is_mirrored();
         if may_be {
-            self.settings.curvature = Curvature::Kept;
             self.settings.bend = T::one();
             self.damping = T::zero();
             self.before = Some(size);
+            self.settings.curvature = Curvature::Kept { damping: self.steadiness() };
         }
         may_be
     }
@@ -211,6 +211,19 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
     /// Whether the correction before was smaller than this.
     fn is_below(&self, (numerator, denominator): (i64, i64)) -> bool {
         matches!(self.before, Some(before) if before <= T::from_ratio(numerator, denominator))
+    }
+
+    /// Near a solution √ε, which keeps corrections from going far where round-off alone bends the price, as along a symmetry.
+    fn steadiness(&self) -> T {
+        match self.before {
+            Some(before) if before * before <= T::EPSILON.sqrt() => T::EPSILON.sqrt(),
+            _ => T::zero(),
+        }
+    }
+
+    /// The curvature of the next sweep, so that it goes down.
+    fn mirrored(&self) -> Curvature<T> {
+        Curvature::Mirrored { damping: larger(self.damping, self.steadiness()) }
     }
 
     fn bend_less(&mut self) {
@@ -289,7 +302,8 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
             self.settings.weight = stiffer;
         }
         self.damping = adapted(self.damping, refused);
-        self.settings.curvature = Curvature::Mirrored { damping: self.damping };
+        self.before = Some(size);
+        self.settings.curvature = self.mirrored();
         if refused <= 1 {
             let more = larger(self.settings.bend * T::from_f64(4.0), T::from_ratio(1, 16));
             self.settings.bend = if more < T::one() && size > near { more } else { T::one() };
@@ -297,7 +311,6 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
         let is_kept = self.is_priced() || self.rank == 0;
         self.is_probed &= size > near && is_kept || negative > 0 && self.settings.bend >= T::one();
         self.nearest = if distance < self.nearest { distance } else { self.nearest };
-        self.before = Some(size);
         self.stalls = if fraction < T::from_f64(1e-3) { self.stalls + 1 } else { 0 };
     }
 }

@@ -182,7 +182,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
         sweeps: u32,
     ) -> Result<Solved<S, D, U, C>, Error> {
         let end = self.end(plan, &now.last);
-        let settings = Settings { curvature: Curvature::Kept, is_last: true, ..now.settings };
+        let settings = Settings { curvature: Curvature::kept(), is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
         let closed = End { lack: SVector::from_element(S::Scalar::zero()), ..end };
         let summary = self.eliminate(plan, &now.last, &closed, &settings)?;

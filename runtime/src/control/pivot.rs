@@ -8,10 +8,22 @@ use nalgebra::{SMatrix, SVector};
 /// What is made of a Hessian that is not positive.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Curvature<T> {
-    /// As it is: the critical point of the quadratic model.
-    Kept,
+    /// As it is, but for this small multiple of its own diagonal: the critical point of the quadratic model.
+    Kept { damping: T },
     /// With negative eigenvalues turned over, so that the price goes down, and with this multiple of its own diagonal added.
     Mirrored { damping: T },
+}
+
+impl<T: Scalar> Curvature<T> {
+    /// The curvature as it is.
+    pub fn kept() -> Self {
+        Self::Kept { damping: T::zero() }
+    }
+
+    /// Whether the price goes down.
+    pub fn is_mirrored(&self) -> bool {
+        matches!(self, Self::Mirrored { .. })
+    }
 }
 
 /// The inverse of a Hessian.
@@ -48,7 +60,8 @@ impl<T: Scalar, const U: usize> Pivot<T, U> {
     #[inline]
     pub fn of(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Self {
         let mut h = *h;
-        if let Curvature::Mirrored { damping } = curvature {
+        let (Curvature::Kept { damping } | Curvature::Mirrored { damping }) = curvature;
+        if damping > T::zero() {
             for i in 0..U {
                 let entry = h[(i, i)];
                 h[(i, i)] = entry + damping * entry.abs();
@@ -122,8 +135,8 @@ fn spectral<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvatur
     let noise = T::from_f64(UNITS) * T::EPSILON * largest;
     let inverse = spectrum.map(|value| match curvature {
         // Written so that NaN stays NaN.
-        _ if value.abs() <= noise && curvature == Curvature::Kept || largest == T::zero() => T::zero(),
-        Curvature::Kept => value.recip(),
+        _ if value.abs() <= noise && !curvature.is_mirrored() || largest == T::zero() => T::zero(),
+        Curvature::Kept { .. } => value.recip(),
         Curvature::Mirrored { .. } if value > noise => value.recip(),
         Curvature::Mirrored { .. } => larger(value.abs(), T::from_f64(MIRRORED) * largest).recip(),
     });
