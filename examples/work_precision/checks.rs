@@ -29,7 +29,7 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
 
     let declared = || by_setting(points).filter(|points| points[0].is_geometric());
     let off: Vec<f64> = declared().filter_map(off_order).collect();
-    let reason = "relative, largest; three finest steps with errors of 3e-11 to 1e-2, of the energy at order 1";
+    let reason = "relative, largest; the last two halvings with errors of 6e-11 to 1e-2, of the energy at order 1";
     let measured = format!("orders of {} of {} settings are those declared", off.len(), declared().count());
     claims.at_most(&name(&measured), largest(off), SLOPE, reason);
 

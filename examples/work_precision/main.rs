@@ -26,7 +26,7 @@ use std::process::ExitCode;
 #[derive(Parser, Debug)]
 #[command(name = "work_precision")]
 struct Flags {
-    /// Finer dials, shorter steps, and tables of all points: some ten minutes
+    /// Finer dials, shorter steps, and tables of all points: some minutes
     #[arg(long)]
     full: bool,
     /// One scene alone

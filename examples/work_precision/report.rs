@@ -82,9 +82,11 @@ fn mark(front: Front) -> &'static str {
 }
 
 /// Errors between which a power of h shows: below, rounding is near; above, the next powers are.
-pub const WINDOW: [f64; 2] = [3e-11, 1e-2];
+pub const WINDOW: [f64; 2] = [6e-11, 1e-2];
+/// Ratio of the step sizes that an order is measured over: two halvings, and a rounding.
+const SPAN: f64 = 4.1;
 
-/// The measured order: between the longest and the shortest of the three finest steps whose errors are in [`WINDOW`].
+/// The measured order: between the shortest steps whose error is in [`WINDOW`] and those that are, if they can, four times as long.
 ///
 /// At order 1 it is that of the energy error. Its steps are those of order 2 seen from other momenta, by half a kick, so that over long
 /// times the phase is wrong by h² t, and h shows only in what does not grow.
@@ -93,9 +95,9 @@ pub fn slope(points: &[Point]) -> Option<f64> {
     let error = |point: &Point| if first_order { point.energy[0].max(point.energy[1]) } else { point.error };
     let [low, high] = WINDOW;
     let inside: Vec<&Point> = points.iter().filter(|point| (low..high).contains(&error(point))).collect();
-    let finest = &inside[inside.len().saturating_sub(3)..];
-    let (first, last) = (finest.first()?, finest.last()?);
-    let fixed = matches!(first.dial, Dial::Steps(_)) && finest.len() > 1;
+    let last = inside.last()?;
+    let first = inside.iter().find(|point| point.h < SPAN * last.h)?;
+    let fixed = matches!(first.dial, Dial::Steps(_)) && first.h > last.h;
     fixed.then(|| (error(first) / error(last)).ln() / (first.h / last.h).ln())
 }
 
