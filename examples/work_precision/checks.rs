@@ -4,9 +4,10 @@ use crate::exact::Exact;
 use crate::measure::{Point, by_setting};
 use crate::motion::Scene;
 use crate::report::{WINDOW, slope};
-use crate::setting::{Dial, Setting};
+use crate::setting::{Dial, SAMPLES, Setting};
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::round_off::worst_case;
+use nalgebra::Vector3;
 
 /// How far a measured order may be from the declared one, relative.
 const SLOPE: f64 = 0.05;
@@ -14,6 +15,8 @@ const SLOPE: f64 = 0.05;
 const STAGES: u64 = 17;
 /// How much larger the energy error may be in the second half: both are maxima of an oscillation with several periods.
 const GROWTH: f64 = 1.25;
+/// Rounding of elliptic functions over some twenty periods.
+const CLOSED_FORM: f64 = 1e-12;
 /// The energy is followed for so many durations,
 const LONGER: u64 = 10;
 /// in the longest steps with a smaller error than this.
@@ -26,6 +29,12 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
     let name = |what: &str| format!("{}: {what}", scene.title);
     let reason = "two resolutions of it; errors that slopes are taken from";
     claims.at_most(&name("the reference is exact enough"), exact.error, REFERENCE * WINDOW[0], reason);
+
+    if let Some(closed_form) = scene.closed_form {
+        let off = (0..=SAMPLES).map(|sample| off_closed_form(scene, exact, closed_form, sample));
+        let reason = "momenta at ten times beside Jacobi's elliptic functions, relative";
+        claims.at_most(&name("the reference is the exact motion"), largest(off), CLOSED_FORM, reason);
+    }
 
     let declared = || by_setting(points).filter(|points| points[0].is_geometric());
     let off: Vec<f64> = declared().filter_map(off_order).collect();
@@ -49,6 +58,18 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
     let grown = settings.filter_map(|setting| growth(scene, setting.as_ref(), points));
     let reason = "second half over first in ten times the duration, rounding taken off; largest of all settings";
     claims.at_most(&name("energy errors do not grow"), largest(grown), GROWTH, reason);
+}
+
+/// How far the reference's momentum is from the closed form, relative; NaN where there is none.
+fn off_closed_form<const N: usize>(
+    scene: &Scene<N>,
+    exact: &Exact<N>,
+    closed_form: impl Fn(f64) -> Option<Vector3<f64>>,
+    sample: u64,
+) -> f64 {
+    let Some(momentum) = closed_form(scene.duration * sample as f64 / SAMPLES as f64) else { return f64::NAN };
+    let found = &exact.samples[sample as usize];
+    largest((0..3).map(|i| (found[scene.split + i] - momentum[i]).abs())) / scene.momentum_size
 }
 
 /// How far the measured order of a setting is from the declared one, relative; `None` where too few errors lie in the window.

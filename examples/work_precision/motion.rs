@@ -2,7 +2,7 @@
 
 use crate::setting::Setting;
 use clebsch_examples::claims::largest;
-use nalgebra::{SVector, Vector6};
+use nalgebra::{SVector, Vector3, Vector6};
 
 /// ẏ of y.
 pub type Field<const N: usize> = Box<dyn Fn(&SVector<f64, N>) -> SVector<f64, N>>;
@@ -31,6 +31,8 @@ pub struct Scene<const N: usize> {
     pub split: usize,
     /// Size of the momentum, over which its errors are taken; configurations are of size 1.
     pub momentum_size: f64,
+    /// The momentum of the exact motion at a time, where it is known in functions.
+    pub closed_form: Option<fn(f64) -> Option<Vector3<f64>>>,
     /// Steps of the reference in each tenth of the duration; half as many tell its error.
     pub reference_steps: u64,
     /// What is compared.

@@ -95,6 +95,7 @@ pub fn scene() -> Scene<22> {
         constraint,
         split: 16,
         momentum_size: MOMENTUM.norm(),
+        closed_form: None,
         reference_steps: 40_000,
         settings,
     }

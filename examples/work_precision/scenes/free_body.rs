@@ -6,6 +6,7 @@ use super::rotation::{
 use crate::classical::Equation;
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
+use clebsch_examples::jacobi::Jacobi;
 use nalgebra::{Matrix3, Quaternion, Vector3, Vector6};
 use std::hint::black_box;
 
@@ -115,9 +116,27 @@ pub fn scene() -> Scene<12> {
         constraint: defect,
         split: 9,
         momentum_size: MOMENTUM.norm(),
+        closed_form: Some(closed_form),
         reference_steps: 80_000,
         settings,
     }
+}
+
+/// The body momentum at a time, (a cn, b sn, c dn) for a body that turns about its third axis rather than its first, L² > 2E J₂.
+///
+/// Source: Landau and Lifshitz, *Mechanics*, §37.
+fn closed_form(time: f64) -> Option<Vector3<f64>> {
+    let [j1, j2, j3] = [MOMENTS.x, MOMENTS.y, MOMENTS.z];
+    let (square, double_energy) = (MOMENTUM.norm_squared(), MOMENTUM.dot(&MOMENTUM.component_div(&MOMENTS)));
+    let (above, below) = (square - double_energy * j1, double_energy * j3 - square);
+    let [a, b, c] =
+        [j1 * below / (j3 - j1), j2 * below / (j3 - j2), j3 * above / (j3 - j1)].map(|square: f64| square.sqrt());
+    let rate = ((j3 - j2) * above / (j1 * j2 * j3)).sqrt();
+    let m = (j2 - j1) * below / ((j3 - j2) * above);
+    let functions = Jacobi::new(m, 1.0 - m)?;
+    let start = functions.argument((MOMENTUM.y / b).atan2(MOMENTUM.x / a));
+    let (phi, _) = functions.amplitude(start + rate * time);
+    Some(Vector3::new(a * phi.cos(), b * phi.sin(), c * functions.delta(phi)))
 }
 
 /// The spatial momentum Rπ.

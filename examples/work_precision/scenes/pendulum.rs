@@ -90,6 +90,7 @@ pub fn scene() -> Scene<6> {
         constraint: |y| (split(y).0.norm_squared() - 1.0).abs(),
         split: 3,
         momentum_size: MOMENTUM.norm(),
+        closed_form: None,
         reference_steps: 100_000,
         settings,
     }
