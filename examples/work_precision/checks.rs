@@ -2,12 +2,11 @@
 
 use crate::exact::Exact;
 use crate::measure::{Point, by_setting};
-use crate::motion::Scene;
+use crate::motion::{ClosedForm, Scene};
 use crate::report::{WINDOW, slope};
 use crate::setting::{Dial, SAMPLES, Setting};
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::round_off::worst_case;
-use nalgebra::Vector3;
 
 /// How far a measured order may be from the declared one, relative.
 const SLOPE: f64 = 0.05;
@@ -61,12 +60,7 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
 }
 
 /// How far the reference's momentum is from the closed form, relative; NaN where there is none.
-fn off_closed_form<const N: usize>(
-    scene: &Scene<N>,
-    exact: &Exact<N>,
-    closed_form: impl Fn(f64) -> Option<Vector3<f64>>,
-    sample: u64,
-) -> f64 {
+fn off_closed_form<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, closed_form: ClosedForm, sample: u64) -> f64 {
     let Some(momentum) = closed_form(scene.duration * sample as f64 / SAMPLES as f64) else { return f64::NAN };
     let found = &exact.samples[sample as usize];
     largest((0..3).map(|i| (found[scene.split + i] - momentum[i]).abs())) / scene.momentum_size

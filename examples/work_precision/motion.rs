@@ -9,6 +9,9 @@ pub type Field<const N: usize> = Box<dyn Fn(&SVector<f64, N>) -> SVector<f64, N>
 /// A number that belongs to y.
 pub type Observable<const N: usize> = Box<dyn Fn(&SVector<f64, N>) -> f64>;
 
+/// Three components of the momentum at a time.
+pub type ClosedForm = fn(f64) -> Option<Vector3<f64>>;
+
 /// A motion of N numbers: the configuration, then the momentum.
 pub struct Scene<const N: usize> {
     /// For flags and files.
@@ -32,7 +35,7 @@ pub struct Scene<const N: usize> {
     /// Size of the momentum, over which its errors are taken; configurations are of size 1.
     pub momentum_size: f64,
     /// The momentum of the exact motion at a time, where it is known in functions.
-    pub closed_form: Option<fn(f64) -> Option<Vector3<f64>>>,
+    pub closed_form: Option<ClosedForm>,
     /// Steps of the reference in each tenth of the duration; half as many tell its error.
     pub reference_steps: u64,
     /// What is compared.
