@@ -95,6 +95,22 @@ fn plans_hold_all_their_claims_and_write_the_promised_columns() {
     }
 }
 
+/// The study is no scene: it has its own flags. The pendulum is the fastest of its systems.
+#[test]
+fn work_and_precision_hold_their_claims() {
+    let (csv, figures) = (file("work_precision.csv"), file("work_precision"));
+    let arguments = ["--scene", "pendulum", "--csv", text(&csv), "--figures", text(&figures)];
+    let output = run("work_precision", &arguments);
+    let report = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{report}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(report.contains("  holds  ") && report.contains("advice"), "{report}");
+    let written = std::fs::read_to_string(csv).expect("the points");
+    assert!(written.starts_with("scene,method,order,h,tolerance,steps,error,ns_per_second,"));
+    assert!(written.lines().all(|line| line.split(',').count() == 13));
+    let figure = std::fs::read_to_string(figures.join("work_precision_pendulum.svg"));
+    assert!(figure.expect("the figure").contains("<polyline"));
+}
+
 #[test]
 fn other_flags_hold_all_their_claims() {
     for (scene, arguments) in [

@@ -18,6 +18,13 @@ pub enum Error {
         /// What is not finite: a field of the declared struct, or a part of the state.
         name: &'static str,
     },
+    /// The error that a step size was asked for is not above what rounding alone makes.
+    BelowRounding {
+        /// The error that was wished.
+        error: f64,
+        /// What rounding makes over the duration, about.
+        rounding: f64,
+    },
     /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
     NotSymmetric {
         /// The field.
@@ -163,6 +170,11 @@ impl Display for Error {
                     "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from"
                 )
             }
+            Self::BelowRounding { error, rounding } => write!(
+                f,
+                "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: ask for more than \
+                 that"
+            ),
             Self::NotSymmetric { field, defect, tolerance } => write!(
                 f,
                 "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more than the \

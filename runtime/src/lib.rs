@@ -37,6 +37,7 @@
 //! |---|---|
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | follow a potential in time | [`Stepper::state_at`] and [`State::time`], which exist where the time matters |
 //! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |

@@ -1,6 +1,7 @@
 //! A system with a step size: what a person integrates with.
 
 mod formulas;
+mod step_size;
 
 use crate::{Clebsch, Clock, Conserves, CotangentState, Error, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;

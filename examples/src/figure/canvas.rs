@@ -28,7 +28,20 @@ pub fn draw(
     (width, height): (u32, u32),
     paint: impl FnOnce(&Area<'_>) -> Drawn,
 ) -> Result<(), Failure> {
-    let path = run.figure.clone().unwrap_or_else(|| default_path(name));
+    draw_to(run.figure.as_deref(), name, (width, height), paint)
+}
+
+/// The same for a program without the flags of scenes: to `path`, or to the default place of `name`.
+///
+/// # Errors
+/// [`Failure::File`]
+pub fn draw_to(
+    path: Option<&Path>,
+    name: &str,
+    (width, height): (u32, u32),
+    paint: impl FnOnce(&Area<'_>) -> Drawn,
+) -> Result<(), Failure> {
+    let path = path.map_or_else(|| default_path(name), Path::to_owned);
     let svg = render((width, height), paint).map_err(io::Error::other).map_err(Failure::file(&path))?;
     write(&path, &svg).map_err(Failure::file(&path))?;
     say(format_args!("figure      {}", path.display()));

@@ -1,6 +1,7 @@
-//! Figures as SVG: time series, paths on a sphere and in the plane.
+//! Figures as SVG: time series, powers of ten, paths on a sphere and in the plane.
 
 mod canvas;
+mod decades;
 mod globe;
 mod interval;
 mod panel;
@@ -8,7 +9,8 @@ mod place;
 mod plane;
 mod theme;
 
-pub use canvas::{Area, Drawn, draw};
+pub use canvas::{Area, Drawn, draw, draw_to};
+pub use decades::{Curve, Decades};
 pub use globe::{Globe, Pointer, Track, View};
 pub use interval::Interval;
 pub use panel::{Panel, Series};

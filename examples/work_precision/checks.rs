@@ -1,0 +1,88 @@
+//! What the study asserts of every declaration.
+
+use crate::exact::Exact;
+use crate::measure::{Point, by_setting};
+use crate::motion::{ClosedForm, Scene};
+use crate::report::{WINDOW, slope};
+use crate::setting::{Dial, SAMPLES, Setting};
+use clebsch_examples::claims::{Claims, largest};
+use clebsch_examples::round_off::worst_case;
+
+/// How far a measured order may be from the declared one, relative.
+const SLOPE: f64 = 0.05;
+/// Steps of order 2 in one of order 8.
+const STAGES: u64 = 17;
+/// How much larger the energy error may be in the second half: both are maxima of an oscillation with several periods.
+const GROWTH: f64 = 1.25;
+/// Rounding of elliptic functions over some twenty periods.
+const CLOSED_FORM: f64 = 1e-12;
+/// The energy is followed for so many durations,
+const LONGER: u64 = 10;
+/// in the longest steps with a smaller error than this.
+const TYPICAL: f64 = 1e-2;
+/// The error of the reference over the smallest error that a slope is taken from.
+const REFERENCE: f64 = 1e-3;
+
+/// Claims for one scene.
+pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point], claims: &mut Claims) {
+    let name = |what: &str| format!("{}: {what}", scene.title);
+    let reason = "two resolutions of it; errors that slopes are taken from";
+    claims.at_most(&name("the reference is exact enough"), exact.error, REFERENCE * WINDOW[0], reason);
+
+    if let Some(closed_form) = scene.closed_form {
+        let off = (0..=SAMPLES).map(|sample| off_closed_form(scene, exact, closed_form, sample));
+        let reason = "momenta at ten times beside Jacobi's elliptic functions, relative";
+        claims.at_most(&name("the reference is the exact motion"), largest(off), CLOSED_FORM, reason);
+    }
+
+    let declared = || by_setting(points).filter(|points| points[0].is_geometric());
+    let off: Vec<f64> = declared().filter_map(off_order).collect();
+    let reason = "relative, largest; the last two halvings with errors of 6e-11 to 1e-2, of the energy at order 1";
+    let measured = format!("orders of {} of {} settings are those declared", off.len(), declared().count());
+    claims.at_most(&name(&measured), largest(off), SLOPE, reason);
+
+    let geometric = || points.iter().filter(|point| point.is_geometric());
+    let rounding = |point: &Point, scale: f64| worst_case(STAGES * point.steps, scale);
+    let moved = geometric().map(|point| point.momenta / rounding(point, scene.momentum_size));
+    claims.at_most(
+        &name("momenta are kept"),
+        largest(moved),
+        1.0,
+        "over rounding in the worst case; largest of all points",
+    );
+    let off = geometric().map(|point| point.constraint / rounding(point, 1.0));
+    claims.at_most(&name("motions stay in their space"), largest(off), 1.0, "the same");
+
+    let settings = scene.settings.iter();
+    let grown = settings.filter_map(|setting| growth(scene, setting.as_ref(), points));
+    let reason = "second half over first in ten times the duration, rounding taken off; largest of all settings";
+    claims.at_most(&name("energy errors do not grow"), largest(grown), GROWTH, reason);
+}
+
+/// How far the reference's momentum is from the closed form, relative; NaN where there is none.
+fn off_closed_form<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, closed_form: ClosedForm, sample: u64) -> f64 {
+    let Some(momentum) = closed_form(scene.duration * sample as f64 / SAMPLES as f64) else { return f64::NAN };
+    let found = &exact.samples[sample as usize];
+    largest((0..3).map(|i| (found[scene.split + i] - momentum[i]).abs())) / scene.momentum_size
+}
+
+/// How far the measured order of a setting is from the declared one, relative; `None` where too few errors lie in the window.
+fn off_order(points: &[Point]) -> Option<f64> {
+    let order = f64::from(points[0].name.order);
+    slope(points).map(|slope| (slope / order - 1.0).abs())
+}
+
+/// The energy error in the second half over that in the first, for the longest steps with a small error.
+fn growth<const N: usize>(scene: &Scene<N>, setting: &dyn Setting<N>, points: &[Point]) -> Option<f64> {
+    let own = |point: &&Point| point.is_geometric() && point.name == setting.name();
+    let point = points.iter().filter(own).find(|point| point.error < TYPICAL)?;
+    let Dial::Steps(part) = point.dial else { return None };
+    let (start, duration) = ((scene.energy)(&scene.start), LONGER as f64 * scene.duration);
+    let mut halves = [0.0; 2];
+    let seen = setting.walk(Dial::Steps(LONGER * part), duration, &mut |time, y| {
+        let half = &mut halves[usize::from(2.0 * time > duration)];
+        *half = largest([*half, ((scene.energy)(y) - start).abs()]);
+    });
+    let rounding = worst_case(STAGES * LONGER * point.steps, start.abs());
+    Some(if seen.is_ok() { ((halves[1] - rounding) / halves[0]).max(0.0) } else { f64::NAN })
+}

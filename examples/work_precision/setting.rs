@@ -1,0 +1,166 @@
+//! One way to integrate a scene: a method with its dial.
+
+use clebsch::{Clebsch, Error, State, Stepper};
+use nalgebra::SVector;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Times at which the error is taken: the multiples of duration/SAMPLES.
+pub const SAMPLES: u64 = 10;
+/// Observations of a walk with fixed steps, at most, about.
+const OBSERVATIONS: u64 = 5120;
+/// A reading of the clock takes at least so long, nanoseconds: what it costs to read it does not show.
+pub const READING: u128 = 1_500_000;
+/// Steps between the first two looks at the clock; each time twice as many.
+const FIRST_LOOK: u64 = 16;
+
+/// What a person turns to trade time for accuracy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dial {
+    /// Steps of equal length, in each of [`SAMPLES`] parts of the duration.
+    Steps(u64),
+    /// The error that each step may make.
+    Tolerance(f64),
+}
+
+/// Who made the method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// A declaration of this project: symplectic, on the group.
+    Geometric,
+    /// A method for any differential equation.
+    Classical,
+}
+
+/// A method, its attitude's form included, and the order that it declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name {
+    /// Discretization, or the name of the classical method.
+    pub method: &'static str,
+    /// Declared, or the order of the classical method.
+    pub order: u32,
+    /// Whose it is.
+    pub family: Family,
+}
+
+impl std::fmt::Display for Name {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(&match self.family {
+            Family::Geometric => format!("{}, order {}", self.method, self.order),
+            Family::Classical => self.method.to_owned(),
+        })
+    }
+}
+
+/// A method for a scene whose motions are N numbers.
+pub trait Setting<const N: usize> {
+    /// What it is called.
+    fn name(&self) -> Name;
+
+    /// Whether its dial is a tolerance.
+    fn is_adaptive(&self) -> bool {
+        false
+    }
+
+    /// Integrates over `duration`, shows times and motions, those of [`SAMPLES`] among them, and returns the number of steps.
+    ///
+    /// # Errors
+    /// What a step returns, such as that it is too long.
+    fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error>;
+
+    /// Nanoseconds of computing for one unit of simulated time; nothing is observed.
+    fn clock(&self, dial: Dial, duration: f64) -> f64;
+}
+
+/// Takes a time and what the motion is then.
+pub type Observe<'a, const N: usize> = dyn FnMut(f64, &SVector<f64, N>) + 'a;
+
+/// Writes a state as the numbers of the scene.
+pub type Flat<S, const N: usize> = fn(&<S as Clebsch>::Configuration, &<S as Clebsch>::Momentum) -> SVector<f64, N>;
+
+/// A declared system from its start.
+pub struct Declared<S: Clebsch, const N: usize> {
+    method: &'static str,
+    system: S,
+    start: (S::Configuration, S::Momentum),
+    flat: Flat<S, N>,
+}
+
+/// A declared system as a setting.
+pub fn declared<S, const N: usize>(
+    method: &'static str,
+    system: S,
+    start: (S::Configuration, S::Momentum),
+    flat: Flat<S, N>,
+) -> Box<dyn Setting<N>>
+where
+    S: Clebsch<Scalar = f64> + Clone + 'static,
+{
+    Box::new(Declared { method, system, start, flat })
+}
+
+impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
+    fn prepare(&self, h: f64) -> Result<(Stepper<S>, State<S>), Error> {
+        let stepper = self.system.clone().into_stepper(h)?;
+        let start = stepper.state(self.start.0, self.start.1)?;
+        Ok((stepper, start))
+    }
+}
+
+impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S, N> {
+    fn name(&self) -> Name {
+        Name { method: self.method, order: S::ORDER, family: Family::Geometric }
+    }
+
+    fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error> {
+        let (steps, h) = fixed(dial, duration);
+        let (stepper, mut state) = self.prepare(h)?;
+        for step in 0..=steps {
+            if is_observed(step, steps) {
+                observe(step as f64 * h, &(self.flat)(state.configuration(), state.momentum()));
+            }
+            if step < steps {
+                state = stepper.step(&state)?;
+            }
+        }
+        Ok(steps)
+    }
+
+    fn clock(&self, dial: Dial, duration: f64) -> f64 {
+        let (steps, h) = fixed(dial, duration);
+        let Ok((stepper, start)) = self.prepare(h) else { return f64::NAN };
+        clock_steps(steps, h, start, |state| stepper.step(state).unwrap_or(*state))
+    }
+}
+
+/// The number of steps and their length.
+pub fn fixed(dial: Dial, duration: f64) -> (u64, f64) {
+    let Dial::Steps(part) = dial else { return (1, f64::NAN) };
+    (SAMPLES * part, duration / (SAMPLES * part) as f64)
+}
+
+/// Whether a step is shown: all samples are, and others as evenly as may be.
+pub fn is_observed(step: u64, steps: u64) -> bool {
+    let part = steps / SAMPLES;
+    let every = (1..=part).find(|every| part.is_multiple_of(*every) && steps / every <= OBSERVATIONS).unwrap_or(part);
+    step.is_multiple_of(every)
+}
+
+/// Nanoseconds for one unit of simulated time, from as many steps as make a reading worth it.
+pub fn clock_steps<Y: Copy>(steps: u64, h: f64, start: Y, step: impl Fn(&Y) -> Y) -> f64 {
+    let (mut y, mut place, mut made, mut look) = (black_box(start), 0, 0, FIRST_LOOK);
+    let began = Instant::now();
+    while began.elapsed().as_nanos() < READING {
+        for _ in 0..look {
+            y = step(&y);
+            place += 1;
+            if place == steps {
+                (y, place) = (black_box(start), 0);
+            }
+        }
+        made += look;
+        look *= 2;
+    }
+    black_box(y);
+    began.elapsed().as_nanos() as f64 / (made as f64 * h)
+}

@@ -1,0 +1,267 @@
+//! `Stepper::suggest_step_size`: the step size that it gives makes the wished error, within a factor of 4, over several times the probing run.
+//!
+//! Errors are the largest at ten times, against equations of motion in matrices.
+
+#![allow(missing_docs)]
+
+use clebsch::{Clebsch, Error};
+use clebsch_tests::oracle::motion::motion;
+use clebsch_tests::oracle::rotation::hat;
+use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3, Vector4, Vector6};
+
+/// The same systems in every order.
+macro_rules! systems {
+    ($name:ident, $order:literal) => {
+        mod $name {
+            use clebsch::Clebsch;
+            use nalgebra::{Matrix3, Matrix4, Vector3};
+
+            /// A body about a pivot, free where it has no weight.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                                                action         = |F: SO<3>, R: SO<3>| R * F,
+                                                lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+                                                potential      = |R| self.weight * (R * self.center).z,
+                                                discretization = moser_veselov,
+                                                order          = $order,
+                                            )]
+            pub struct Top {
+                #[clebsch(symmetric)]
+                pub inertia: Matrix3<f64>,
+                pub weight: f64,
+                pub center: Vector3<f64>,
+            }
+
+            /// A point on a sphere.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                                                action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+                                                cost      = |h, F| (F - I).norm_squared() / (4 * h),
+                                                potential = |q| self.gravity * q.z,
+                                                order     = $order,
+                                            )]
+            pub struct Pendulum {
+                pub gravity: f64,
+            }
+
+            /// A free body in four dimensions.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                                                action = |F: SO<4>, R: SO<4>| R * F,
+                                                cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+                                                order  = $order,
+                                            )]
+            pub struct Body4 {
+                #[clebsch(symmetric)]
+                pub j_d: Matrix4<f64>,
+            }
+        }
+    };
+}
+
+systems!(first, 1);
+systems!(second, 2);
+systems!(fourth, 4);
+systems!(sixth, 6);
+systems!(eighth, 8);
+
+/// Times at which errors are taken.
+const SAMPLES: usize = 10;
+/// How far the error may be from the wished one, as a ratio.
+const RATIO: f64 = 4.0;
+
+/// Configurations and momenta of the exact motion at the samples, in the numbers of the error.
+type Exact<const N: usize> = [SVector<f64, N>; SAMPLES];
+
+/// The exact motion by RK4 with so many steps a sample, from the numbers `start`.
+fn exact<const N: usize>(
+    field: impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
+    start: SVector<f64, N>,
+    duration: f64,
+    steps: usize,
+) -> Exact<N> {
+    let mut y = start;
+    std::array::from_fn(|_| {
+        y = motion(&field, y, duration / SAMPLES as f64, steps);
+        y
+    })
+}
+
+/// Asks for the errors and makes the motions with the answers; `h` is the step of the probing run.
+fn assert_error<S: Clebsch<Scalar = f64, Input = ()> + Clone, const N: usize>(
+    system: &S,
+    start: (S::Configuration, S::Momentum),
+    (duration, h): (f64, f64),
+    exact: &Exact<N>,
+    flat: impl Fn(&S::Configuration, &S::Momentum) -> SVector<f64, N>,
+) {
+    for wished in [1e-3, 1e-6, 1e-9] {
+        if wished < 1e-6 && S::ORDER == 2 {
+            continue; // some 10⁷ steps
+        }
+        let stepper = system.stepper(h).expect("a regular system");
+        let begin = stepper.state(start.0, start.1).expect("a state");
+        let suggested = stepper.suggest_step_size(&begin, wished, duration).expect("a step size");
+        let steps = (duration / SAMPLES as f64 / suggested).round().max(1.0);
+        let stepper = system.stepper(duration / SAMPLES as f64 / steps).expect("a regular system");
+        let (mut state, mut error) = (stepper.state(start.0, start.1).expect("a state"), 0.0_f64);
+        for exact in exact {
+            for _ in 0..steps as u64 {
+                state = stepper.step(&state).expect("a solvable step");
+            }
+            error = error.max((flat(state.configuration(), state.momentum()) - exact).amax());
+        }
+        println!("{} of order {}: wished {wished:.0e}, h = {suggested:.2e}, error {error:.1e}", S::NAME, S::ORDER);
+        assert!(error < RATIO * wished && error > wished / RATIO, "{} of order {}: {error:.1e}", S::NAME, S::ORDER);
+    }
+}
+
+fn flat<const N: usize>(parts: &[&[f64]]) -> SVector<f64, N> {
+    SVector::from_iterator(parts.iter().flat_map(|part| part.iter().copied()))
+}
+
+/// Ṙ = R ω^, π̇ = π × ω − weight center × Rᵀe₃; momenta are in units of the first.
+fn turning(
+    moments: Vector3<f64>,
+    (weight, center): (f64, Vector3<f64>),
+    (r, pi): (Matrix3<f64>, Vector3<f64>),
+    (duration, steps): (f64, usize),
+) -> Exact<12> {
+    let size = pi.norm();
+    let field = move |y: &SVector<f64, 12>| {
+        let (r, pi) = (Matrix3::from_column_slice(&y.as_slice()[..9]), Vector3::new(y[9], y[10], y[11]) * size);
+        let omega = pi.component_div(&moments);
+        let torque = pi.cross(&omega) - weight * center.cross(&r.row(2).transpose());
+        flat(&[(r * hat(&omega)).as_slice(), (torque / size).as_slice()])
+    };
+    exact(field, flat(&[r.as_slice(), (pi / size).as_slice()]), duration, steps)
+}
+
+macro_rules! tops {
+    ($moments:expr, $weight:expr, $start:expr, $duration:expr, $h:expr, $steps:expr) => {{
+        let (moments, weight, center, start) = ($moments, $weight, Vector3::z(), $start);
+        let inertia = Matrix3::from_diagonal(&moments);
+        let exact = turning(moments, (weight, center), start, ($duration, $steps));
+        let size = start.1.norm();
+        let flat = |r: &Matrix3<f64>, pi: &Vector3<f64>| flat(&[r.as_slice(), (pi / size).as_slice()]);
+        assert_error(&second::Top { inertia, weight, center }, start, ($duration, $h), &exact, flat);
+        assert_error(&fourth::Top { inertia, weight, center }, start, ($duration, $h), &exact, flat);
+        assert_error(&sixth::Top { inertia, weight, center }, start, ($duration, $h), &exact, flat);
+        assert_error(&eighth::Top { inertia, weight, center }, start, ($duration, $h), &exact, flat);
+    }};
+}
+
+#[test]
+fn a_free_body() {
+    tops!(Vector3::new(1.0, 2.0, 3.0), 0.0, (Matrix3::identity(), Vector3::new(0.3, 2.0, 0.6)), 100.0, 0.25, 40_000);
+}
+
+#[test]
+fn a_heavy_top() {
+    let attitude = *Rotation3::from_axis_angle(&Vector3::x_axis(), 0.5).matrix();
+    tops!(Vector3::new(1.0, 1.5, 2.0), 1.0, (attitude, Vector3::new(0.1, 0.3, 10.0)), 50.0, 0.1, 100_000);
+}
+
+#[test]
+fn a_pendulum() {
+    let (start, gravity) = ((Vector3::y(), Vector3::new(1.0, 0.0, 0.5)), 1.0);
+    let size: f64 = start.1.norm();
+    let field = |y: &SVector<f64, 6>| {
+        let (q, n): (Vector3<f64>, Vector3<f64>) =
+            (Vector3::new(y[0], y[1], y[2]), Vector3::new(y[3], y[4], y[5]) * size);
+        flat(&[n.cross(&q).as_slice(), (-q.cross(&Vector3::z()) * (gravity / size)).as_slice()])
+    };
+    let flat = |q: &Vector3<f64>, n: &Vector3<f64>| flat(&[q.as_slice(), (n / size).as_slice()]);
+    let exact = exact(field, flat(&start.0, &start.1), 100.0, 40_000);
+    assert_error(&second::Pendulum { gravity }, start, (100.0, 0.25), &exact, flat);
+    assert_error(&fourth::Pendulum { gravity }, start, (100.0, 0.25), &exact, flat);
+    assert_error(&sixth::Pendulum { gravity }, start, (100.0, 0.25), &exact, flat);
+    assert_error(&eighth::Pendulum { gravity }, start, (100.0, 0.25), &exact, flat);
+}
+
+#[test]
+fn a_free_body_in_four_dimensions() {
+    let d = Vector4::new(1.0, 1.5, 2.0, 2.5);
+    let j_d = Matrix4::from_diagonal(&d);
+    // the components of a momentum are twice the entries of M below its diagonal
+    let m = Vector6::new(0.3, -0.5, 0.2, 0.6, -0.1, 0.5);
+    let size: f64 = 2.0 * m.norm();
+    let start = (Matrix4::identity(), m * -2.0);
+    let field = |y: &SVector<f64, 22>| {
+        let (r, m) = (
+            Matrix4::from_column_slice(&y.as_slice()[..16]),
+            second::Body4::momentum_matrix(&(y.fixed_rows::<6>(16) * size)),
+        );
+        let omega = Matrix4::from_fn(|i, j| if i == j { 0.0 } else { m[(i, j)] / (d[i] + d[j]) });
+        let rate: Vector6<f64> = second::Body4::momentum_components(&(m * omega - omega * m));
+        flat(&[(r * omega).as_slice(), (rate / size).as_slice()])
+    };
+    let flat = |r: &Matrix4<f64>, m: &Vector6<f64>| flat(&[r.as_slice(), (m / size).as_slice()]);
+    let exact = exact(field, flat(&start.0, &start.1), 100.0, 20_000);
+    assert_error(&second::Body4 { j_d }, start, (100.0, 0.5), &exact, flat);
+    assert_error(&fourth::Body4 { j_d }, start, (100.0, 0.5), &exact, flat);
+    assert_error(&sixth::Body4 { j_d }, start, (100.0, 0.5), &exact, flat);
+    assert_error(&eighth::Body4 { j_d }, start, (100.0, 0.5), &exact, flat);
+}
+
+/// The error of order 1 is h, which does not grow, and h² t: the answer errs to the short side.
+#[test]
+fn steps_of_order_1_are_short_enough() {
+    let (start, gravity) = ((Vector3::y(), Vector3::new(1.0, 0.0, 0.5)), 1.0);
+    let (stepper, wished) = (first::Pendulum { gravity }.into_stepper(0.1).expect("a regular system"), 1e-2);
+    let begin = stepper.state(start.0, start.1).expect("a state");
+    let h = stepper.suggest_step_size(&begin, wished, 100.0).expect("a step size");
+    let end = |h: f64| {
+        let stepper = first::Pendulum { gravity }.into_stepper(h).expect("a regular system");
+        let state = stepper.state(start.0, start.1).expect("a state");
+        let last = stepper.trajectory(state).nth((100.0 / h).round() as usize).expect("an endless trajectory");
+        *last.expect("a solvable step").configuration()
+    };
+    let h = 100.0 / (100.0 / h).round();
+    let error = 2.0 * (end(h) - end(h / 2.0)).norm();
+    println!("order 1: wished {wished:.0e}, h = {h:.2e}, error {error:.1e}");
+    assert!(error < wished && error > wished / 30.0, "{error:.1e}");
+}
+
+#[test]
+fn what_cannot_be_had_is_refused() -> Result<(), Error> {
+    let stepper = second::Pendulum { gravity: 1.0 }.into_stepper(0.1)?;
+    let start = stepper.state(Vector3::y(), Vector3::new(1.0, 0.0, 0.5))?;
+    for error in [0.0, -1.0, 1e-17, f64::NAN] {
+        let refused = stepper.suggest_step_size(&start, error, 100.0);
+        assert!(matches!(refused, Err(Error::BelowRounding { .. })), "{error}: {refused:?}");
+    }
+    for duration in [0.0, f64::NAN, f64::INFINITY] {
+        let refused = stepper.suggest_step_size(&start, 1e-3, duration);
+        assert!(matches!(refused, Err(Error::NotFinite { .. })), "{duration}: {refused:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn motions_without_an_error_take_the_longest_step_and_back_in_time_the_sign_stays() -> Result<(), Error> {
+    // a great circle: the direction is exact, but not the speed along it, so that only rest has no error
+    let still = second::Pendulum { gravity: 0.0 }.into_stepper(0.1)?;
+    let rest = still.state(Vector3::y(), Vector3::zeros())?;
+    assert!((still.suggest_step_size(&rest, 1e-6, 100.0)? - 1.6).abs() < 1e-12, "a quarter of 64 steps");
+
+    let (forward, back) =
+        (second::Pendulum { gravity: 1.0 }.into_stepper(0.25)?, second::Pendulum { gravity: 1.0 }.into_stepper(-0.25)?);
+    let state = |stepper: &clebsch::Stepper<second::Pendulum>| stepper.state(Vector3::y(), Vector3::new(1.0, 0.0, 0.5));
+    let there = forward.suggest_step_size(&state(&forward)?, 1e-6, 100.0)?;
+    let and_back = back.suggest_step_size(&state(&back)?, 1e-6, 100.0)?;
+    assert!(and_back < 0.0 && -and_back / there < 10.0 && -there / and_back < 10.0, "{there} {and_back}");
+    Ok(())
+}
+
+#[test]
+fn a_probing_run_that_is_too_coarse_to_be_solved_is_made_finer() -> Result<(), Error> {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 2.0));
+    let top = fourth::Top { inertia, weight: 1.0, center: Vector3::z() };
+    let coarse = top.stepper(1.0)?;
+    let start = coarse.state(Matrix3::identity(), Vector3::new(0.1, 0.3, 10.0))?;
+    assert!(coarse.step(&start).is_err(), "five radians in a step");
+    let h = coarse.suggest_step_size(&start, 1e-6, 50.0)?;
+    assert!(top.stepper(h)?.step(&start).is_ok() && h < 0.1, "{h}");
+    Ok(())
+}
