@@ -273,6 +273,7 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
             "the chart of Cayley's map for the rotation and of the translation as it is, denominators cleared by the congruence with I − x^"
         }
         Chart::Product => "the chart of Cayley's map for the rotation and of the translation as it is",
+        Chart::Sine => "the chart of the sine",
         Chart::Root => "the chart F = (I + x^) det(I + x^)^(−1/n), as the Cayley map leaves the group",
         Chart::Exponential if cleared => "the exponential chart, freed of dexp⁻¹ by dexp",
         Chart::Exponential => "the exponential chart",

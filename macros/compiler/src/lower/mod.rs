@@ -5,6 +5,7 @@
 
 mod control;
 mod cost;
+mod displacement;
 mod grid;
 mod kernel;
 mod names;
@@ -12,6 +13,7 @@ mod pairs;
 mod print;
 mod scalar;
 mod stepping;
+mod sums;
 mod variation;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};

@@ -17,6 +17,8 @@ pub enum Chart {
     Product,
     /// F = (I + Z) det(I + Z)^(−1/n).
     Root,
+    /// F = I + Z + Z²/(1 + √(1 − |x|²)) for rotations in one plane: x = sin θ·axis, so that Z = ½(F − Fᵀ). Up to a quarter turn.
+    Sine,
     /// F = exp Z.
     Exponential,
     /// F = x.
@@ -61,6 +63,10 @@ impl Chart {
             Chart::Cayley if group == Group::UnitQuaternions => half_turn(x[0]),
             // (I − Z)⁻¹(I + Z) = 2(I − Z)⁻¹ − I
             Chart::Cayley => 2 * resolvent(combination(group, x)) - group.identity(graph),
+            Chart::Sine => {
+                let (increment, denominator) = self.increment(group, x);
+                group.identity(graph) + increment / denominator
+            }
             Chart::Affine => group.identity(graph) + combination(group, x),
             Chart::Root => {
                 let n = group.element_shape().rows;
@@ -110,6 +116,10 @@ impl Chart {
             }
             (Chart::Cayley, _) => even_increment(combination(group, x)),
             (Chart::Affine, _) => (combination(group, x), one),
+            (Chart::Sine, _) => {
+                let z = combination(group, x);
+                (z + (z * z) / (one + cosine(x[0])), one)
+            }
             (Chart::Root, _) => {
                 // r − 1 = (rⁿ − 1)/(1 + r + … + rⁿ⁻¹) with rⁿ = det(I + Z)
                 let z = combination(group, x);
@@ -139,6 +149,15 @@ impl Chart {
         }
     }
 
+    /// α and β of F = I + αZ + βZ², in charts of rotations where F has this form.
+    pub fn in_one_plane<'g>(self, group: Group, x: &[Expr<'g>]) -> Option<(Expr<'g>, Expr<'g>)> {
+        let one = x[0].graph().integer(1);
+        match (self, group) {
+            (Chart::Sine, _) => Some((one, one / (one + cosine(x[0])))),
+            _ => None,
+        }
+    }
+
     /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators: components of the
     /// product vanish where those of ρ do. (I − Z) ρ (I − Z)ᵀ for rotations acting from the right, whose residual has F on the left or
     /// Fᵀ on the right; with the signs changed for left actions; and likewise for other groups, Zᵀ standing for −Z.
@@ -161,6 +180,11 @@ impl Chart {
             _ => (1, 1),
         }
     }
+}
+
+/// cos θ where |x| = sin θ.
+fn cosine(x: Expr<'_>) -> Expr<'_> {
+    (x.graph().integer(1) - x.norm_squared()).sqrt()
 }
 
 /// Z = Σ x_i E_i over all blocks.
