@@ -254,7 +254,7 @@ impl Builder<'_, '_> {
                 None => constant += coefficient,
             }
         }
-        for (term, coefficient) in terms {
+        for (term, coefficient) in self.collected(terms) {
             parts.push(match self.scalars.node(term).clone() {
                 Node::Product(factors) => self.convert_product(coefficient, &factors),
                 _ => (coefficient, self.convert(term)),
@@ -269,6 +269,50 @@ impl Builder<'_, '_> {
             [(coefficient, only)] if constant == integer(0) && *coefficient == integer(1) => *only,
             _ => self.intern(Operation::Sum(constant, parts)),
         }
+    }
+
+    /// Terms with their coefficients, those together whose factors differ in constants alone: a x + b x is (a + b) x, with one constant.
+    fn collected(&mut self, terms: Vec<(Scalar, Rational)>) -> Vec<(Scalar, Rational)> {
+        if !self.slow_rates().contains(&Rate::Once) {
+            return terms;
+        }
+        let mut groups: Table<Vec<(Scalar, u32)>, Vec<usize>> = Table::default();
+        for (position, (term, _)) in terms.iter().enumerate() {
+            groups.entry(self.fast_factors(*term)).push(position);
+        }
+        let mut collected = Vec::new();
+        for (fast, positions) in groups.iter() {
+            match positions.as_slice() {
+                [only] => collected.push((*only, terms[*only].clone())),
+                [first, ..] => {
+                    let slow = positions.iter().map(|&position| (self.slow_part(terms[position].0), terms[position].1.clone()));
+                    let slow: Vec<_> = slow.collect();
+                    let factors = fast.iter().flat_map(|&(factor, power)| std::iter::repeat_n(factor, power as usize));
+                    let factors: Vec<Scalar> = [self.scalars.sum(integer(0), slow)].into_iter().chain(factors).collect();
+                    collected.push((*first, (self.scalars.product(factors), integer(1))));
+                }
+                [] => {}
+            }
+        }
+        collected.sort_by_key(|(position, _)| *position);
+        collected.into_iter().map(|(_, term)| term).collect()
+    }
+
+    fn factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
+        match self.scalars.node(term) {
+            Node::Product(factors) => factors.clone(),
+            _ => vec![(term, 1)],
+        }
+    }
+
+    fn fast_factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
+        self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) != Rate::Once).collect()
+    }
+
+    fn slow_part(&mut self, term: Scalar) -> Scalar {
+        let slow = self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) == Rate::Once);
+        let slow: Vec<Scalar> = slow.flat_map(|(factor, power)| std::iter::repeat_n(factor, power as usize)).collect();
+        self.scalars.product(slow)
     }
 
     /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.
