@@ -25,12 +25,7 @@ pub(super) fn by_congruence<'g>(
 
 /// The components of (I ∓ Z) M (I ± Z) = M ∓ (Z M − M Z) − Z M Z. In the plane and in space Z M Z = −(x·μ) Z, which is cheaper, and its
 /// derivative too.
-fn momentum<'g>(
-    group: Group,
-    (left, right): (Expr<'g>, Expr<'g>),
-    coordinates: &[Expr<'g>],
-    mu: Expr<'g>,
-) -> Expr<'g> {
+fn momentum<'g>(group: Group, (left, right): (Expr<'g>, Expr<'g>), coordinates: &[Expr<'g>], mu: Expr<'g>) -> Expr<'g> {
     let matrix = group.momentum_matrix(mu);
     let whole = left * matrix * right;
     match (group, coordinates) {

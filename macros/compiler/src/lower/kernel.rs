@@ -285,10 +285,13 @@ impl Builder<'_, '_> {
             match positions.as_slice() {
                 [only] => collected.push((*only, terms[*only].clone())),
                 [first, ..] => {
-                    let slow = positions.iter().map(|&position| (self.slow_part(terms[position].0), terms[position].1.clone()));
+                    let slow = positions
+                        .iter()
+                        .map(|&position| (self.slow_part(terms[position].0), terms[position].1.clone()));
                     let slow: Vec<_> = slow.collect();
                     let factors = fast.iter().flat_map(|&(factor, power)| std::iter::repeat_n(factor, power as usize));
-                    let factors: Vec<Scalar> = [self.scalars.sum(integer(0), slow)].into_iter().chain(factors).collect();
+                    let factors: Vec<Scalar> =
+                        [self.scalars.sum(integer(0), slow)].into_iter().chain(factors).collect();
                     collected.push((*first, (self.scalars.product(factors), integer(1))));
                 }
                 [] => {}

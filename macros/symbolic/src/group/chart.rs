@@ -93,7 +93,7 @@ impl Chart {
     }
 
     /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
-    /// 2(Z + Z²)/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
+    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
     /// n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
         let graph = x[0].graph();
@@ -271,7 +271,11 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
     let one = graph.integer(1);
     let square = x.norm_squared();
     match n {
-        2 | 3 => (2 * (z + z * z), one + square),
+        2 | 3 => {
+            // each entry then is a sum of products, with the scale in what they share
+            let scale = one / ((one + square) / 2);
+            (scale * z + scale * (z * z), one)
+        }
         4 => {
             let pfaffian = [(0, 5, 1), (1, 4, -1), (2, 3, 1)]
                 .iter()
