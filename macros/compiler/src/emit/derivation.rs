@@ -293,7 +293,13 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         }
         Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
         Solution::ClosedForm => {
-            "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
+            let coordinates = match formulas.symbols.charts[equation.factors[0]] {
+                Chart::Sine => ", which is the length of x",
+                _ => "",
+            };
+            format!(
+                "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1{coordinates}"
+            )
         }
         Solution::Linear => {
             format!("is linear in {chart}: solved by one elimination, no iteration")

@@ -212,7 +212,7 @@ impl Emitter<'_, '_> {
         );
         let advance = match &step.displace {
             Some(displace) => self.part(
-                "The configuration that the group element with chart coordinates x moves q to.",
+                "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
                 &self.program.formulas.titled("action"),
                 quote!(displace(&self, q: &#configuration, x: &#momentum) -> #configuration),
                 displace,
