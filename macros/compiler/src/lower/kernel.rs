@@ -122,7 +122,9 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting:
         .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
         .collect();
     builder.share_pairs();
-    builder.share_sums();
+    if !builder.scalars.keeps_sums {
+        builder.share_sums();
+    }
     builder.code(&outputs)
 }
 
