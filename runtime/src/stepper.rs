@@ -65,7 +65,8 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// [`Error::Unsolvable`] where the step is too long for the momentum, [`Error::NotFinite`] where the potential gave
     /// NaN or numbers overflowed, [`Error::NotConverged`].
-    #[inline]
+    // a call hands states through memory, which costs as much as half of a short step; long ones stay calls within
+    #[inline(always)]
     pub fn step(&self, state: &State<S>) -> Result<State<S>, Error> {
         self.step_with(state, &S::Input::origin())
     }
@@ -77,7 +78,7 @@ impl<S: Clebsch> Stepper<S> {
     ///
     /// # Errors
     /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
-    #[inline]
+    #[inline(always)]
     pub fn step_with(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });

@@ -129,6 +129,18 @@ fn spherical_pendulum_keeps_its_vertical_momentum_and_stays_on_the_sphere() {
     assert_band("spherical pendulum", &stepper, (q, n), 7e-3);
 }
 
+/// Without gravity every step turns by the same angle: a cosine that is rounded once and multiplies q would change |q| in every step by as
+/// much, here by 10⁻¹¹ in all. What is added to q is rounded far below its last place.
+#[test]
+fn a_geodesic_of_the_sphere_keeps_its_length() {
+    let stepper = SphericalPendulum { mass: 1.0, length: 1.0, gravity: 0.0 }.stepper(0.01).expect("a pendulum");
+    let mut state = stepper.state(Vector3::y(), Vector3::new(0.7, 0.0, 0.9)).expect("a state");
+    for _ in 0..100_000 {
+        state = stepper.step(&state).expect("a solvable step");
+    }
+    assert!((state.configuration().norm_squared() - 1.0).abs() < 1e-12);
+}
+
 /// SO(4): R M Rᵀ in space, and RᵀR.
 #[test]
 fn four_dimensional_body_keeps_its_spatial_momentum() {

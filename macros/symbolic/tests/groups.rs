@@ -192,6 +192,30 @@ fn closed_exponentials_are_the_series() {
     }
 }
 
+/// F is a rotation with ½(F − Fᵀ) = x^, at numbers.
+#[test]
+fn the_chart_of_the_sine_is_half_the_skew_part() {
+    let graph = Graph::new();
+    for n in [2, 3] {
+        let group = Group::SpecialOrthogonal(n);
+        let entries = (0..group.dimension()).map(|i| graph.rational(2 * i as i64 - 1, 4));
+        let x = graph.stack(Shape::vector(group.dimension()), entries.collect());
+        let f = Chart::Sine.element(group, &[x]);
+        let (alpha, beta) = Chart::Sine.in_one_plane(group, &[x]).expect("rotations in one plane");
+        let z = group.wedge(x);
+        let one = graph.identity(n);
+        let zeros = [
+            f * f.transpose() - one,
+            (f - f.transpose()) / 2 - z,
+            one + z.times_each(alpha) + (z * z).times_each(beta) - f,
+        ];
+        for zero in zeros {
+            let value = graph.constant_value(zero);
+            assert!(value.entries.iter().all(|entry| entry.abs() < 1e-15), "SO<{n}>: {value:?}");
+        }
+    }
+}
+
 /// dexp against the slope of the exponential in numbers: (exp(ξ + εδ) − exp(ξ − εδ)) exp(−ξ)/2ε.
 #[test]
 fn slopes_of_exponentials_are_their_differences() {

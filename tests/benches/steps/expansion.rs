@@ -1,6 +1,6 @@
 //! What the expansion of each fixture costs: time of the compiler, size of its output, operations of a step.
 
-use clebsch_compiler::lower::Cost;
+use clebsch_compiler::lower::{Cost, StepKernels};
 use clebsch_compiler::{Graph, compile, emit, expand};
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
@@ -56,6 +56,8 @@ fn expansion(item: syn::ItemStruct) -> Expansion {
         Err(errors) => panic!("{name} is refused: {errors}"),
     };
     let mut costs = (Cost::default(), Cost::default());
+    // where a step moves by the chart coordinates alone, increments are made for others
+    let steps = program.steps.iter().all(StepKernels::makes_increments);
     for (kernel, cost) in program.kernels().into_iter().map(|(name, kernel)| (name, kernel.cost())) {
         let stem = kernel.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
         // what ends in `_whole` serves the inverse Legendre transform of a composed step alone
@@ -63,7 +65,9 @@ fn expansion(item: syn::ItemStruct) -> Expansion {
         let stem = stem.trim_end_matches("_first").trim_end_matches("_adjoint");
         match stem {
             "linearize" => costs.0 = costs.0.plus(cost),
-            "start_kick" | "end_kick" | "prepare" | "predict" | "closed_form" | "increment" | "advance" | "update" => {
+            "increment" if !steps => {}
+            "start_kick" | "end_kick" | "prepare" | "predict" | "closed_form" | "increment" | "advance"
+            | "displace" | "update" => {
                 costs.1 = costs.1.plus(cost);
             }
             _ => {}

@@ -91,7 +91,8 @@ impl<'a, 'g> Stepper<'a, 'g> {
             self.values.set(*symbol, increment);
         }
         let updated = step.update.as_ref().map(|update| self.run(update).remove(0));
-        state = Seen { q: self.run(&step.advance), mu: updated.unwrap_or(state.mu) };
+        let moved = step.displace.as_ref().unwrap_or(&step.advance);
+        state = Seen { q: self.run(moved), mu: updated.unwrap_or(state.mu) };
         self.place(t, &state);
         let end = if step.end_is_start { step.start.as_ref() } else { step.end.as_ref() };
         self.kick(end.filter(|_| step.end.is_some()), &mut state.mu);
@@ -107,16 +108,11 @@ impl<'a, 'g> Stepper<'a, 'g> {
 
     /// Sets the chart coordinates of the factors that an equation is for.
     fn solve(&mut self, solve: &Solve, mu: &[f64]) -> Result<(), String> {
-        if let Some(sine_squared) = &solve.sine_squared {
-            let sine_squared = self.run(sine_squared)[0][0];
-            if sine_squared >= 1.0 {
-                return Err(format!("sin² = {sine_squared}"));
-            }
-        }
         if matches!(solve.solution, Solution::Explicit | Solution::ClosedForm) {
             let x = self.run(solve.predict.as_ref().ok_or("no formula for the solution")?).remove(0);
             self.turn(solve, &x);
-            return Ok(());
+            let sine_squared = solve.sine_squared.as_ref().map_or(0.0, |sine_squared| self.run(sine_squared)[0][0]);
+            return if sine_squared < 1.0 { Ok(()) } else { Err(format!("sin² = {sine_squared}")) };
         }
         let equation = Interpreted { stepper: RefCell::new(self), solve, mu };
         let solution = solved(&equation)?;

@@ -19,8 +19,22 @@ pub(super) fn by_congruence<'g>(
     let group = factor.group;
     let (left, right) = symbols.charts[k].clearing(group, &symbols.coordinates(k), factor.side == Side::Left)?;
     let congruent = |matrix: Expr<'g>| group.components((left * matrix * right).expand());
-    let cleared = congruent(array) - congruent(group.momentum_matrix(mu));
+    let cleared = congruent(array) - momentum(group, (left, right), &symbols.coordinates(k), mu);
     (plain.has_inverse() && !cleared.has_inverse()).then_some(cleared)
+}
+
+/// The components of (I ∓ Z) M (I ± Z) = M ∓ (Z M − M Z) − Z M Z. In the plane and in space Z M Z = −(x·μ) Z, which is cheaper, and its
+/// derivative too.
+fn momentum<'g>(group: Group, (left, right): (Expr<'g>, Expr<'g>), coordinates: &[Expr<'g>], mu: Expr<'g>) -> Expr<'g> {
+    let matrix = group.momentum_matrix(mu);
+    let whole = left * matrix * right;
+    match (group, coordinates) {
+        (Group::SpecialOrthogonal(2 | 3), [x]) => {
+            let z = group.wedge(*x);
+            group.components((whole + z * matrix * z).expand()) + (x.dot(mu) * *x).expand()
+        }
+        _ => group.components(whole.expand()),
+    }
 }
 
 /// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of the rotation;

@@ -2,9 +2,9 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
-use super::Symbols;
 use super::equation::{Sources, chart_slope, is_moving, own_part, without_part};
 use super::trivialisation::Covector;
+use super::{Equation, Substep, Symbols};
 use crate::model::Model;
 
 /// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
@@ -14,6 +14,19 @@ pub(super) struct ClosedForm<'g> {
     pub(super) coordinates: Expr<'g>,
     /// |a|², which has to be below one.
     pub(super) sine_squared: Expr<'g>,
+    /// The same in the chart of the sine, where the group has it.
+    pub(super) sine: Option<SineForm<'g>>,
+}
+
+/// The momentum equation in the chart of the sine, where it is linear: its solution is a itself.
+#[derive(Copy, Clone)]
+pub struct SineForm<'g> {
+    /// a = hμ/Σ.
+    solution: Expr<'g>,
+    /// ρ(x) = Σx/h − μ.
+    residual: Expr<'g>,
+    /// Dρ·δ.
+    directional: Expr<'g>,
 }
 
 /// Whether x = s·h·Σ⁻¹μ solves the equation: on a sphere with the exponential, for one.
@@ -81,7 +94,39 @@ pub(super) fn closed_form<'g>(
     let sine = step * mu / kappa;
     let sine_squared = sine.dot(sine);
     let one = model.graph.integer(1);
-    Some(ClosedForm { coordinates: sine / (one + (one - sine_squared).sqrt()), sine_squared })
+    let is_rotation = matches!(factor.group, Group::SpecialOrthogonal(_));
+    let in_sine = || SineForm {
+        solution: sine,
+        residual: kappa * block.coordinates / step - mu,
+        directional: kappa * block.direction / step,
+    };
+    let coordinates = sine / (one + (one - sine_squared).sqrt());
+    Some(ClosedForm { coordinates, sine_squared, sine: is_rotation.then(in_sine) })
+}
+
+/// Takes the chart of the sine for the rotations that every substep solves in closed form: there the solution needs no root and the
+/// increment one division, where Cayley's chart has the tangent of half the angle to be undone.
+pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<'g>]) {
+    let count = substeps.len();
+    for block in symbols.blocks.clone() {
+        let mut own: Vec<&mut Equation<'g>> = substeps
+            .iter_mut()
+            .filter_map(|substep| {
+                substep.equations.iter_mut().find(|equation| equation.components.iter().copied().eq(block.components()))
+            })
+            .filter(|equation| equation.sine.is_some())
+            .collect();
+        if own.len() < count {
+            continue;
+        }
+        symbols.charts[block.factor] = Chart::Sine;
+        for equation in &mut own {
+            let Some(form) = equation.sine else { continue };
+            (equation.residual, equation.directional) = (form.residual, form.directional);
+            equation.formula = Some(form.solution);
+            equation.sine_squared = Some(block.coordinates.norm_squared());
+        }
+    }
 }
 
 /// An expression with all momenta but that of a block set to zero.

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::action::identities;
 use super::clearing;
-use super::closed_form::{closed_form, is_solved_by_predictor};
+use super::closed_form::{SineForm, closed_form, is_solved_by_predictor};
 use super::structure::{self, Structure};
 use super::trivialisation::Covector;
 use super::{ChartBlock, Symbols};
@@ -29,6 +29,8 @@ pub struct Equation<'g> {
     pub formula: Option<Expr<'g>>,
     /// |a|² of the closed form, which has to be below one.
     pub sine_squared: Option<Expr<'g>>,
+    /// The closed form in the chart of the sine, where there is one.
+    pub(super) sine: Option<SineForm<'g>>,
     /// What is known of its Jacobian.
     pub structure: Structure,
     /// The coordinates that were put in and have inertia in common with its own.
@@ -299,6 +301,7 @@ fn equation<'g>(
         None => Solution::Newton,
     };
     equation.formula = closed_form.as_ref().map(|closed_form| closed_form.coordinates);
+    equation.sine = closed_form.as_ref().and_then(|closed_form| closed_form.sine);
     equation.sine_squared = closed_form.map(|closed_form| closed_form.sine_squared);
     equation
 }
@@ -329,6 +332,7 @@ impl<'g> Equation<'g> {
             solution: Solution::Newton,
             formula: None,
             sine_squared: None,
+            sine: None,
             structure: Structure::Dense,
             coupled: Vec::new(),
             is_inertial: true,

@@ -133,7 +133,7 @@ pub struct Substep<'g> {
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     symbols::check_chart(&model)?;
     variation::check(&model)?;
-    let symbols = Symbols::new(&model);
+    let mut symbols = Symbols::new(&model);
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
     let steering = control::steering(&model, &symbols, &generator, &momentum_map);
@@ -177,7 +177,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         // the Legendre transform of ℓd, without the force, is to be inverted
         edges.push((1, lagrangian));
     }
-    let substeps = edges
+    let mut substeps: Vec<Substep<'_>> = edges
         .into_iter()
         .enumerate()
         .map(|(index, (parts, lagrangian))| {
@@ -192,6 +192,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let (legendre, legendre_next) = legendre(&sources(1), &lagrangian);
     let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, covector.as_deref());
     check_offers(&model, &symmetries)?;
+    closed_form::adopt_sine(&mut symbols, &mut substeps);
     Ok(Formulas {
         legendre,
         legendre_next,

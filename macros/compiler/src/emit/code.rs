@@ -171,14 +171,19 @@ impl Scope<'_, '_> {
                 group(tokens, Delimiter::Parenthesis, inner);
             }
             Code::Sum(constant, terms) => self.write_sum(tokens, constant, terms),
-            Code::Product(factors) => {
-                for (position, factor) in factors.iter().enumerate() {
-                    if position > 0 {
-                        operator(tokens, '*');
+            Code::Product(factors) => match Code::quotient(factors) {
+                None => self.write_product(tokens, factors.iter()),
+                Some((above, below)) => {
+                    match above.is_empty() {
+                        true => tokens.extend(self.number(&integer(1))),
+                        false => self.write_product(tokens, above.into_iter()),
                     }
-                    self.write(tokens, factor, true);
+                    for divisor in below {
+                        operator(tokens, '/');
+                        tokens.extend(self.divisor(divisor));
+                    }
                 }
-            }
+            },
             Code::Pi => {
                 let (private, scalar) = (&self.paths.private, &self.paths.scalar);
                 tokens.extend(quote!(<#scalar as #private::Scalar>::PI));
@@ -191,13 +196,25 @@ impl Scope<'_, '_> {
         }
     }
 
+    fn write_product<'c>(&self, tokens: &mut TokenStream, factors: impl Iterator<Item = &'c Code>) {
+        for (position, factor) in factors.enumerate() {
+            if position > 0 {
+                operator(tokens, '*');
+            }
+            self.write(tokens, factor, true);
+        }
+    }
+
     fn reciprocal(&self, x: &Code, tight: bool) -> TokenStream {
-        let one = self.number(&integer(1));
-        // `1 / a * b` would divide by a alone
-        let compound = matches!(x, Code::Product(_) | Code::Sum(..));
-        let x = self.code(x, !compound);
-        let x = if compound { quote!((#x)) } else { x };
+        let (one, x) = (self.number(&integer(1)), self.divisor(x));
         if tight { quote!((#one / #x)) } else { quote!(#one / #x) }
+    }
+
+    fn divisor(&self, x: &Code) -> TokenStream {
+        // `1 / a * b` would divide by a alone
+        let compound = matches!(x, Code::Product(_) | Code::Sum(..) | Code::Reciprocal(_));
+        let x = self.code(x, !compound);
+        if compound { quote!((#x)) } else { x }
     }
 
     fn root(&self, x: &Code, (numerator, denominator): (i64, i64)) -> TokenStream {

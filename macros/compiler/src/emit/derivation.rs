@@ -273,6 +273,7 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
             "the chart of Cayley's map for the rotation and of the translation as it is, denominators cleared by the congruence with I − x^"
         }
         Chart::Product => "the chart of Cayley's map for the rotation and of the translation as it is",
+        Chart::Sine => "the chart of the sine",
         Chart::Root => "the chart F = (I + x^) det(I + x^)^(−1/n), as the Cayley map leaves the group",
         Chart::Exponential if cleared => "the exponential chart, freed of dexp⁻¹ by dexp",
         Chart::Exponential => "the exponential chart",
@@ -292,7 +293,13 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         }
         Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
         Solution::ClosedForm => {
-            "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1".to_string()
+            let coordinates = match formulas.symbols.charts[equation.factors[0]] {
+                Chart::Sine => ", which is the length of x",
+                _ => "",
+            };
+            format!(
+                "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1{coordinates}"
+            )
         }
         Solution::Linear => {
             format!("is linear in {chart}: solved by one elimination, no iteration")

@@ -71,8 +71,9 @@ impl<'g> Emitter<'_, 'g> {
                     #documentation
                     #[inline]
                     fn closed_form(&self, target: &#target) -> ::core::result::Result<#vector, #krate::Error> {
+                        let x = { #body };
                         #private::check_sine_squared({ #locals #sine })?;
-                        ::core::result::Result::Ok({ #body })
+                        ::core::result::Result::Ok(x)
                     }
                 }
             }

@@ -10,6 +10,9 @@ use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
 
+/// The most operations of a step that is inlined wherever it is called.
+const SHORT_STEP: usize = 128;
+
 impl Emitter<'_, '_> {
     /// The struct `Step` and its methods.
     pub(super) fn step_type(&self) -> TokenStream {
@@ -207,13 +210,22 @@ impl Emitter<'_, '_> {
             &step.increment,
             Some(Nesting::Element),
         );
-        let advance = self.part(
-            "The configuration that F = I + D moves q to.",
-            &self.program.formulas.titled("action"),
-            quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
-            &step.advance,
-            Some(Nesting::Configuration),
-        );
+        let advance = match &step.displace {
+            Some(displace) => self.part(
+                "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
+                &self.program.formulas.titled("action"),
+                quote!(displace(&self, q: &#configuration, x: &#momentum) -> #configuration),
+                displace,
+                Some(Nesting::Configuration),
+            ),
+            None => self.part(
+                "The configuration that F = I + D moves q to.",
+                &self.program.formulas.titled("action"),
+                quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
+                &step.advance,
+                Some(Nesting::Configuration),
+            ),
+        };
         let lift = self.part(
             "The covector p carried along by F = I + D, at q⁺.",
             &self.program.formulas.titled("cotangent lift"),
@@ -237,9 +249,10 @@ impl Emitter<'_, '_> {
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
         let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
         let input = self.input_parameter();
+        let inline = self.inline_of_steps();
         quote! {
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
-            #[inline]
+            #inline
             fn euler_poincare(
                 &self,
                 #time
@@ -263,6 +276,16 @@ impl Emitter<'_, '_> {
                 let d = self.increment(&x);
                 #inverse
             }
+        }
+    }
+
+    /// How a step is inlined: a short one always, as a call hands states through memory.
+    pub(super) fn inline_of_steps(&self) -> TokenStream {
+        let is_single = self.program.formulas.parts == 1 && self.model.order.stages().is_none();
+        let cost = self.program.steps.first().filter(|_| is_single).and_then(StepKernels::explicit_cost);
+        match cost {
+            Some(cost) if cost.total() <= SHORT_STEP => quote!(#[inline(always)]),
+            _ => quote!(#[inline]),
         }
     }
 
@@ -319,17 +342,28 @@ impl Emitter<'_, '_> {
                 quote!(let mu = mu + self.#end(#time &q);)
             }
         };
+        // where the step moves by the coordinates alone, it makes no matrix
+        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
+        let advanced = self.advanced(step);
         quote! {
             #kicked
             #start_force
             let x = self.#solve(#place &mu)?;
-            let d = self.increment(&x);
+            #increment
             #moving_force
             #from
-            let q = self.advance(&q, &d);
+            #advanced
             #updated
             #end_force
             #end
+        }
+    }
+
+    /// The move, by the increments or by the chart coordinates.
+    fn advanced(&self, step: &StepKernels) -> TokenStream {
+        match step.displace {
+            Some(_) => quote!(let q = self.displace(&q, &x);),
+            None => quote!(let q = self.advance(&q, &d);),
         }
     }
 
@@ -375,6 +409,7 @@ impl Emitter<'_, '_> {
                 let name = format_ident!("rest_kick{suffix}");
                 quote!(let mu = mu + self.#name(#time &q);)
             });
+            let advanced = self.advanced(step);
             quote! {
                 #start
                 let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
@@ -382,7 +417,7 @@ impl Emitter<'_, '_> {
                 let x = self.#solve(#place &mu)?;
                 let d = self.increment(&x);
                 #coupled
-                let q = self.advance(&q, &d);
+                #advanced
                 let p = self.lift(&q, &p, &d);
                 #end
             }

@@ -256,6 +256,7 @@ impl Emitter<'_, '_> {
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
         let time = self.time_argument();
         let (taken, taken_symmetric) = (self.step_taken(), self.symmetric_step_taken());
+        let inline = self.inline_of_steps();
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let [whole, first] = self.whole_and_first();
         let impulse = match self.shares_impulse() {
@@ -279,7 +280,7 @@ impl Emitter<'_, '_> {
                 #impulse
             }
             /// One step of the discrete Euler–Poincaré representation.
-            #[inline]
+            #inline
             fn step(
                 &self,
                 constants: &Self::Constants,

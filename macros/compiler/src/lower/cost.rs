@@ -45,7 +45,10 @@ impl Cost {
                 }
             }
             Code::Product(factors) => {
-                self.multiplications += factors.len() - 1;
+                // a division takes the place of a multiplication
+                let below =
+                    Code::quotient(factors).map_or(0, |(above, below)| below.len().min(above.len() + below.len() - 1));
+                self.multiplications += factors.len() - 1 - below;
                 factors.iter().for_each(|factor| self.count(factor));
             }
             Code::Reciprocal(x) => {

@@ -1,9 +1,10 @@
 //! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
 
-use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, integer};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
 
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
+use super::sums;
 use super::{Input, Node, Rate, Scalar, Scalars};
 
 /// Straight-line code of one output entry or shared term.
@@ -57,6 +58,20 @@ impl Kernel {
 }
 
 impl Code {
+    /// A product as a quotient: the factors above and those below, where one of them is a reciprocal that is used here alone.
+    pub(crate) fn quotient(factors: &[Code]) -> Option<(Vec<&Code>, Vec<&Code>)> {
+        let below: Vec<&Code> = factors.iter().filter_map(Code::divisor).collect();
+        let above = factors.iter().filter(|factor| factor.divisor().is_none()).collect();
+        (!below.is_empty()).then_some((above, below))
+    }
+
+    fn divisor(&self) -> Option<&Code> {
+        match self {
+            Code::Reciprocal(x) => Some(x),
+            _ => None,
+        }
+    }
+
     fn read<'a>(&'a self, inputs: &mut Vec<&'a Input>) {
         match self {
             Code::Read(input) => inputs.push(input),
@@ -99,13 +114,17 @@ pub enum Hoisting<'a> {
 
 /// Makes a kernel of grids of outputs.
 pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
-    let (operations, products, known) = (Interner::default(), Pairs::default(), Table::default());
-    let mut builder = Builder { scalars, hoisting, operations, products, known };
+    let (operations, products) = (Interner::default(), Pairs::default());
+    let (sums, known) = (Table::default(), Table::default());
+    let mut builder = Builder { scalars, hoisting, operations, products, sums, known };
     let outputs: Vec<(Shape, Vec<Id>)> = outputs
         .iter()
         .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
         .collect();
     builder.share_pairs();
+    if !builder.scalars.keeps_sums {
+        builder.share_sums();
+    }
     builder.code(&outputs)
 }
 
@@ -137,6 +156,8 @@ struct Builder<'a, 'b> {
     operations: Interner<Operation>,
     /// The factors of products once pairs are shared.
     products: Pairs,
+    /// The terms of sums once sums within them are shared, where there are such.
+    sums: Table<Id, Vec<(Rational, Id)>>,
     known: Table<Scalar, Id>,
 }
 
@@ -235,7 +256,7 @@ impl Builder<'_, '_> {
                 None => constant += coefficient,
             }
         }
-        for (term, coefficient) in terms {
+        for (term, coefficient) in self.collected(terms) {
             parts.push(match self.scalars.node(term).clone() {
                 Node::Product(factors) => self.convert_product(coefficient, &factors),
                 _ => (coefficient, self.convert(term)),
@@ -250,6 +271,53 @@ impl Builder<'_, '_> {
             [(coefficient, only)] if constant == integer(0) && *coefficient == integer(1) => *only,
             _ => self.intern(Operation::Sum(constant, parts)),
         }
+    }
+
+    /// Terms with their coefficients, those together whose factors differ in constants alone: a x + b x is (a + b) x, with one constant.
+    fn collected(&mut self, terms: Vec<(Scalar, Rational)>) -> Vec<(Scalar, Rational)> {
+        if !self.slow_rates().contains(&Rate::Once) {
+            return terms;
+        }
+        let mut groups: Table<Vec<(Scalar, u32)>, Vec<usize>> = Table::default();
+        for (position, (term, _)) in terms.iter().enumerate() {
+            groups.entry(self.fast_factors(*term)).push(position);
+        }
+        let mut collected = Vec::new();
+        for (fast, positions) in groups.iter() {
+            match positions.as_slice() {
+                [only] => collected.push((*only, terms[*only].clone())),
+                [first, ..] => {
+                    let slow = positions
+                        .iter()
+                        .map(|&position| (self.slow_part(terms[position].0), terms[position].1.clone()));
+                    let slow: Vec<_> = slow.collect();
+                    let factors = fast.iter().flat_map(|&(factor, power)| std::iter::repeat_n(factor, power as usize));
+                    let factors: Vec<Scalar> =
+                        [self.scalars.sum(integer(0), slow)].into_iter().chain(factors).collect();
+                    collected.push((*first, (self.scalars.product(factors), integer(1))));
+                }
+                [] => {}
+            }
+        }
+        collected.sort_by_key(|(position, _)| *position);
+        collected.into_iter().map(|(_, term)| term).collect()
+    }
+
+    fn factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
+        match self.scalars.node(term) {
+            Node::Product(factors) => factors.clone(),
+            _ => vec![(term, 1)],
+        }
+    }
+
+    fn fast_factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
+        self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) != Rate::Once).collect()
+    }
+
+    fn slow_part(&mut self, term: Scalar) -> Scalar {
+        let slow = self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) == Rate::Once);
+        let slow: Vec<Scalar> = slow.flat_map(|(factor, power)| std::iter::repeat_n(factor, power as usize)).collect();
+        self.scalars.product(slow)
     }
 
     /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.
@@ -296,10 +364,24 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// Puts a sum that stands within others, as a + b in 1 − a − b, into them by its name.
+    fn share_sums(&mut self) {
+        let operations = self.operations.values().iter().enumerate();
+        let found = operations.filter_map(|(id, operation)| match operation {
+            Operation::Sum(constant, terms) if terms.len() > 1 => Some((id, constant.is_zero(), terms.clone())),
+            _ => None,
+        });
+        self.sums = sums::shared(found.collect());
+    }
+
+    fn terms<'t>(&'t self, id: Id, terms: &'t [(Rational, Id)]) -> &'t [(Rational, Id)] {
+        self.sums.get(&id).map_or(terms, Vec::as_slice)
+    }
+
     fn operands(&self, id: Id) -> Vec<Id> {
         match self.operations.value(id) {
             Operation::Leaf(_) => Vec::new(),
-            Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Operation::Sum(_, terms) => self.terms(id, terms).iter().map(|(_, term)| *term).collect(),
             Operation::Product(_) => self.products.factors(id).to_vec(),
             Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
             Operation::Call(_, arguments) => {
@@ -343,10 +425,14 @@ impl Builder<'_, '_> {
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
         uses[id] += 1;
-        if uses[id] == 1 {
+        let is_first = uses[id] == 1;
+        // what has no name of its own is written out at each use
+        if is_first || !self.is_shared(id) {
             for operand in self.operands(id) {
                 self.count(operand, uses, order);
             }
+        }
+        if is_first {
             order.push(id);
         }
     }
@@ -356,7 +442,8 @@ impl Builder<'_, '_> {
         match self.operations.value(id) {
             Operation::Leaf(_) | Operation::Output(..) => false,
             Operation::Sum(constant, terms) => {
-                !(*constant == integer(0) && terms.len() == 1 && terms[0].0 == integer(-1))
+                let terms = self.terms(id, terms);
+                !(constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
             }
             _ => true,
         }
@@ -373,6 +460,7 @@ impl Builder<'_, '_> {
         match self.operations.value(id).clone() {
             Operation::Leaf(scalar) => self.leaf(scalar),
             Operation::Sum(constant, terms) => {
+                let terms = self.terms(id, &terms).to_vec();
                 let terms =
                     terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
                 Code::Sum(constant, terms)

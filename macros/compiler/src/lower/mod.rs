@@ -5,6 +5,7 @@
 
 mod control;
 mod cost;
+mod displacement;
 mod grid;
 mod kernel;
 mod names;
@@ -12,6 +13,7 @@ mod pairs;
 mod print;
 mod scalar;
 mod stepping;
+mod sums;
 mod variation;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
@@ -95,7 +97,9 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     if dimension > 64 {
         return Err(too_large(&formulas, format!("{dimension} unknowns")));
     }
+    // rounding decides where plans go that start from a saddle: what they are made of is computed as it is written
     let mut scalars = Scalars::default();
+    scalars.keeps_sums = formulas.model.is_steered();
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);

@@ -89,7 +89,10 @@ impl Program<'_> {
             }
             kernels.extend(step.start_force.iter().map(|kernel| (named("start_force"), kernel)));
             kernels.push((named("increment"), &step.increment));
-            kernels.push((named("advance"), &step.advance));
+            match &step.displace {
+                Some(displace) => kernels.push((named("displace"), displace)),
+                None => kernels.push((named("advance"), &step.advance)),
+            }
             kernels.extend(step.rest.iter().map(|kernel| (named("rest_kick"), kernel)));
             kernels.extend(step.coupled_gradient.iter().map(|kernel| (named("coupled_gradient"), kernel)));
             kernels.extend(step.update.iter().map(|kernel| (named("update"), kernel)));
@@ -210,7 +213,15 @@ impl Program<'_> {
                 if place == 0 { text } else { format!("({text})") }
             }
             Code::Product(factors) => {
-                let text = factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*");
+                let product =
+                    |factors: &[&Code]| factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*");
+                let text = match Code::quotient(factors) {
+                    None => product(&factors.iter().collect::<Vec<_>>()),
+                    Some((above, below)) => {
+                        let above = if above.is_empty() { "1".to_string() } else { product(&above) };
+                        below.iter().fold(above, |text, divisor| format!("{text}/{}", self.text(divisor, 2)))
+                    }
+                };
                 if place < 2 { text } else { format!("({text})") }
             }
             Code::Reciprocal(x) if place == 0 => format!("1/{}", self.text(x, 2)),

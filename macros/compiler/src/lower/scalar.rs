@@ -99,6 +99,8 @@ pub enum Node {
 /// Owns scalars.
 #[derive(Default)]
 pub struct Scalars {
+    /// Whether kernels leave sums as they are written, sums within them too.
+    pub keeps_sums: bool,
     nodes: Interner<Node>,
     rates: Vec<Rate>,
     calls: Vec<Call>,

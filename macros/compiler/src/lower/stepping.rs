@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use clebsch_symbolic::{Chart, Expr, Group, Role, Shape, Zero, identity};
 
+use super::displacement;
 use super::kernel::kernel;
-use super::{Code, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
+use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
 use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, is_diagonal};
 use crate::model::{Factor, Side};
 
@@ -33,6 +34,8 @@ pub struct StepKernels {
     pub increment: Kernel,
     /// q⁺, from q and the increments.
     pub advance: Kernel,
+    /// q⁺, from q and the chart coordinates, where that costs less than by the increments.
+    pub displace: Option<Kernel>,
     /// M⁺, from M and the increments; from q and the increments where the cost couples them; `None` if M does not change.
     pub update: Option<Kernel>,
     /// Whether M⁺ is made from q and the increments.
@@ -73,6 +76,29 @@ pub struct Solve {
     pub moves: bool,
     /// Whether it depends on the input.
     pub reads_input: bool,
+}
+
+impl StepKernels {
+    /// Whether a step makes the increments, and does not move by the chart coordinates alone.
+    pub fn makes_increments(&self) -> bool {
+        self.displace.is_none() || self.update.is_some()
+    }
+
+    /// The operations of a step, unless it iterates.
+    pub fn explicit_cost(&self) -> Option<Cost> {
+        if !self.solves.iter().all(|solve| matches!(solve.solution, Solution::Explicit | Solution::ClosedForm)) {
+            return None;
+        }
+        let solves = self.solves.iter().flat_map(|solve| solve.predict.iter().chain(&solve.sine_squared));
+        let kicks = [&self.start, &self.end, &self.start_force, &self.end_force, &self.update].into_iter().flatten();
+        let moves = match &self.displace {
+            Some(displace) => displace,
+            None => &self.advance,
+        };
+        let increment = self.makes_increments().then_some(&self.increment);
+        let kernels = solves.chain(kicks).chain(increment).chain([moves]);
+        Some(kernels.map(Kernel::cost).fold(Cost::default(), Cost::plus))
+    }
 }
 
 /// The kernels of all substeps.
@@ -137,6 +163,15 @@ fn step<'g>(
             gradients(substep.lagrangian.kinetic).iter().map(|gradient| gradient.substitute(&moved)).collect();
         separate(scalars, hoisted, &gradients)
     });
+    let (increment, advance) = (increment(formulas, scalars), advance(formulas, scalars));
+    let update = update(formulas, substep, scalars, hoisted);
+    let by_increments = match update.is_some() {
+        // the increments are made in any case
+        true => advance.cost().total(),
+        false => increment.cost().total() + advance.cost().total(),
+    };
+    let displace = displacement::displaced(formulas).map(|images| plain(scalars, &images));
+    let displace = displace.filter(|displace| displace.cost().total() < by_increments);
     StepKernels {
         end_is_start: substep.start == substep.end && !formulas.is_timed(),
         start,
@@ -147,9 +182,10 @@ fn step<'g>(
         start_gradient,
         end_gradient,
         solves,
-        increment: increment(formulas, scalars),
-        advance: advance(formulas, scalars),
-        update: update(formulas, substep, scalars, hoisted),
+        increment,
+        advance,
+        displace,
+        update,
         couples,
         rest,
         coupled_gradient,

@@ -17,6 +17,8 @@ pub enum Chart {
     Product,
     /// F = (I + Z) det(I + Z)^(−1/n).
     Root,
+    /// F = I + Z + Z²/(1 + √(1 − |x|²)) for rotations in one plane: x = sin θ·axis, so that Z = ½(F − Fᵀ). Up to a quarter turn.
+    Sine,
     /// F = exp Z.
     Exponential,
     /// F = x.
@@ -61,6 +63,10 @@ impl Chart {
             Chart::Cayley if group == Group::UnitQuaternions => half_turn(x[0]),
             // (I − Z)⁻¹(I + Z) = 2(I − Z)⁻¹ − I
             Chart::Cayley => 2 * resolvent(combination(group, x)) - group.identity(graph),
+            Chart::Sine => {
+                let (increment, denominator) = self.increment(group, x);
+                group.identity(graph) + increment / denominator
+            }
             Chart::Affine => group.identity(graph) + combination(group, x),
             Chart::Root => {
                 let n = group.element_shape().rows;
@@ -87,7 +93,7 @@ impl Chart {
     }
 
     /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
-    /// 2(Z + Z²)/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
+    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
     /// n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
         let graph = x[0].graph();
@@ -110,6 +116,10 @@ impl Chart {
             }
             (Chart::Cayley, _) => even_increment(combination(group, x)),
             (Chart::Affine, _) => (combination(group, x), one),
+            (Chart::Sine, _) => {
+                let z = combination(group, x);
+                (z + (z * z) / (one + cosine(x[0])), one)
+            }
             (Chart::Root, _) => {
                 // r − 1 = (rⁿ − 1)/(1 + r + … + rⁿ⁻¹) with rⁿ = det(I + Z)
                 let z = combination(group, x);
@@ -139,6 +149,15 @@ impl Chart {
         }
     }
 
+    /// α and β of F = I + αZ + βZ², in charts of rotations where F has this form.
+    pub fn in_one_plane<'g>(self, group: Group, x: &[Expr<'g>]) -> Option<(Expr<'g>, Expr<'g>)> {
+        let one = x[0].graph().integer(1);
+        match (self, group) {
+            (Chart::Sine, _) => Some((one, one / (one + cosine(x[0])))),
+            _ => None,
+        }
+    }
+
     /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators: components of the
     /// product vanish where those of ρ do. (I − Z) ρ (I − Z)ᵀ for rotations acting from the right, whose residual has F on the left or
     /// Fᵀ on the right; with the signs changed for left actions; and likewise for other groups, Zᵀ standing for −Z.
@@ -161,6 +180,11 @@ impl Chart {
             _ => (1, 1),
         }
     }
+}
+
+/// cos θ where |x| = sin θ.
+fn cosine(x: Expr<'_>) -> Expr<'_> {
+    (x.graph().integer(1) - x.norm_squared()).sqrt()
 }
 
 /// Z = Σ x_i E_i over all blocks.
@@ -247,7 +271,11 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
     let one = graph.integer(1);
     let square = x.norm_squared();
     match n {
-        2 | 3 => (2 * (z + z * z), one + square),
+        2 | 3 => {
+            // each entry then is a sum of products, with the scale in what they share
+            let scale = one / ((one + square) / 2);
+            (scale * z + scale * (z * z), one)
+        }
         4 => {
             let pfaffian = [(0, 5, 1), (1, 4, -1), (2, 3, 1)]
                 .iter()

@@ -1,0 +1,58 @@
+//! Vectors that turn in one plane move without the matrix of the turn: q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)).
+
+use clebsch_symbolic::{Chart, Expr, identity};
+
+use crate::derive::Formulas;
+use crate::model::Isotropy;
+
+/// q⁺ for each leaf from q and the chart coordinates; `None` where a leaf is no vector or does not move like that.
+///
+/// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
+pub(super) fn displaced<'g>(formulas: &Formulas<'g>) -> Option<Vec<Expr<'g>>> {
+    (0..formulas.model.configurations.len()).map(|leaf| displaced_leaf(formulas, leaf)).collect()
+}
+
+fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> {
+    let (model, symbols) = (&formulas.model, &formulas.symbols);
+    let (q, image) = (model.configurations[leaf].symbol, model.action[leaf]);
+    if q.shape().columns != 1 {
+        return None;
+    }
+    let mut movers = (0..model.factors.len()).filter(|&k| image.depends_on(model.factors[k].symbol));
+    let Some(k) = movers.next() else { return Some(image) };
+    if movers.next().is_some() {
+        return None;
+    }
+    let group = model.factors[k].group;
+    let x = symbols.stacked_coordinates(k);
+    let (alpha, beta) = symbols.charts[k].in_one_plane(group, &symbols.coordinates(k))?;
+    let moved = |q: Expr<'g>| {
+        formulas.generator[leaf].substitute(&[(symbols.algebra[k], x), (model.configurations[leaf].symbol, q)])
+    };
+    let (once, twice) = (moved(q), moved(moved(q)));
+    // affine in Z and Z²: the step size and the time stand for two free numbers
+    let (z, free) = (group.wedge(x), [model.step_size, model.time]);
+    let element = group.identity(model.graph) + free[0] * z + free[1] * (z * z);
+    let turned = image.substitute(&[(model.factors[k].symbol, element)]);
+    if !identity::equal(&[turned], &[q + free[0] * once + free[1] * twice]) {
+        return None;
+    }
+    match is_perpendicular(formulas, k, leaf, twice) {
+        true => Some(q + alpha * once - (beta * x.norm_squared()) * q),
+        false => Some(q + alpha * once + beta * twice),
+    }
+}
+
+/// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.
+fn is_perpendicular<'g>(formulas: &Formulas<'g>, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
+    let (model, symbols) = (&formulas.model, &formulas.symbols);
+    // forces in 𝔤*, and what a cost gives at rest, need not be momenta of that kind
+    let is_momentum = symbols.charts[k] == Chart::Sine
+        && model.isotropy == Isotropy::Fixed
+        && model.force.is_none()
+        && formulas.substeps.iter().all(|substep| substep.rest.is_none());
+    let momentum = formulas.momentum_map[k];
+    let seen = twice.substitute(&[(symbols.stacked_coordinates(k), momentum)]);
+    let q = model.configurations[leaf].symbol;
+    is_momentum && identity::equal(&[seen], &[-(momentum.norm_squared() * q)])
+}
