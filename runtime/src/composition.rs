@@ -85,23 +85,14 @@ pub struct Stage<'a, T, C> {
     whole: T,
 }
 
-impl<T: Scalar, C, const K: usize> Composed<T, C, K> {
-    /// The step number `index` < 2K − 1.
+impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
+    /// The step number `number` < 2K − 1.
     #[inline]
-    pub fn stage(&self, index: usize) -> Stage<'_, T, C> {
-        let is_forward = index < K;
-        let mirrored = if is_forward { index } else { (2 * K - 2).saturating_sub(index) };
-        // one pass, without an index that could be out of range
-        let mut found = Stage { constants: &self.whole, start: T::zero(), size: self.h, whole: self.h };
-        let mut start = T::zero();
-        for (i, (constants, &size)) in self.stages.iter().zip(&self.sizes).enumerate() {
-            if i == mirrored {
-                let start = if is_forward { start } else { self.h - start - size };
-                found = Stage { constants, start, size, whole: self.h };
-            }
-            start += size;
-        }
-        found
+    pub fn stage(&self, number: usize) -> Stage<'_, T, C> {
+        let before = (0..number).filter_map(|number| self.at(number));
+        let start = before.fold(T::zero(), |sum, (_, size)| sum + size);
+        let (constants, size) = self.at(number).unwrap_or((&self.whole, self.h));
+        Stage { constants, start, size, whole: self.h }
     }
 }
 

@@ -2,91 +2,12 @@
 //!
 //! Errors lie between 1e-12 and 1e-1: above round-off, and below where the next power of h shows by more than a tenth of an order or two.
 
-#![allow(missing_docs)]
-
+use crate::flat;
 use clebsch::{Clebsch, Error};
 use clebsch_tests::oracle::motion::{motion, order};
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::hat;
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
-
-/// The same systems in every order.
-macro_rules! systems {
-    ($name:ident, $order:literal) => {
-        mod $name {
-            use clebsch::Clebsch;
-            use nalgebra::{Matrix3, Vector3};
-
-            /// A body about a pivot: implicit, in the Cayley chart.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action     = |F: SO<3>, R: SO<3>| R * F,
-                lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-                potential  = |R| self.weight * (R * self.center).z,
-                order      = $order,
-            )]
-            pub struct Top {
-                #[clebsch(symmetric)]
-                pub inertia: Matrix3<f64>,
-                pub weight: f64,
-                pub center: Vector3<f64>,
-            }
-
-            /// A point on a sphere: explicit.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action    = |F: SO<3>, q: Unit<Vector3>| F * q,
-                cost      = |h, F| (F - I).norm_squared() / (4 * h),
-                potential = |q| self.gravity * q.z,
-                order     = $order,
-            )]
-            pub struct Pendulum {
-                pub gravity: f64,
-            }
-
-            /// A particle that is driven: the time matters, also within a step.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action    = |a: Translation<2>, x: Vector2| x + a,
-                cost      = |h, a| a.norm_squared() / (2 * h),
-                potential = |t, x| x.norm_squared().powi(2) / 4 - x.x * (self.rate * t).cos(),
-                order     = $order,
-            )]
-            pub struct Driven {
-                pub rate: f64,
-            }
-
-            /// The potential at the start of a step alone: half steps are composed with their adjoints before.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action = |a: Translation<2>, x: Vector2| x + a,
-                cost   = |h, x, a| a.norm_squared() / (2 * h) - h * self.stiffness * x.norm_squared().powi(2) / 4,
-                order  = $order,
-            )]
-            pub struct Lopsided {
-                pub stiffness: f64,
-            }
-
-            /// A body in a medium, with a torque from outside.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action     = |F: SO<3>, R: SO<3>| R * F,
-                lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-                force      = |omega, torque: Vector3| torque - self.damping * omega,
-                order      = $order,
-            )]
-            pub struct Damped {
-                #[clebsch(symmetric)]
-                pub inertia: Matrix3<f64>,
-                pub damping: f64,
-            }
-        }
-    };
-}
-
-systems!(fourth, 4);
-systems!(sixth, 6);
-systems!(eighth, 8);
 
 /// Measures the slope of the error at the end over these numbers of steps.
 fn assert_order<S: Clebsch<Scalar = f64> + Clone>(
@@ -130,10 +51,6 @@ fn three<const N: usize>(y: &SVector<f64, N>, at: usize) -> Vector3<f64> {
     Vector3::new(y[at], y[at + 1], y[at + 2])
 }
 
-fn flat<const N: usize>(parts: &[&[f64]]) -> SVector<f64, N> {
-    SVector::from_iterator(parts.iter().flat_map(|part| part.iter().copied()))
-}
-
 /// R' = R ω^, π' = π × ω + torque(R, ω).
 fn body(
     inertia: Matrix3<f64>,
@@ -154,7 +71,7 @@ macro_rules! orders {
     ($name:ident, $order:literal) => {
         mod $name {
             use super::*;
-            use crate::$name::{Damped, Driven, Lopsided, Pendulum, Top};
+            use crate::systems::$name::{Damped, Driven, Lopsided, Pendulum, Top};
 
             #[test]
             fn a_top() {
@@ -257,10 +174,6 @@ macro_rules! orders {
     };
 }
 
-mod orders {
-    use super::*;
-
-    orders!(fourth, 4);
-    orders!(sixth, 6);
-    orders!(eighth, 8);
-}
+orders!(fourth, 4);
+orders!(sixth, 6);
+orders!(eighth, 8);
