@@ -1,0 +1,424 @@
+//! The free motion of a rigid body, exactly: M′ = M × ω, R′ = R ω^ with ω = J⁻¹M, by power series that converge for all bodies.
+//!
+//! The rotation by the unit quaternion (ρ₀, ρ) over a time h obeys, in principal axes,
+//!
+//! ```text
+//! d ρ − m × ρ = ρ₀ m,    m = h M/2,    d = diag(d₁, d₂, d₃)
+//! ```
+//! where the d_i depend on the body, on h and on the two invariants |M|² and M·J⁻¹M alone: this is the equation of Moser and Veselov for a body
+//! of modified inertia, linear in the Gibbs vector ρ/ρ₀. With x_i = 1/J_i, a = |M|², e = M·J⁻¹M and, (i, j, k) in any order,
+//!
+//! ```text
+//! D′_i = −½ (a + D_i²) (x_i + P_i (e − a x_i)/(℘(τ/2) − e_i + a P_i)),    D_i = 2 d_i/τ
+//! P_i = (x_i − x_j)(x_i − x_k),    e_i = a x_j x_k + e x_i − their mean,    ℘ with the roots e_i
+//! ```
+//! so that d_i is a power series in τ², its coefficients homogeneous polynomials in a and e: made once for a body, without a division by
+//! differences of inertia. Where few terms are not enough the motion is made of equal parts of the time, which is exact too.
+//!
+//! Source: the equation is that of J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of
+//! matrix polynomials*, Comm. Math. Phys. 139 (1991); that modified constants make it exact, R. I. McLachlan and A. Zanna, *The discrete
+//! Moser–Veselov algorithm for the free rigid body, revisited*, Found. Comput. Math. 5 (2005), for the first terms. The differential
+//! equation follows from d_i = ½τ|M| cot Ψ_i, where tan(Ψ_i − Ψ_j) = |M| (x_i − x_j) σσ_k/(σ_iσ_j) in Weierstrass' functions of τ/2.
+
+use crate::eigen::Spectrum;
+use crate::linear::solve_dense;
+use crate::{Error, Scalar};
+use nalgebra::{Quaternion, SMatrix, SVector};
+
+/// The degree up to which the series are known.
+const DEGREE: usize = 12;
+
+/// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
+const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
+
+/// The most parts that a motion is made of.
+const PARTS: u32 = 1024;
+
+/// What no free motion of a body over a given time changes.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeRotation<T> {
+    /// h x/2 with the largest x of x_i = 1/J_i by size: m = `scale` M is free of units.
+    scale: T,
+    /// J_i x
+    inertia: [T; 3],
+    /// x_i/x less the mean of the largest and the smallest.
+    centred: [T; 3],
+    /// The columns are the principal axes, where they are not those of the coordinates.
+    axes: Option<SMatrix<T, 3, 3>>,
+    /// The coefficients of α^{n−j} ε^j in x_i d_i, degree after degree.
+    series: [[T; 3]; MONOMIALS],
+}
+
+/// A homogeneous polynomial of each degree n in α and ε: entry (n, j) belongs to α^{n−j} ε^j.
+type Series<T> = [[T; DEGREE + 1]; DEGREE + 1];
+
+impl<T: Scalar> FreeRotation<T> {
+    /// The free motions over the time `h` of a body with the inertia tensor `inertia`, of which the lower triangle is read.
+    ///
+    /// # Errors
+    /// [`Error::SingularKineticEnergy`] where a principal moment is 0, [`Error::NotFinite`].
+    pub fn new(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
+        let is_diagonal = [(1, 0), (2, 0), (2, 1)].iter().all(|&place| inertia[place] == T::zero());
+        let (moments, axes) = match is_diagonal {
+            true => ([0, 1, 2].map(|i| inertia[(i, i)]), None),
+            false => {
+                let spectrum = Spectrum::of(inertia);
+                (spectrum.values.into(), Some(spectrum.vectors))
+            }
+        };
+        if moments.iter().any(|moment| !moment.is_finite()) {
+            return Err(Error::NotFinite { name: "the inertia" });
+        }
+        let least = moments.iter().fold(moments[0], |least, &moment| if moment.abs() < least.abs() { moment } else { least });
+        let relative = moments.map(|moment| moment / least);
+        if !relative.iter().all(|moment| moment.is_finite()) {
+            return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
+        }
+        let x = relative.map(T::recip);
+        let (mut low, mut high) = (x[0], x[0]);
+        for &other in &x {
+            low = if other < low { other } else { low };
+            high = if other > high { other } else { high };
+        }
+        let middle = low + half(high - low);
+        let centred = x.map(|other| other - middle);
+        let series = series(&x, &centred);
+        Ok(Self { scale: half(h) / least, inertia: relative, centred, axes, series })
+    }
+
+    /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
+    ///
+    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 12 in two variables, and one rotation for
+    /// each 1.4 rad or so of the angle.
+    ///
+    /// # Errors
+    /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
+    #[inline]
+    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+        let m = self.to_principal(momentum).map(|component| component * self.scale);
+        match self.modified_inertia(&m) {
+            Some(d) => {
+                let (p, r) = turn(&d, &m);
+                Ok(self.from_principal(ratio(p, r)))
+            }
+            None => self.in_parts(&m),
+        }
+    }
+
+    /// The momentum of the free motion that makes this rotation of less than half a turn; NaN where none is found.
+    ///
+    /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
+    #[cold]
+    pub fn momentum(&self, rotation: &Quaternion<T>) -> SVector<T, 3> {
+        let c = self.to_principal(&SVector::from_fn(|i, _| rotation.coords[i] / rotation.coords[3]));
+        let c = SVector::from(c);
+        let alone = Self { axes: None, scale: T::one(), ..*self };
+        // the equation of Moser and Veselov, which is right to second order
+        let [a, b, g] = [0, 1, 2].map(|i| self.inertia[i] * c[i]);
+        let cross = SVector::from([c[1] * g - c[2] * b, c[2] * a - c[0] * g, c[0] * b - c[1] * a]);
+        let square = T::one() + c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        let mut m = (SVector::from([a, b, g]) + cross) * square.recip();
+        let mut before = T::from_f64(f64::INFINITY);
+        for _ in 0..50 {
+            let Ok(reached) = alone.gibbs_vector(&m) else { break };
+            let defect = reached - c;
+            let size = largest(&defect);
+            // written so that NaN ends it
+            if !(size > T::zero() && size < before) {
+                return self.from_principal((m * self.scale.recip()).into());
+            }
+            before = size;
+            let step = T::EPSILON.sqrt() * (largest(&m) + T::EPSILON);
+            let mut slope = SMatrix::<T, 3, 3>::from_element(T::zero());
+            for j in 0..3 {
+                let mut beside = m;
+                beside[j] += step;
+                let Ok(other) = alone.gibbs_vector(&beside) else { break };
+                slope.set_column(j, &((other - reached) * step.recip()));
+            }
+            let Some((correction, _)) = solve_dense(&slope, &defect) else { break };
+            m -= correction;
+        }
+        SVector::from_element(T::from_f64(f64::NAN))
+    }
+
+    /// d_i x of the whole time; `None` where the series have not converged at their end.
+    #[inline]
+    fn modified_inertia(&self, m: &[T; 3]) -> Option<[T; 3]> {
+        let squares = m.map(|component| component * component);
+        let alpha = squares[0] + squares[1] + squares[2];
+        let [a, b, c] = self.centred;
+        let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
+        let mut sum = Sum { value: [T::one(); 3], before: T::one(), monomials: [T::zero(); DEGREE + 1] };
+        sum.monomials[0] = T::one();
+        macro_rules! degrees {
+            ($($degree:literal)*) => {$(
+                if sum.add::<$degree>(&self.series, alpha, epsilon) {
+                    let [a, b, c] = sum.value;
+                    return Some([a * self.inertia[0], b * self.inertia[1], c * self.inertia[2]]);
+                }
+            )*};
+        }
+        degrees!(1 2 3 4 5 6 7 8 9 10 11 12);
+        None
+    }
+
+    /// The same rotation as that of equal parts of the time, one after the other.
+    #[cold]
+    #[inline(never)]
+    fn in_parts(&self, m: &[T; 3]) -> Result<SVector<T, 3>, Error> {
+        if m.iter().any(|component| !component.is_finite()) {
+            return Err(Error::NotFinite { name: "the momentum" });
+        }
+        let (mut parts, mut part) = (1, *m);
+        let d = loop {
+            if parts == PARTS {
+                let fraction = T::from_f64(0.5 * f64::from(PARTS)) / largest(&SVector::from(*m));
+                return Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None });
+            }
+            parts *= 2;
+            part = part.map(half);
+            if let Some(d) = self.modified_inertia(&part) {
+                break d;
+            }
+        };
+        let mut whole = (T::one(), [T::zero(); 3]);
+        for _ in 0..parts {
+            let (p, r) = unit(turn(&d, &part));
+            whole = unit(product(whole, (p, r)));
+            part = carried(&part, p, &r);
+        }
+        Ok(self.from_principal(ratio(whole.0, whole.1)))
+    }
+
+    #[inline]
+    fn to_principal(&self, vector: &SVector<T, 3>) -> [T; 3] {
+        match &self.axes {
+            Some(axes) => axes.tr_mul(vector).into(),
+            None => [vector[0], vector[1], vector[2]],
+        }
+    }
+
+    #[inline]
+    fn from_principal(&self, vector: [T; 3]) -> SVector<T, 3> {
+        match &self.axes {
+            Some(axes) => axes * SVector::from(vector),
+            None => SVector::from(vector),
+        }
+    }
+}
+
+/// The sum of a series so far.
+struct Sum<T> {
+    value: [T; 3],
+    /// The size of the last terms.
+    before: T,
+    /// Those of the last degree.
+    monomials: [T; DEGREE + 1],
+}
+
+impl<T: Scalar> Sum<T> {
+    /// Adds the terms of degree `N`; whether those that are left cannot be seen.
+    ///
+    /// With terms t_n of geometric decrease what is left is t_n²/t_{n−1} and less.
+    #[inline(always)]
+    fn add<const N: usize>(&mut self, series: &[[T; 3]; MONOMIALS], alpha: T, epsilon: T) -> bool {
+        self.monomials[N] = self.monomials[N - 1] * epsilon;
+        for monomial in &mut self.monomials[..N] {
+            *monomial *= alpha;
+        }
+        let first = N * (N + 1) / 2;
+        let mut terms = [T::zero(); 3];
+        for (monomial, coefficients) in self.monomials[..=N].iter().zip(&series[first..=first + N]) {
+            for (term, coefficient) in terms.iter_mut().zip(coefficients) {
+                *term += *coefficient * *monomial;
+            }
+        }
+        for (value, term) in self.value.iter_mut().zip(terms) {
+            *value += term;
+        }
+        let size = terms[0].abs() + terms[1].abs() + terms[2].abs();
+        let converged = size * size <= T::from_ratio(1, 8) * T::EPSILON * self.before && size <= half(self.before);
+        self.before = size;
+        converged
+    }
+}
+
+#[inline]
+fn half<T: Scalar>(x: T) -> T {
+    T::from_ratio(1, 2) * x
+}
+
+fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {
+    vector.iter().fold(T::zero(), |most, component| crate::space::larger(most, component.abs()))
+}
+
+/// (p, r), a multiple of the quaternion with d r − m × r = p m.
+#[inline]
+fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
+    let ([a, b, c], [x, y, z]) = (*d, *m);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let square = xx + yy + zz;
+    let p = a * (b * c + xx) + (b * yy + c * zz);
+    let r = [
+        (b * c + square) * x + (b - c) * (y * z),
+        (c * a + square) * y + (c - a) * (z * x),
+        (a * b + square) * z + (a - b) * (x * y),
+    ];
+    (p, r)
+}
+
+/// r/p; at half a turn, where p vanishes, that of an angle which differs by a unit in the last place.
+#[inline]
+fn ratio<T: Scalar>(p: T, r: [T; 3]) -> [T; 3] {
+    let least = T::EPSILON * (r[0].abs() + r[1].abs() + r[2].abs());
+    let p = if p.abs() < least { least } else { p };
+    let inverse = p.recip();
+    r.map(|component| component * inverse)
+}
+
+/// The unit quaternion of a multiple.
+fn unit<T: Scalar>((p, r): (T, [T; 3])) -> (T, [T; 3]) {
+    let [x, y, z] = r;
+    let inverse = (p * p + x * x + y * y + z * z).sqrt().recip();
+    (p * inverse, r.map(|component| component * inverse))
+}
+
+/// The product of two quaternions.
+fn product<T: Scalar>((p, [x, y, z]): (T, [T; 3]), (s, [a, b, c]): (T, [T; 3])) -> (T, [T; 3]) {
+    let scalar = p * s - x * a - y * b - z * c;
+    let vector = [
+        p * a + s * x + y * c - z * b,
+        p * b + s * y + z * a - x * c,
+        p * c + s * z + x * b - y * a,
+    ];
+    (scalar, vector)
+}
+
+/// Fᵀm of the rotation by a unit quaternion: m − 2ρ₀ ρ × m + 2 ρ × (ρ × m).
+fn carried<T: Scalar>(m: &[T; 3], p: T, r: &[T; 3]) -> [T; 3] {
+    let cross = |[a, b, c]: [T; 3], [x, y, z]: [T; 3]| [b * z - c * y, c * x - a * z, a * y - b * x];
+    let once = cross(*r, *m);
+    let twice = cross(*r, once);
+    let two = T::one() + T::one();
+    core::array::from_fn(|i| m[i] + two * (twice[i] - p * once[i]))
+}
+
+/// The coefficients of x_i d_i for the reciprocal moments x and the same less their middle, y. Scales are such that h M/2 is m.
+#[cold]
+fn series<T: Scalar>(x: &[T; 3], y: &[T; 3]) -> [[T; 3]; MONOMIALS] {
+    let zero = T::zero();
+    let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
+    // e_i, less their mean: coefficients of α and of ε
+    let raw: [[T; 2]; 3] = core::array::from_fn(|i| {
+        let (j, k) = others(i);
+        [y[j] * y[k], y[i]]
+    });
+    let third = T::from_ratio(1, 3);
+    let mean: [T; 2] = core::array::from_fn(|part| third * (raw[0][part] + raw[1][part] + raw[2][part]));
+    let roots: [[T; 2]; 3] = raw.map(|[a, b]| [a - mean[0], b - mean[1]]);
+    let elliptic = elliptic(&roots);
+    let mut all = [[zero; 3]; MONOMIALS];
+    for i in 0..3 {
+        let (j, k) = others(i);
+        let differences = (x[i] - x[j]) * (x[i] - x[k]);
+        // p = 1 + α P_i − e_i + …
+        let mut p = elliptic;
+        (p[1][0], p[1][1]) = (differences - roots[i][0], -roots[i][1]);
+        let inverse = reciprocal(&p);
+        let mut rate: Series<T> = [[zero; DEGREE + 1]; DEGREE + 1];
+        rate[0][0] = x[i];
+        for n in 1..=DEGREE {
+            for part in 0..n {
+                rate[n][part + 1] += differences * inverse[n - 1][part];
+                rate[n][part] += -differences * y[i] * inverse[n - 1][part];
+            }
+        }
+        let solution = riccati(x[i], &rate);
+        for n in 0..=DEGREE {
+            for part in 0..=n {
+                all[n * (n + 1) / 2 + part][i] = x[i] * solution[n][part];
+            }
+        }
+    }
+    all
+}
+
+/// τ²/4 ℘(τ/2) = 1 + Σ c_k of degree k, with the roots given by their coefficients of α and ε.
+///
+/// c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k − 3)) Σ c_m c_{k−m}.
+fn elliptic<T: Scalar>(roots: &[[T; 2]; 3]) -> Series<T> {
+    let mut c: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
+    let [[a, p], [b, q], [g, r]] = *roots;
+    // g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃
+    let (tenth, seventh) = (T::from_ratio(1, 10), T::from_ratio(1, 7));
+    c[2][0] = tenth * (a * a + b * b + g * g);
+    c[2][1] = tenth * T::from_f64(2.0) * (a * p + b * q + g * r);
+    c[2][2] = tenth * (p * p + q * q + r * r);
+    c[3][0] = seventh * a * b * g;
+    c[3][1] = seventh * (p * b * g + a * q * g + a * b * r);
+    c[3][2] = seventh * (p * q * g + p * b * r + a * q * r);
+    c[3][3] = seventh * p * q * r;
+    for k in 4..=DEGREE {
+        let mut row = [T::zero(); DEGREE + 1];
+        for m in 2..=k - 2 {
+            add_product(&mut row, (&c[m], m), (&c[k - m], k - m));
+        }
+        let factor = T::from_ratio(3, ((2 * k + 1) * (k - 3)) as i64);
+        c[k] = row.map(|coefficient| factor * coefficient);
+    }
+    c[0][0] = T::one();
+    c
+}
+
+/// 1/p for p = 1 + ….
+fn reciprocal<T: Scalar>(p: &Series<T>) -> Series<T> {
+    let mut inverse: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
+    inverse[0][0] = T::one();
+    for n in 1..=DEGREE {
+        let mut row = [T::zero(); DEGREE + 1];
+        for k in 1..=n {
+            add_product(&mut row, (&p[k], k), (&inverse[n - k], n - k));
+        }
+        inverse[n] = row.map(|coefficient| -coefficient);
+    }
+    inverse
+}
+
+/// V of (2n − 1) V_n = −((α + V²) b)_n with V₀ = 1/b₀, which is the differential equation for d = V.
+fn riccati<T: Scalar>(x: T, rate: &Series<T>) -> Series<T> {
+    let mut v: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
+    let mut square = v;
+    v[0][0] = x.recip();
+    square[0][0] = v[0][0] * v[0][0];
+    for n in 1..=DEGREE {
+        let mut row = [T::zero(); DEGREE + 1];
+        for k in 1..n {
+            add_product(&mut row, (&v[k], k), (&v[n - k], n - k));
+        }
+        if n == 1 {
+            row[0] += T::one();
+        }
+        let mut right = row.map(|coefficient| coefficient * x);
+        for k in 1..=n {
+            add_product(&mut right, (&square[n - k], n - k), (&rate[k], k));
+        }
+        let factor = -T::from_ratio(1, (2 * n + 1) as i64);
+        v[n] = right.map(|coefficient| factor * coefficient);
+        let twice = T::from_f64(2.0) * v[0][0];
+        square[n] = core::array::from_fn(|part| row[part] + twice * v[n][part]);
+    }
+    v
+}
+
+/// Adds the product of two homogeneous polynomials, given with their degrees.
+fn add_product<T: Scalar>(sum: &mut [T; DEGREE + 1], one: (&[T; DEGREE + 1], usize), other: (&[T; DEGREE + 1], usize)) {
+    for (i, a) in one.0[..=one.1].iter().enumerate() {
+        for (j, b) in other.0[..=other.1].iter().enumerate() {
+            sum[i + j] += *a * *b;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
