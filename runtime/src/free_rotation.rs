@@ -105,13 +105,12 @@ impl<T: Scalar> FreeRotation<T> {
         }
     }
 
-    /// The momentum of the free motion that makes this rotation of less than half a turn; NaN where none is found.
+    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
     ///
     /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
     #[cold]
-    pub fn momentum(&self, rotation: &Quaternion<T>) -> SVector<T, 3> {
-        let c = self.to_principal(&SVector::from_fn(|i, _| rotation.coords[i] / rotation.coords[3]));
-        let c = SVector::from(c);
+    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+        let c = SVector::from(self.to_principal(gibbs_vector));
         let alone = Self { axes: None, scale: T::one(), ..*self };
         // the equation of Moser and Veselov, which is right to second order
         let [a, b, g] = [0, 1, 2].map(|i| self.inertia[i] * c[i]);
@@ -206,6 +205,26 @@ impl<T: Scalar> FreeRotation<T> {
             None => SVector::from(vector),
         }
     }
+}
+
+/// The momentum of the free motion over the time `h` that makes the rotation with this Gibbs vector; NaN where there is none.
+#[cold]
+pub fn free_momentum<T: Scalar>(inertia: &SMatrix<T, 3, 3>, h: T, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+    match FreeRotation::new(inertia, h) {
+        Ok(free) => free.momentum(gibbs_vector),
+        Err(_) => SVector::from_element(T::from_f64(f64::NAN)),
+    }
+}
+
+/// tan(θ/2) n of a rotation: (F − Fᵀ)^∨/(1 + tr F).
+pub fn gibbs_vector_of_matrix<T: Scalar>(f: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
+    let twice = SVector::from([f[(2, 1)] - f[(1, 2)], f[(0, 2)] - f[(2, 0)], f[(1, 0)] - f[(0, 1)]]);
+    twice * (T::one() + f[(0, 0)] + f[(1, 1)] + f[(2, 2)]).recip()
+}
+
+/// tan(θ/2) n of a rotation: the vector part over the scalar part.
+pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3> {
+    SVector::from_fn(|i, _| f.coords[i] / f.coords[3])
 }
 
 /// The sum of a series so far.

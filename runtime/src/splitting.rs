@@ -72,7 +72,7 @@ pub const PLAIN_6: [Kick; 10] = [
     kick(0.413_514_300_428_344, 0.148_816_447_901_042, 0.0),
 ];
 
-/// The state after a step of size `h` from the time `t`.
+/// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one.
 ///
 /// `drift` takes a part of the step and the state, `kick` a time, b_i, g_i and the state.
 ///
@@ -81,23 +81,30 @@ pub const PLAIN_6: [Kick; 10] = [
 #[inline]
 pub fn split<T: Scalar, S, const K: usize>(
     kicks: &[Kick; K],
-    (t, h): (T, T),
+    (t, h, steps): (T, T, usize),
     start: S,
     drift: impl Fn(T, S) -> Result<S, Error>,
     kick: impl Fn(T, T, T, S) -> S,
 ) -> Result<S, Error> {
-    let (mut state, mut passed) = (start, T::zero());
-    for part in kicks {
-        let size = T::from_f64(part.drift);
-        passed += size;
-        let drifted = drift(size, state)?;
-        state = kick(t + passed * h, T::from_f64(part.weight), T::from_f64(part.gradient), drifted);
-    }
+    let Some((first, others)) = kicks.split_first().filter(|_| steps > 0) else { return Ok(start) };
     // the same forwards and backwards: the last drift is as long as the first
-    match kicks.first() {
-        Some(first) => drift(T::from_f64(first.drift), state),
-        None => Ok(state),
+    let end = T::from_f64(first.drift);
+    let kicked = |state: S, passed: T, begun: T, part: &Kick| {
+        kick(begun + passed * h, T::from_f64(part.weight), T::from_f64(part.gradient), state)
+    };
+    let (mut state, mut begun) = (drift(end, start)?, t);
+    for left in (0..steps).rev() {
+        let mut passed = end;
+        state = kicked(state, passed, begun, first);
+        for part in others {
+            let size = T::from_f64(part.drift);
+            passed += size;
+            state = kicked(drift(size, state)?, passed, begun, part);
+        }
+        begun += h;
+        state = drift(if left == 0 { end } else { end + end }, state)?;
     }
+    Ok(state)
 }
 
 #[cfg(test)]
@@ -156,9 +163,12 @@ mod tests {
             // {V, {V, T}} = q²
             let kick = |_: f64, b: f64, g: f64, (q, p): (f64, f64)| (q, p - b * h * q + 2.0 * g * h.powi(3) * q);
             let mut state = (1.0, 0.0);
+            let mut at_once = split(kicks, (0.0, h, steps as usize), state, drift, kick).expect("drifts do not fail");
             for _ in 0..steps {
-                state = split(kicks, (0.0, h), state, drift, kick).expect("drifts do not fail");
+                state = split(kicks, (0.0, h, 1), state, drift, kick).expect("drifts do not fail");
             }
+            at_once = (at_once.0 - state.0, at_once.1 - state.1);
+            assert!(at_once.0.abs() + at_once.1.abs() < 1e-14, "drifts that are merged are the same");
             (state.0 - 1.0_f64.cos()).hypot(state.1 + 1.0_f64.sin())
         }
         let slope = |coarse: f64, fine: f64| (coarse / fine).log2();

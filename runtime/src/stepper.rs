@@ -96,6 +96,36 @@ impl<S: Clebsch> Stepper<S> {
         Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
     }
 
+    /// The state after `steps` steps.
+    ///
+    /// The same as stepping so often but for rounding, and faster: no state between is made, and splittings drift from one step into the next.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step); `state` is untouched.
+    #[inline]
+    pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
+        let State { time, configuration, momentum, .. } = state;
+        let (impulse, none) = (self.impulse_of(state), S::Input::origin());
+        let advanced = self.system.steps(
+            &self.constants,
+            (time.now(), self.h),
+            steps,
+            configuration,
+            momentum,
+            &impulse,
+            &none,
+        );
+        let (configuration, momentum, impulse) = match advanced {
+            Ok(next) => next,
+            Err(error) => return Err(error.with_step_size(self.h.to_f64())),
+        };
+        if !(configuration.is_finite() & momentum.is_finite()) {
+            return Err(Error::NotFinite { name: "the state after the step" });
+        }
+        let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
+        Ok(State { time, configuration, momentum, impulse, h: self.h })
+    }
+
     /// The impulse that a state brings along, or a new one where a stepper of another step size has made it.
     #[inline]
     fn impulse_of(&self, state: &State<S>) -> S::Impulse {

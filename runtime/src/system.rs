@@ -103,6 +103,32 @@ pub trait Clebsch {
         u: &Self::Input,
     ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error>;
 
+    /// `steps` steps of size `h` from the time t, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts,
+    /// both may be made at once.
+    ///
+    /// # Errors
+    /// As [`inverse_legendre`](Self::inverse_legendre).
+    #[allow(clippy::type_complexity, clippy::too_many_arguments, reason = "those of a step, and how many")]
+    #[inline]
+    fn steps(
+        &self,
+        constants: &Self::Constants,
+        (t, h): (Self::Scalar, Self::Scalar),
+        steps: usize,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+        impulse: &Self::Impulse,
+        u: &Self::Input,
+    ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error> {
+        let (mut state, mut t) = ((*q, *mu, *impulse), t);
+        for _ in 0..steps {
+            let (q, mu, impulse) = &state;
+            state = self.step(constants, t, q, mu, impulse, u)?;
+            t += h;
+        }
+        Ok(state)
+    }
+
     /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
     ///
     /// # Errors

@@ -41,6 +41,10 @@ pub enum Role {
     Weight,
     /// The representing matrix of the momentum of a factor.
     MomentumMatrix(usize),
+    /// The weight of a kick that is a part of a step.
+    Kick,
+    /// The weight of the force gradient in such a kick.
+    KickGradient,
     /// The chart coordinates of a factor's group element.
     Chart(usize),
     /// Any other symbol, by an index of the user's.

@@ -4,6 +4,7 @@ use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::action::identities;
 use super::clearing;
+use super::exact;
 use super::closed_form::{SineForm, closed_form, is_solved_by_predictor};
 use super::structure::{self, Structure};
 use super::trivialisation::Covector;
@@ -48,6 +49,8 @@ pub enum Solution {
     Explicit,
     /// By a formula with one square root.
     ClosedForm,
+    /// By the power series of the free motion of a rigid body.
+    FreeRotation,
     /// By one elimination, as the residual is affine in x.
     Linear,
     /// By Newton's method from the predictor.
@@ -77,7 +80,10 @@ pub(super) fn equations<'g>(
     let (model, symbols) = (sources.model, sources.symbols);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
     for k in 0..model.factors.len() {
-        let (residual, cleared) = residual(sources, before, coupling, k);
+        let (residual, cleared) = match exact::is_free_rotation(model, k) {
+            true => (model.graph.zero(symbols.momenta[k].shape()), true),
+            false => residual(sources, before, coupling, k),
+        };
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
             Residual { rows: residual.block(start, 0, Shape::vector(block.dimension())), cleared }
@@ -87,6 +93,9 @@ pub(super) fn equations<'g>(
         substitute_explicit(sources, &mut residuals);
     }
     for (residual, block) in residuals.iter_mut().zip(&symbols.blocks) {
+        if exact::is_free_rotation(model, block.factor) {
+            continue;
+        }
         if let Some(rows) = clearing::of_rotation(model, symbols, block, residual.rows) {
             *residual = Residual { rows, cleared: true };
         }
@@ -114,6 +123,9 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
     for i in 0..residuals.len() {
         let block = symbols.blocks[i];
         let others = |j: &usize| *j != i;
+        if exact::is_free_rotation(model, block.factor) {
+            continue;
+        }
         let alone =
             !(0..residuals.len()).filter(others).any(|j| residuals[i].rows.depends_on(symbols.blocks[j].coordinates));
         if !alone || is_kept(symbols.charts[block.factor], is_moving(model, residuals[i].rows)) {
@@ -278,6 +290,11 @@ fn equation<'g>(
     blocks: Vec<usize>,
 ) -> Equation<'g> {
     let (model, symbols) = (sources.model, sources.symbols);
+    if let [only] = blocks.as_slice()
+        && exact::is_free_rotation(model, symbols.blocks[*only].factor)
+    {
+        return exact::equation(sources, *only);
+    }
     let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).collect();
     let shape = Shape::vector(components.len());
     let mut residual = model.graph.zero(shape);

@@ -13,6 +13,7 @@ mod control;
 mod discrete_lagrangian;
 mod energy;
 mod equation;
+mod exact;
 mod force;
 mod naming;
 mod print;
@@ -38,6 +39,8 @@ pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 pub use equation::{Equation, Solution};
+pub use exact::Splitting;
+pub(crate) use exact::inertia_inverse;
 pub(crate) use equation::{chart_slope, is_diagonal};
 pub use force::EdgeForce;
 pub use print::Formula;
@@ -87,6 +90,10 @@ pub struct Formulas<'g> {
     pub substeps: Vec<Substep<'g>>,
     /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
     pub parts: usize,
+    /// The drifts and kicks that make a step of higher order, where drifts are exact and there is a potential.
+    pub splitting: Option<Splitting<'g>>,
+    /// Whether a step is exact for lack of a potential, so that its order says nothing.
+    pub is_exact: bool,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
     pub covector: Option<Vec<Expr<'g>>>,
     /// What the choice of inputs needs; `None` where nothing is chosen.
@@ -192,8 +199,12 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let (legendre, legendre_next) = legendre(&sources(1), &lagrangian);
     let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, covector.as_deref());
     check_offers(&model, &symmetries)?;
+    let splitting = exact::splitting(&sources(1), &lagrangian, &substeps);
+    let is_exact = potential_energy.is_zero() && exact::drifts_exactly(&model, &symbols, &substeps);
     closed_form::adopt_sine(&mut symbols, &mut substeps);
     Ok(Formulas {
+        splitting,
+        is_exact,
         legendre,
         legendre_next,
         legendre_kick,
@@ -243,6 +254,8 @@ fn steered<'g>(
         quantities: Vec::new(),
         substeps: Vec::new(),
         parts: 0,
+        splitting: None,
+        is_exact: false,
         covector: None,
         steering,
         endpoint,
@@ -370,6 +383,16 @@ impl Formulas<'_> {
         signature::signature(self.inertia)
     }
 
+    /// Of how many steps of second order a step is composed, where it is.
+    pub fn stages(&self) -> Option<usize> {
+        self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
+    }
+
+    /// Whether F of a factor has its momentum from the constants of free rotation.
+    pub fn is_free_rotation(&self, k: usize) -> bool {
+        exact::is_free_rotation(&self.model, k)
+    }
+
     /// Whether the cost or the potential depends on the time.
     pub fn is_timed(&self) -> bool {
         is_timed(&self.model, &self.lagrangian)
@@ -406,7 +429,10 @@ fn legendre<'g>(
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (model, momentum_map) = (sources.model, sources.momentum_map);
     let (before, after) = trivialised(model, lagrangian);
-    let mut before = components(model, &before);
+    let (mut before, mut after) = (components(model, &before), components(model, &after));
+    for k in (0..model.factors.len()).filter(|&k| exact::is_free_rotation(model, k)) {
+        (before[k], after[k]) = exact::legendre(model, sources.symbols, k);
+    }
     if lagrangian.couples {
         let coupling = action::coupling(model, sources.symbols, momentum_map, lagrangian.kinetic);
         before.iter_mut().zip(coupling).for_each(|(before, coupling)| *before = *before + coupling);
@@ -414,5 +440,5 @@ fn legendre<'g>(
     if let Some(start) = action::impulse(model, sources.symbols, momentum_map, lagrangian.start) {
         before.iter_mut().zip(start).for_each(|(before, start)| *before = *before - start);
     }
-    (before, components(model, &after))
+    (before, after)
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
-use super::{Equation, Formulas, Reference, Solution, Substep, reference};
+use super::{Equation, Formulas, Reference, Solution, Splitting, Substep, reference};
 use crate::model::{Kinetic, Side};
 
 /// A derived formula, `symbol = expression`.
@@ -43,6 +43,14 @@ impl Formula {
             [only] => format!("{} = {only}", self.symbol),
             several => format!("{} = ({})", self.symbol, several.join(", ")),
         }
+    }
+}
+
+impl Formula {
+    /// The kick of a splitting, with its weights b and g.
+    pub fn of_splitting(formulas: &Formulas<'_>) -> Vec<Formula> {
+        let kick = |splitting: &Splitting<'_>| Formula::new("kick", format!("M⁺ − M, at {}", formulas.q()), &readable(&splitting.kick));
+        formulas.splitting.as_ref().map(kick).into_iter().collect()
     }
 }
 
@@ -114,7 +122,7 @@ impl<'g> Formulas<'g> {
             self.formula_of_potential(),
             self.formula_of_hamiltonian(),
             Formula::new("force", "f", self.covector.as_deref().unwrap_or_default()),
-            Formula::new("discrete Lagrangian", self.kinetic_symbol(), &[self.lagrangian.kinetic]),
+            self.formula_of_kinetic(),
             Formula::new("", format!("U₀(h, {q})"), &[self.lagrangian.start]),
             Formula::new("", format!("U₁(h, {q}⁺)"), &[self.lagrangian.end]),
             self.formula_of_legendre(),
@@ -125,6 +133,7 @@ impl<'g> Formulas<'g> {
         for substep in self.substeps.iter().take(self.parts) {
             formulas.extend(self.formulas_of_substep(substep));
         }
+        formulas.extend(Formula::of_splitting(self));
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
         formulas
     }
@@ -178,6 +187,16 @@ impl<'g> Formulas<'g> {
         let (time, q) =
             (if timed { "t, " } else { "" }, if self.lagrangian.couples { self.q() + ", " } else { String::new() });
         format!("K({time}h, {q}{})", self.f())
+    }
+
+    /// K(h, F).
+    fn formula_of_kinetic(&self) -> Formula {
+        let mut formula = Formula::new("discrete Lagrangian", self.kinetic_symbol(), &[self.lagrangian.kinetic]);
+        if (0..self.model.factors.len()).any(|k| self.is_free_rotation(k)) {
+            formula.text = vec![format!("∫₀ʰ T dt along the free motion from I to {}", self.f())];
+            formula.latex = vec![format!("\\int_0^h T\\,dt \\text{{ along the free motion from }} I \\text{{ to }} {}", self.f())];
+        }
+        formula
     }
 
     /// J(q, p).

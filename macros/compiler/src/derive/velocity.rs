@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
+use super::exact;
 use super::symbols::logarithm;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Discretization, Factor, Kinetic, Model};
@@ -20,6 +21,7 @@ pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostic
         velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
     let at = |energy: Expr<'g>| match discretization {
         Discretization::MoserVeselov => moser_veselov(model, energy, velocities),
+        Discretization::Exact => exact::stand_in(model, energy, velocities),
         _ => Ok(h * energy.substitute(&discrete)),
     };
     let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));

@@ -99,6 +99,8 @@ impl Scope<'_, '_> {
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
             Role::Multiplier => leaf("kappa", ""),
             Role::Weight => leaf("z", ""),
+            Role::Kick => quote!(weight),
+            Role::KickGradient => quote!(gradient),
             Role::Momentum(k) => entry(self.momentum, &self.momenta, self.model.offset(k) + input.row),
             Role::Chart(block) => entry("x", &self.coordinates, self.blocks[block] + input.row),
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::Emitter;
+use super::{Emitter, code};
 
 impl Emitter<'_, '_> {
     /// The type of the constants of a stepper: those of one step, or of all that a step is composed of.
@@ -18,12 +18,12 @@ impl Emitter<'_, '_> {
 
     /// How many of the step sizes of a composed step differ: it is the same forwards and backwards.
     fn distinct_stages(&self) -> Option<Literal> {
-        self.model.order.stages().map(|stages| Literal::usize_unsuffixed(stages.div_ceil(2)))
+        self.program.formulas.stages().map(|stages| Literal::usize_unsuffixed(stages.div_ceil(2)))
     }
 
     /// The constants made by a closure of the step size: of one step, or of all.
     pub(super) fn made_for_steps(&self, body: &TokenStream) -> TokenStream {
-        let Some(stages) = self.model.order.stages() else { return body.clone() };
+        let Some(stages) = self.program.formulas.stages() else { return body.clone() };
         let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
         let (name, (_, arguments)) = (&self.names.constants, self.constants_generics());
         let sizes = format_ident!("SIZES_OF_{stages}");
@@ -36,12 +36,12 @@ impl Emitter<'_, '_> {
 
     /// The constants of a step of the whole size.
     pub(super) fn whole(&self) -> TokenStream {
-        if self.model.order.stages().is_some() { quote!(constants.whole) } else { quote!(constants) }
+        if self.program.formulas.stages().is_some() { quote!(constants.whole) } else { quote!(constants) }
     }
 
     /// The same as a field of `Step`, and those of the first step that is made.
     pub(super) fn whole_and_first(&self) -> [TokenStream; 2] {
-        match self.model.order.stages() {
+        match self.program.formulas.stages() {
             Some(_) => [quote!(constants: &constants.whole), quote!(constants: &constants.stages[0])],
             None => [quote!(constants), quote!(constants)],
         }
@@ -51,7 +51,10 @@ impl Emitter<'_, '_> {
     pub(super) fn step_taken(&self) -> TokenStream {
         let (private, step) = (&self.paths.private, &self.names.step);
         let (time, input) = (self.time_argument(), self.input_argument());
-        if self.model.order.stages().is_none() {
+        if let Some(split) = self.split_steps(&quote!(1)) {
+            return split;
+        }
+        if self.program.formulas.stages().is_none() {
             return quote!(#step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input));
         }
         quote! {
@@ -68,7 +71,15 @@ impl Emitter<'_, '_> {
         if self.model.force.is_some() {
             return quote!(::core::result::Result::Err(#krate::Error::NoCovector));
         }
-        if self.model.order.stages().is_none() {
+        let pushed = |_: &TokenStream| {
+            let gradient = quote!(#step::kick_gradient(&step, #time &q, weight, gradient));
+            let sum = code::combined(self.model, &quote!(p), quote!(+), &quote!(gradient), &self.paths);
+            quote!(|t, weight, gradient, (q, p)| { let gradient = #gradient; (q, #sum) })
+        };
+        if let Some(split) = self.split(&quote!(1), &quote!((*q, *p)), &quote!(drift_symmetric), &pushed) {
+            return split;
+        }
+        if self.program.formulas.stages().is_none() {
             return quote!(#step::symmetric(&#step { system: self, constants }, #time q, p));
         }
         quote! {
@@ -78,9 +89,56 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The method that makes several steps, where that is less than each of them.
+    pub(super) fn steps_taken(&self) -> TokenStream {
+        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
+        let Some(split) = self.split_steps(&quote!(steps)) else { return TokenStream::new() };
+        quote! {
+            /// Several steps, the drift at the end of one and that at the start of the next in one.
+            fn steps(
+                &self,
+                constants: &Self::Constants,
+                (t, _): (#scalar, #scalar),
+                steps: ::core::primitive::usize,
+                q: &Self::Configuration,
+                mu: &Self::Momentum,
+                impulse: &Self::Impulse,
+                u: &Self::Input,
+            ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
+                #split
+            }
+        }
+    }
+
+    /// Steps of a splitting in the discrete Euler–Poincaré representation.
+    fn split_steps(&self, steps: &TokenStream) -> Option<TokenStream> {
+        let kicked = |kick: &TokenStream| quote!(|t, weight, gradient, (q, mu)| (q, mu + #kick));
+        let split = self.split(steps, &quote!((*q, *mu)), &quote!(drift), &kicked)?;
+        Some(quote!(#split.map(|(q, mu)| (q, mu, ()))))
+    }
+
+    /// A splitting from a state: drifts by a method of `Step`, kicks by what is made of the impulse of one.
+    fn split(
+        &self,
+        steps: &TokenStream,
+        start: &TokenStream,
+        drift: &TokenStream,
+        kicked: &dyn Fn(&TokenStream) -> TokenStream,
+    ) -> Option<TokenStream> {
+        let splitting = self.program.formulas.splitting.as_ref()?;
+        let (private, step, time) = (&self.paths.private, &self.names.step, self.time_argument());
+        let kind = if splitting.has_gradient { "GRADIENT" } else { "PLAIN" };
+        let kicks = format_ident!("{kind}_{}", self.model.order.number());
+        let kick = kicked(&quote!(#step::kick(&step, #time &q, weight, gradient)));
+        Some(quote! {
+            let step = #step { system: self, constants };
+            #private::split(&#private::#kicks, (t, constants.step_size, #steps), #start, |part, state| #step::#drift(&step, part, state), #kick)
+        })
+    }
+
     /// The step to which an edge of a composed step belongs: its constants, its time and the number of the edge in it.
     pub(super) fn stage_of_edge(&self) -> TokenStream {
-        if self.model.order.stages().is_none() {
+        if self.program.formulas.stages().is_none() {
             return TokenStream::new();
         }
         let parts = Literal::usize_unsuffixed(self.program.formulas.parts);
@@ -92,7 +150,7 @@ impl Emitter<'_, '_> {
 
     /// The slopes of an edge, those along the size and the time of its own step made of those along h and t of the whole one.
     pub(super) fn slopes_of_step(&self, slopes: TokenStream) -> TokenStream {
-        if self.model.order.stages().is_none() {
+        if self.program.formulas.stages().is_none() {
             return slopes;
         }
         let position = |name: &str| self.program.formulas.quantities.iter().position(|quantity| quantity.name == name);

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::{Emitter, code, docs};
 use crate::derive::Solution;
 use crate::lower::Solve;
-use crate::model::Promise;
+use crate::model::{Promise, Side};
 
 impl Emitter<'_, '_> {
     /// The struct of the constants.
@@ -16,6 +16,8 @@ impl Emitter<'_, '_> {
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = self.paths.matrix(self.dimension(), self.dimension());
         let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
+        let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::FreeRotation<#scalar>,));
+        let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: #scalar,));
         let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
         quote! {
@@ -24,6 +26,8 @@ impl Emitter<'_, '_> {
             pub struct #name #generics {
                 #(#names: #scalar,)*
                 #(#orientations: #private::Orientation,)*
+                #(#rotations)*
+                #step_size
                 #inverse
             }
         }
@@ -43,6 +47,35 @@ impl Emitter<'_, '_> {
         });
         let implicit = solves.filter(|(_, _, solve)| self.has_orientation(solve));
         implicit.map(|(suffix, number, solve)| (format_ident!("orientation{suffix}_{}", number + 1), solve))
+    }
+
+    /// The name of the constants of a free rotation.
+    pub(super) fn free_rotation(&self, suffix: &str, number: usize) -> proc_macro2::Ident {
+        format_ident!("free_rotation{suffix}_{}", number + 1)
+    }
+
+    /// The equations that are solved by the free rotation of a body, with the names of its constants.
+    fn free_rotations(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
+        let steps = self.program.steps.iter().enumerate();
+        steps.flat_map(move |(index, step)| {
+            let free = step.solves.iter().enumerate().filter(|(_, solve)| solve.solution == Solution::FreeRotation);
+            free.map(move |(number, solve)| (self.free_rotation(self.program.suffix(index), number), solve))
+        })
+    }
+
+    /// The part of `inertia` that belongs to a free rotation.
+    pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
+        if self.dimension() == 3 {
+            return quote!(inertia);
+        }
+        let start = Literal::usize_unsuffixed(solve.components[0]);
+        quote!(inertia.fixed_view::<3, 3>(#start, #start).into_owned())
+    }
+
+    /// Whether the factor of an equation acts from the left.
+    pub(super) fn is_left(&self, solve: &Solve) -> bool {
+        let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
+        self.model.factors[self.program.formulas.symbols.blocks[block].factor].side == Side::Left
     }
 
     /// The sign of det Σ/h for some components, Dρ at the identity but for positive factors.
@@ -88,6 +121,11 @@ impl Emitter<'_, '_> {
             let coupled = coupled.map(|coupled| quote!(* #coupled));
             quote!(#name: #whole #coupled,)
         });
+        let rotations = self.free_rotations().map(|(name, solve)| {
+            let inertia = self.block_of_inertia(solve);
+            quote!(#name: #private::FreeRotation::new(&#inertia, h)?,)
+        });
+        let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: h,));
         let documentation = docs::formulas(
             "Checks the parameters and computes what no step changes.",
             &[],
@@ -99,6 +137,8 @@ impl Emitter<'_, '_> {
             ::core::result::Result::Ok(#constants {
                 #(#fields)*
                 #(#orientations)*
+                #(#rotations)*
+                #step_size
                 #inverse
             })
         };

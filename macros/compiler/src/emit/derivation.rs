@@ -221,7 +221,7 @@ fn scheme(program: &Program<'_>) -> String {
         }
     };
     let mut text = format!("{order}\n");
-    if let Some(stages) = model.order.stages() {
+    if let Some(stages) = program.formulas.stages() {
         text += &format!(
             "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
             model.order,
@@ -303,6 +303,9 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         }
         Solution::Linear => {
             format!("is linear in {chart}: solved by one elimination, no iteration")
+        }
+        Solution::FreeRotation => {
+            "is solved by the free motion itself: d x − m × x = m for the Gibbs vector x, m = h μ/2, with d = diag(d_i) in principal axes, power series in h² |μ|² and h² μ·Σ⁻¹μ that are made once for the body; no iteration, and no error in h".to_string()
         }
         Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&equation.structure)),
     }

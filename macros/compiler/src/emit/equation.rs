@@ -17,6 +17,8 @@ impl<'g> Emitter<'_, 'g> {
             for (number, solve) in step.solves.iter().enumerate() {
                 types.extend(match solve.solution {
                     Solution::Newton => self.equation(index, number, solve),
+                    // the runtime's, the same for every body
+                    Solution::FreeRotation => TokenStream::new(),
                     Solution::Linear => self.linear_equation(index, number, solve),
                     Solution::ClosedForm | Solution::Explicit => self.solved(index, number, solve),
                 });

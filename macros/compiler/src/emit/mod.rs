@@ -258,7 +258,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
             &self.program.formulas.substeps[0].start,
             &self.program.formulas.substeps[self.program.formulas.parts - 1].end,
         );
-        start == end && first.start.is_some() && last.end.is_some()
+        start == end && first.start.is_some() && last.end.is_some() && self.program.splitting.is_none()
     }
 
     fn impulse_type(&self) -> TokenStream {

@@ -8,7 +8,7 @@ use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
-use crate::lower::{Kernel, Solve, StepKernels};
+use crate::lower::{Kernel, Solve, SplittingKernels, StepKernels};
 
 /// The most operations of a step that is inlined wherever it is called.
 const SHORT_STEP: usize = 128;
@@ -152,6 +152,16 @@ impl Emitter<'_, '_> {
             match solve.solution {
                 Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
                 Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
+                Solution::FreeRotation => {
+                    let rotation = self.free_rotation(suffix, number);
+                    let found = |target| quote!(#private::FreeRotation::gibbs_vector(&self.constants.#rotation, &#target)?);
+                    // spatial momenta move as those of the body that turns back
+                    let found = match self.is_left(solve) {
+                        true => { let found = found(quote!(-#target)); quote!(-#found) }
+                        false => found(target),
+                    };
+                    quote!(let #solution = #found;)
+                }
                 Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
                 Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
             }
@@ -239,17 +249,37 @@ impl Emitter<'_, '_> {
     /// The steps themselves, which only call their parts.
     fn whole_steps(&self) -> TokenStream {
         let krate = &self.paths.krate;
-        let (configuration, element, momentum, impulse) =
-            (self.configuration_type(), self.element_type(), self.momentum_type(), self.impulse_type());
-        let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
-        let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
+        let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
+        let stepped = self.stepped_whole();
         // the declared Lagrangian itself stands last, behind the halves of a composed step
         let whole = self.program.steps.len() - 1;
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
         let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
-        let input = self.input_parameter();
-        let inline = self.inline_of_steps();
+        quote! {
+            #stepped
+            /// F with momentum μ at q.
+            fn inverse_legendre(&self, #time q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
+                let mu = *mu;
+                let q = *q;
+                #kicked
+                let x = self.#solve(#place &mu)?;
+                let d = self.increment(&x);
+                #inverse
+            }
+        }
+    }
+
+    /// The steps in both representations, or the drift of a splitting.
+    fn stepped_whole(&self) -> TokenStream {
+        if let Some(splitting) = &self.program.splitting {
+            return self.splitting(splitting);
+        }
+        let (krate, configuration, momentum, impulse) =
+            (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.impulse_type());
+        let (time, input, inline) = (self.time_parameter(), self.input_parameter(), self.inline_of_steps());
+        let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
+        let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
         quote! {
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
             #inline
@@ -267,21 +297,61 @@ impl Emitter<'_, '_> {
                 ::core::result::Result::Ok((q, mu, impulse))
             }
             #symmetric
-            /// F with momentum μ at q.
-            fn inverse_legendre(&self, #time q: &#configuration, mu: &#momentum) -> ::core::result::Result<#element, #krate::Error> {
-                let mu = *mu;
-                let q = *q;
-                #kicked
-                let x = self.#solve(#place &mu)?;
+        }
+    }
+
+    /// The drift and the kicks of a splitting: exact, so that the part a of the step with the momentum μ is the step with a μ.
+    fn splitting(&self, splitting: &SplittingKernels) -> TokenStream {
+        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
+        let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
+        let step = &self.program.steps[0];
+        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
+        let (advanced, updated) = (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
+        let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
+        let formula = Formula::of_splitting(&self.program.formulas);
+        let kick = self.part("A kick.", &formula, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
+        let kick_gradient = self.part(
+            "The same for the covector.",
+            &[],
+            quote!(kick_gradient(&self, #weights) -> #configuration),
+            &splitting.gradient,
+            Some(Nesting::Configuration),
+        );
+        quote! {
+            #kick
+            #kick_gradient
+            /// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
+            #[inline]
+            fn drift(
+                &self,
+                part: #scalar,
+                (q, mu): (#configuration, #momentum),
+            ) -> ::core::result::Result<(#configuration, #momentum), #krate::Error> {
+                let x = self.solve(&(mu * part))?;
+                #increment
+                #advanced
+                #updated
+                ::core::result::Result::Ok((q, mu))
+            }
+            /// (q, p) ↦ (q⁺, p⁺) by the same.
+            fn drift_symmetric(
+                &self,
+                part: #scalar,
+                (q, p): (#configuration, #configuration),
+            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
+                let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
+                let x = self.solve(&(mu * part))?;
                 let d = self.increment(&x);
-                #inverse
+                #advanced
+                let p = self.lift(&q, &p, &d);
+                ::core::result::Result::Ok((q, p))
             }
         }
     }
 
     /// How a step is inlined: a short one always, as a call hands states through memory.
     pub(super) fn inline_of_steps(&self) -> TokenStream {
-        let is_single = self.program.formulas.parts == 1 && self.model.order.stages().is_none();
+        let is_single = self.program.formulas.parts == 1 && self.program.formulas.stages().is_none();
         let cost = self.program.steps.first().filter(|_| is_single).and_then(StepKernels::explicit_cost);
         match cost {
             Some(cost) if cost.total() <= SHORT_STEP => quote!(#[inline(always)]),

@@ -7,8 +7,8 @@ use quote::quote;
 use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
-use crate::derive::Formula;
-use crate::lower::Kernel;
+use crate::derive::{Formula, Solution};
+use crate::lower::{Kernel, Solve};
 use crate::model::Space;
 
 impl Emitter<'_, '_> {
@@ -78,9 +78,57 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// The momenta of the free motions that make F, for the Legendre transforms of what moves freely.
+    fn free_momenta(&self) -> Option<TokenStream> {
+        let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
+        solves().next()?;
+        let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
+        let inertia = code::body(&scope, &self.program.inertia, None);
+        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let momentum = |solve: &Solve| {
+            let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
+            let factor = &self.model.factors[self.program.formulas.symbols.blocks[block].factor];
+            let access = code::accessor(&factor.accessor);
+            let of_block = self.block_of_inertia(solve);
+            let rotation = match factor.group {
+                Group::UnitQuaternions => quote!(#private::gibbs_vector_of_quaternion(&f #access)),
+                _ => quote!(#private::gibbs_vector_of_matrix(&f #access)),
+            };
+            match self.is_left(solve) {
+                true => quote!(-#private::free_momentum(&#of_block, h, &-#rotation)),
+                false => quote!(#private::free_momentum(&#of_block, h, &#rotation)),
+            }
+        };
+        if self.dimension() == 3 {
+            let momentum = solves().map(momentum);
+            return Some(quote!(let inertia = { #inertia }; let mu = #(#momentum)*;));
+        }
+        let blocks = solves().map(|solve| {
+            let (start, momentum) = (Literal::usize_unsuffixed(solve.components[0]), momentum(solve));
+            quote!(mu.fixed_rows_mut::<3>(#start).copy_from(&#momentum);)
+        });
+        Some(quote! {
+            let inertia = { #inertia };
+            let mut mu = <#private::SVector<#scalar, #dimension> as #private::Space<#scalar>>::origin();
+            #(#blocks)*
+        })
+    }
+
     /// A method that is one kernel.
     fn method(
         &self,
+        documentation: (&str, &[Formula]),
+        signature: TokenStream,
+        kernel: &Kernel,
+        nesting: Option<Nesting>,
+    ) -> TokenStream {
+        self.method_after(None, documentation, signature, kernel, nesting)
+    }
+
+    /// A method that is one kernel, behind what makes its inputs.
+    fn method_after(
+        &self,
+        inputs: Option<&TokenStream>,
         documentation: (&str, &[Formula]),
         signature: TokenStream,
         kernel: &Kernel,
@@ -91,6 +139,7 @@ impl Emitter<'_, '_> {
         quote! {
             #documentation
             fn #signature {
+                #inputs
                 #body
             }
         }
@@ -98,6 +147,7 @@ impl Emitter<'_, '_> {
 
     fn formulas(&self) -> TokenStream {
         let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
+        let free = self.free_momenta();
         let methods = [
             self.method(
                 ("The action.", &formulas.titled("action")),
@@ -120,7 +170,8 @@ impl Emitter<'_, '_> {
                 &program.coadjoint,
                 None,
             ),
-            self.method(
+            self.method_after(
+                free.as_ref(),
                 (
                     "The discrete Legendre transform: the momentum N before the step that moves q by F.",
                     &formulas.titled("Legendre transform"),
@@ -129,7 +180,8 @@ impl Emitter<'_, '_> {
                 &program.legendre,
                 None,
             ),
-            self.method(
+            self.method_after(
+                free.as_ref(),
                 (
                     "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
                     &formulas.titled("next Legendre transform"),
@@ -255,7 +307,7 @@ impl Emitter<'_, '_> {
     fn dynamics(&self) -> TokenStream {
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
         let time = self.time_argument();
-        let (taken, taken_symmetric) = (self.step_taken(), self.symmetric_step_taken());
+        let (taken, several, taken_symmetric) = (self.step_taken(), self.steps_taken(), self.symmetric_step_taken());
         let inline = self.inline_of_steps();
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let [whole, first] = self.whole_and_first();
@@ -292,6 +344,7 @@ impl Emitter<'_, '_> {
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
                 #taken
             }
+            #several
             /// One step of the discrete symmetric representation.
             fn step_symmetric(
                 &self,

@@ -15,7 +15,7 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let ident = &self.model.item.ident;
         let dimension = Literal::usize_unsuffixed(self.dimension());
-        let edges = Literal::usize_unsuffixed(variations.edges.len() * self.model.order.stages().unwrap_or(1));
+        let edges = Literal::usize_unsuffixed(variations.edges.len() * self.program.formulas.stages().unwrap_or(1));
         let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
         let scalar = &self.paths.scalar;
         let end = self.endpoint_expanded().map(|body| {

@@ -27,7 +27,7 @@ pub use cost::Cost;
 pub use grid::{Grid, Lowering};
 pub use kernel::{Code, Hoisted, Hoisting, Kernel};
 pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
-pub use stepping::{Solve, StepKernels};
+pub use stepping::{Solve, SplittingKernels, StepKernels};
 pub use variation::{EdgeKernels, VariationKernels};
 
 /// More operations than this in one expansion are refused: unrolled code of that size helps nobody.
@@ -72,6 +72,8 @@ pub struct Program<'g> {
     pub generator: Option<Kernel>,
     /// The kernels of each substep.
     pub steps: Vec<StepKernels>,
+    /// The kicks of a splitting, where a step is one.
+    pub splitting: Option<SplittingKernels>,
     /// What variations need, where they are asked for.
     pub variations: Option<VariationKernels>,
     /// What the choice of inputs needs, where there is one.
@@ -102,6 +104,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     scalars.keeps_sums = formulas.model.is_steered();
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
+    let splitting = stepping::splitting(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
@@ -134,6 +137,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed)
             .then(|| generator(&formulas, &mut scalars)),
         cotangent_lift: lift,
+        splitting,
         variations,
         control,
         endpoint,
@@ -307,8 +311,7 @@ fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
 
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
 fn inertia_inverse<'g>(formulas: &Formulas<'g>) -> Expr<'g> {
-    let shape = formulas.inertia.shape();
-    formulas.model.graph.symbol("inertia_inverse", shape, Role::Auxiliary(usize::MAX), Property::Symmetric)
+    crate::derive::inertia_inverse(formulas.model.graph, formulas.inertia.shape())
 }
 
 fn uses_inertia_inverse(scalars: &Scalars, scalar: Scalar) -> bool {

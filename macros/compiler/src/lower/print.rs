@@ -60,6 +60,9 @@ impl Program<'_> {
         kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
         kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
         kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
+        kernels.extend(self.splitting.iter().flat_map(|splitting| {
+            [("kick".to_string(), &splitting.kick), ("kick_gradient".to_string(), &splitting.gradient)]
+        }));
         kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
         kernels.extend(self.kernels_of_control());
         for (index, step) in self.steps.iter().enumerate() {
@@ -77,6 +80,9 @@ impl Program<'_> {
                 }
                 if solve.solution == Solution::Explicit {
                     kernels.extend(solve.predict.iter().map(|kernel| (of("explicit"), kernel)));
+                    continue;
+                }
+                if solve.solution == Solution::FreeRotation {
                     continue;
                 }
                 if solve.solution == Solution::Linear {

@@ -46,6 +46,14 @@ pub struct StepKernels {
     pub coupled_gradient: Option<Kernel>,
 }
 
+/// The kernels of the kicks of a splitting, functions of their weights b and g.
+pub struct SplittingKernels {
+    /// J(q, ∂U), from t and q.
+    pub kick: Kernel,
+    /// ∂U for each leaf, for the symmetric representation.
+    pub gradient: Kernel,
+}
+
 /// The kernels of a momentum equation.
 pub struct Solve {
     /// The number of unknowns.
@@ -112,6 +120,21 @@ pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mu
         (step.rest, step.coupled_gradient) = (None, None);
     }
     steps
+}
+
+/// The kicks of a splitting.
+pub(super) fn splitting(
+    formulas: &Formulas<'_>,
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> Option<SplittingKernels> {
+    let splitting = formulas.splitting.as_ref()?;
+    let leaves = formulas.model.configurations.iter();
+    let gradients: Vec<_> = leaves.map(|leaf| splitting.potential.gradient(leaf.symbol)).collect();
+    Some(SplittingKernels {
+        kick: stack(scalars, hoisted, &splitting.kick),
+        gradient: separate(scalars, hoisted, &gradients),
+    })
 }
 
 fn step<'g>(
@@ -212,13 +235,13 @@ fn solve<'g>(
 ) -> Solve {
     let start = match (equation.formula, equation.solution) {
         (Some(formula), _) => Some(vec![formula]),
-        (None, Solution::Linear) => None,
+        (None, Solution::Linear | Solution::FreeRotation) => None,
         (None, _) => predictor(formulas, substep, equation),
     };
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
     let (prepare, linearize) = match equation.solution {
-        Solution::Explicit | Solution::ClosedForm => {
+        Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
         }
         Solution::Linear => {

@@ -134,6 +134,7 @@ impl fmt::Display for Discretization {
             Discretization::Exponential => "exponential",
             Discretization::Projection => "projection",
             Discretization::MoserVeselov => "moser_veselov",
+            Discretization::Exact => "exact",
         })
     }
 }

@@ -22,6 +22,8 @@ pub enum Discretization {
     Projection,
     /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
     MoserVeselov,
+    /// The discrete Lagrangian is the action of the free motion, which a step without a potential makes exactly.
+    Exact,
 }
 
 /// The coordinates in which the group element of a step is looked for, where the user chooses them.

@@ -62,11 +62,12 @@ pub(super) const KEYS: [(&str, Kind); 23] = [
 ];
 
 /// The dials that a name sets: the word, and its value or `None` if it comes later.
-pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 4] = [
+pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 5] = [
     ("cayley", Some(Discretization::Cayley)),
     ("exponential", Some(Discretization::Exponential)),
     ("projection", Some(Discretization::Projection)),
     ("moser_veselov", Some(Discretization::MoserVeselov)),
+    ("exact", Some(Discretization::Exact)),
 ];
 
 /// Charts by name.

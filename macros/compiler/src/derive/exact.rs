@@ -1,0 +1,190 @@
+//! Drifts that are exact: the free motion of rigid bodies and of translations, and geodesics of bi-invariant metrics. They need no equation to be
+//! solved by iteration, and allow splittings with force gradients.
+
+use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identity};
+
+use super::equation::{Sources, is_diagonal};
+use super::structure::Structure;
+use super::{DiscreteLagrangian, Equation, Solution, Substep, Symbols, action, velocity};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Discretization, Kinetic, Model, Order, Side};
+
+/// A step of drifts and kicks, with a force gradient where the potential is a formula.
+pub struct Splitting<'g> {
+    /// U = −h b V + h³ g G·Σ⁻¹G with G = J(q, ∂V): what a kick of the weights b and g adds to the discrete Lagrangian.
+    pub potential: Expr<'g>,
+    /// J(q, ∂U) for each factor.
+    pub kick: Vec<Expr<'g>>,
+    /// Whether there is a force gradient.
+    pub has_gradient: bool,
+}
+
+/// Whether a step without a potential is to be the exact free motion.
+pub(super) fn is_exact(model: &Model<'_>) -> bool {
+    matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Exact, .. })
+}
+
+/// Whether the motion of a factor is found from the constants of free rotation.
+pub(super) fn is_free_rotation(model: &Model<'_>, k: usize) -> bool {
+    is_exact(model) && !model.factors[k].group.is_translation()
+}
+
+/// A cost with the same kinetic energy and the same symmetries as the action of the free motion, which is no formula of F: what does not
+/// depend on the discretisation is derived from it.
+///
+/// # Errors
+/// A group or an energy whose free motion is not known.
+pub(super) fn stand_in<'g>(
+    model: &Model<'g>,
+    energy: Expr<'g>,
+    velocities: &[Expr<'g>],
+) -> Result<Expr<'g>, Diagnostics> {
+    check(model, energy, velocities)?;
+    let h = model.step_size;
+    let velocity = |k: usize| match model.factors[k].group {
+        Group::UnitQuaternions => velocity::of_element(model, k, h, Discretization::Cayley),
+        _ => velocity::of_element(model, k, h, Discretization::Projection),
+    };
+    let discrete: Vec<_> = velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
+    Ok(h * energy.substitute(&discrete))
+}
+
+fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
+    let refused = |message: String, help: &str, note: &str| -> Result<(), Diagnostics> {
+        Err(Diagnostic::new(model.spans.kinetic.place, message).help(help).note(note).into())
+    };
+    let known = |group: Group| {
+        group.is_translation() || matches!(group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions)
+    };
+    if let Some(factor) = model.factors.iter().find(|factor| !known(factor.group)) {
+        let name = factor.group.name(model.graph);
+        return refused(
+            format!("`discretization = exact` knows the free motion on `SO<3>`, `SU<2>` and `Translation<n>`, not on `{name}`"),
+            "write `discretization = exponential`, which is exact where the kinetic energy is the same for all axes, or leave the key out",
+            "the free motion of other groups is no power series whose coefficients depend on two invariants alone",
+        );
+    }
+    if model.force.is_some() {
+        return refused(
+            "`discretization = exact` knows no forces".into(),
+            "leave the key out, or write `discretization = moser_veselov`",
+            "the velocity that a force sees is made of the group element of a step, by a discretisation that is a formula of it",
+        );
+    }
+    if model.has_variations() {
+        return refused(
+            "`discretization = exact` cannot be differentiated twice".into(),
+            "leave out `emit = [tangent]` or `emit = [boundary]`, or write another discretization; a struct that is generic over its scalar can be stepped with dual numbers",
+            "its discrete Lagrangian is the action of the free motion, which is no formula of the group element",
+        );
+    }
+    let moves = energy.depends_on(model.time)
+        || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
+    let quadratic = |velocity: &Expr<'g>| {
+        let gradient = energy.gradient(*velocity);
+        let inertia = gradient.matrix_of_linear(*velocity);
+        !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity])
+    };
+    if moves || !velocities.iter().all(quadratic) {
+        let velocity = velocities[0];
+        return refused(
+            "`discretization = exact` needs a constant quadratic form of the velocity of each factor".into(),
+            &format!("write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`, or leave the key out"),
+            "the free motion conserves the energy and the length of the momentum, and is known in terms of both",
+        );
+    }
+    Ok(())
+}
+
+/// The equation d x − m^ x = m of a free rotation with the Gibbs vector x and m = h μ/2, d of the modified inertia.
+pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> Equation<'g> {
+    let (graph, block) = (sources.model.graph, sources.symbols.blocks[i]);
+    let d = graph.symbol("d", Shape::square(3), Role::Auxiliary(0), Property::Symmetric);
+    let m = graph.symbol("m", Shape::vector(3), Role::Auxiliary(1), Property::General);
+    let hat = Group::SpecialOrthogonal(3).wedge(m);
+    Equation {
+        components: block.components().collect(),
+        factors: vec![block.factor],
+        residual: d * block.coordinates - hat * block.coordinates - m,
+        directional: d * block.direction - hat * block.direction,
+        cleared: true,
+        solution: Solution::FreeRotation,
+        formula: None,
+        sine_squared: None,
+        sine: None,
+        structure: Structure::Dense,
+        coupled: Vec::new(),
+        is_inertial: true,
+        moves: false,
+    }
+}
+
+/// F⁻ℓd and F⁺ℓd of a factor that moves freely, with the symbol μ for the momentum of the free motion that makes F.
+pub(super) fn legendre<'g>(model: &Model<'g>, symbols: &Symbols<'g>, k: usize) -> (Expr<'g>, Expr<'g>) {
+    let (factor, mu) = (&model.factors[k], symbols.momenta[k]);
+    let carried = match factor.side {
+        Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
+        Side::Right => factor.group.coadjoint(factor.symbol, mu),
+    };
+    (mu, carried)
+}
+
+/// Whether a step without its kicks is the exact flow of the kinetic energy.
+pub(super) fn drifts_exactly(model: &Model<'_>, symbols: &Symbols<'_>, substeps: &[Substep<'_>]) -> bool {
+    let [substep] = substeps else { return false };
+    let is_known = |equation: &Equation<'_>| match equation.solution {
+        Solution::FreeRotation => true,
+        Solution::Explicit => {
+            let chart = symbols.charts[equation.factors[0]];
+            equation.formula.is_none() && matches!(chart, Chart::Exponential | Chart::Identity)
+        }
+        _ => false,
+    };
+    let rests = substep.rest.is_none() && substep.other.is_none() && substep.force.is_none();
+    rests && model.force.is_none() && !substep.lagrangian.couples && substep.equations.iter().all(is_known)
+}
+
+/// The splitting that makes a step of order 4 or 6, where the drift is exact and there is a potential.
+pub(super) fn splitting<'g>(
+    sources: &Sources<'_, 'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+    substeps: &[Substep<'g>],
+) -> Option<Splitting<'g>> {
+    let (model, symbols, h) = (sources.model, sources.symbols, sources.model.step_size);
+    let energy = model.potential.filter(|_| matches!(model.order, Order::Fourth | Order::Sixth))?;
+    let half = -(h * energy / 2);
+    let plain = lagrangian.start == half && lagrangian.end == half && !model.has_variations();
+    if !plain || !drifts_exactly(model, symbols, substeps) {
+        return None;
+    }
+    let impulse = |potential: Expr<'g>| action::impulse(model, symbols, sources.momentum_map, potential);
+    let force = impulse(energy)?;
+    let weight = |name: &str, role: Role| model.graph.symbol(name, Shape::scalar(), role, Property::General);
+    let kick = -(h * weight("b", Role::Kick) * energy);
+    let has_gradient = model.opaque.is_none();
+    let potential = match has_gradient {
+        true => kick + h * h * h * weight("g", Role::KickGradient) * gradient_energy(sources, &force),
+        false => kick,
+    };
+    Some(Splitting { potential, kick: impulse(potential)?, has_gradient })
+}
+
+/// {V, {V, T}} = G·Σ⁻¹G.
+fn gradient_energy<'g>(sources: &Sources<'_, 'g>, force: &[Expr<'g>]) -> Expr<'g> {
+    let (graph, inertia) = (sources.model.graph, sources.inertia);
+    let entries: Vec<Expr<'g>> = force.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0))).collect();
+    match is_diagonal(inertia) {
+        true => entries.iter().enumerate().fold(graph.integer(0), |sum, (i, entry)| {
+            sum + *entry * *entry / inertia.entry(i, i).expand()
+        }),
+        false => {
+            let force = graph.stack(Shape::vector(entries.len()), entries);
+            force.dot(inertia_inverse(graph, inertia.shape()) * force)
+        }
+    }
+}
+
+/// Σ⁻¹ as a symbol, which the stepper computes from Σ.
+pub(crate) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
+    graph.symbol("inertia_inverse", shape, Role::Auxiliary(usize::MAX), Property::Symmetric)
+}
