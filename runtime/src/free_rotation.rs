@@ -41,12 +41,12 @@ pub struct FreeRotation<T> {
     scale: T,
     /// J_i x
     inertia: [T; 3],
-    /// x_i/x less the mean of the largest and the smallest.
-    centred: [T; 3],
+    /// x_i/x
+    reciprocals: [T; 3],
     /// The columns are the principal axes, where they are not those of the coordinates.
     axes: Option<SMatrix<T, 3, 3>>,
-    /// The coefficients of α^{n−j} ε^j in x_i d_i, degree after degree.
-    series: [[T; 3]; MONOMIALS],
+    /// The coefficients of α^{n−j} ε^j in x_i d_i, degree after degree; the fourth of each is 0, as registers hold two or four.
+    series: [[T; 4]; MONOMIALS],
 }
 
 /// A homogeneous polynomial of each degree n in α and ε: entry (n, j) belongs to α^{n−j} ε^j.
@@ -75,15 +75,8 @@ impl<T: Scalar> FreeRotation<T> {
             return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
         }
         let x = relative.map(T::recip);
-        let (mut low, mut high) = (x[0], x[0]);
-        for &other in &x {
-            low = if other < low { other } else { low };
-            high = if other > high { other } else { high };
-        }
-        let middle = low + half(high - low);
-        let centred = x.map(|other| other - middle);
-        let series = series(&x, &centred);
-        Ok(Self { scale: half(h) / least, inertia: relative, centred, axes, series })
+        let series = series(&x);
+        Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series })
     }
 
     /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
@@ -146,14 +139,14 @@ impl<T: Scalar> FreeRotation<T> {
     fn modified_inertia(&self, m: &[T; 3]) -> Option<[T; 3]> {
         let squares = m.map(|component| component * component);
         let alpha = squares[0] + squares[1] + squares[2];
-        let [a, b, c] = self.centred;
+        let [a, b, c] = self.reciprocals;
         let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
-        let mut sum = Sum { value: [T::one(); 3], before: T::one(), monomials: [T::zero(); DEGREE + 1] };
+        let mut sum = Sum { value: [T::one(); 4], before: T::one(), monomials: [T::zero(); DEGREE + 1] };
         sum.monomials[0] = T::one();
         macro_rules! degrees {
             ($($degree:literal)*) => {$(
                 if sum.add::<$degree>(&self.series, alpha, epsilon) {
-                    let [a, b, c] = sum.value;
+                    let [a, b, c, _] = sum.value;
                     return Some([a * self.inertia[0], b * self.inertia[1], c * self.inertia[2]]);
                 }
             )*};
@@ -162,32 +155,43 @@ impl<T: Scalar> FreeRotation<T> {
         None
     }
 
+    /// The free motions with the invariants of one of them, here those of `momentum`: for many steps of one.
+    ///
+    /// # Errors
+    /// As [`gibbs_vector`](Self::gibbs_vector).
+    pub fn motion(&self, momentum: &SVector<T, 3>) -> Result<FreeMotion<'_, T>, Error> {
+        let m = self.to_principal(momentum).map(|component| component * self.scale);
+        let (inertia, parts) = match self.modified_inertia(&m) {
+            Some(inertia) => (inertia, 1),
+            None => self.parts(&m)?,
+        };
+        Ok(FreeMotion { rotation: self, inertia, parts })
+    }
+
     /// The same rotation as that of equal parts of the time, one after the other.
     #[cold]
     #[inline(never)]
     fn in_parts(&self, m: &[T; 3]) -> Result<SVector<T, 3>, Error> {
+        let (d, parts) = self.parts(m)?;
+        Ok(self.from_principal(turn_in_parts(&d, m, parts)))
+    }
+
+    /// d_i x of a part of the time for which the series converge, and how many parts there are.
+    #[cold]
+    fn parts(&self, m: &[T; 3]) -> Result<([T; 3], u32), Error> {
         if m.iter().any(|component| !component.is_finite()) {
             return Err(Error::NotFinite { name: "the momentum" });
         }
         let (mut parts, mut part) = (1, *m);
-        let d = loop {
-            if parts == PARTS {
-                let fraction = T::from_f64(0.5 * f64::from(PARTS)) / largest(&SVector::from(*m));
-                return Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None });
-            }
+        while parts < PARTS {
             parts *= 2;
             part = part.map(half);
             if let Some(d) = self.modified_inertia(&part) {
-                break d;
+                return Ok((d, parts));
             }
-        };
-        let mut whole = (T::one(), [T::zero(); 3]);
-        for _ in 0..parts {
-            let (p, r) = unit(turn(&d, &part));
-            whole = unit(product(whole, (p, r)));
-            part = carried(&part, p, &r);
         }
-        Ok(self.from_principal(ratio(whole.0, whole.1)))
+        let fraction = T::from_f64(0.5 * f64::from(PARTS)) / largest(&SVector::from(*m));
+        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
     }
 
     #[inline]
@@ -204,6 +208,32 @@ impl<T: Scalar> FreeRotation<T> {
             Some(axes) => axes * SVector::from(vector),
             None => SVector::from(vector),
         }
+    }
+}
+
+/// The free motions of a body with the same energy and the same length of the momentum.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeMotion<'a, T> {
+    rotation: &'a FreeRotation<T>,
+    /// d_i x of a part of the time.
+    inertia: [T; 3],
+    /// How many parts there are, a power of two.
+    parts: u32,
+}
+
+impl<T: Scalar> FreeMotion<'_, T> {
+    /// The Gibbs vector of the rotation that starts with the momentum `momentum`, one of the motion.
+    #[inline]
+    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> SVector<T, 3> {
+        let rotation = self.rotation;
+        let m = rotation.to_principal(momentum).map(|component| component * rotation.scale);
+        rotation.from_principal(match self.parts {
+            1 => {
+                let (p, r) = turn(&self.inertia, &m);
+                ratio(p, r)
+            }
+            parts => turn_in_parts(&self.inertia, &m, parts),
+        })
     }
 }
 
@@ -229,7 +259,7 @@ pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3>
 
 /// The sum of a series so far.
 struct Sum<T> {
-    value: [T; 3],
+    value: [T; 4],
     /// The size of the last terms.
     before: T,
     /// Those of the last degree.
@@ -241,13 +271,13 @@ impl<T: Scalar> Sum<T> {
     ///
     /// With terms t_n of geometric decrease what is left is t_n²/t_{n−1} and less.
     #[inline(always)]
-    fn add<const N: usize>(&mut self, series: &[[T; 3]; MONOMIALS], alpha: T, epsilon: T) -> bool {
+    fn add<const N: usize>(&mut self, series: &[[T; 4]; MONOMIALS], alpha: T, epsilon: T) -> bool {
         self.monomials[N] = self.monomials[N - 1] * epsilon;
         for monomial in &mut self.monomials[..N] {
             *monomial *= alpha;
         }
         let first = N * (N + 1) / 2;
-        let mut terms = [T::zero(); 3];
+        let mut terms = [T::zero(); 4];
         for (monomial, coefficients) in self.monomials[..=N].iter().zip(&series[first..=first + N]) {
             for (term, coefficient) in terms.iter_mut().zip(coefficients) {
                 *term += *coefficient * *monomial;
@@ -287,6 +317,19 @@ fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
     (p, r)
 }
 
+/// The Gibbs vector of the turns of equal parts of the time, one after the other.
+fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> [T; 3] {
+    let size = T::from_ratio(1, i64::from(parts));
+    let mut part = m.map(|component| component * size);
+    let mut whole = (T::one(), [T::zero(); 3]);
+    for _ in 0..parts {
+        let (p, r) = unit(turn(d, &part));
+        whole = product(whole, (p, r));
+        part = carried(&part, p, &r);
+    }
+    ratio(whole.0, whole.1)
+}
+
 /// r/p; at half a turn, where p vanishes, that of an angle which differs by a unit in the last place.
 #[inline]
 fn ratio<T: Scalar>(p: T, r: [T; 3]) -> [T; 3] {
@@ -323,21 +366,21 @@ fn carried<T: Scalar>(m: &[T; 3], p: T, r: &[T; 3]) -> [T; 3] {
     core::array::from_fn(|i| m[i] + two * (twice[i] - p * once[i]))
 }
 
-/// The coefficients of x_i d_i for the reciprocal moments x and the same less their middle, y. Scales are such that h M/2 is m.
+/// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
 #[cold]
-fn series<T: Scalar>(x: &[T; 3], y: &[T; 3]) -> [[T; 3]; MONOMIALS] {
+fn series<T: Scalar>(x: &[T; 3]) -> [[T; 4]; MONOMIALS] {
     let zero = T::zero();
     let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
     // e_i, less their mean: coefficients of α and of ε
     let raw: [[T; 2]; 3] = core::array::from_fn(|i| {
         let (j, k) = others(i);
-        [y[j] * y[k], y[i]]
+        [x[j] * x[k], x[i]]
     });
     let third = T::from_ratio(1, 3);
     let mean: [T; 2] = core::array::from_fn(|part| third * (raw[0][part] + raw[1][part] + raw[2][part]));
     let roots: [[T; 2]; 3] = raw.map(|[a, b]| [a - mean[0], b - mean[1]]);
     let elliptic = elliptic(&roots);
-    let mut all = [[zero; 3]; MONOMIALS];
+    let mut all = [[zero; 4]; MONOMIALS];
     for i in 0..3 {
         let (j, k) = others(i);
         let differences = (x[i] - x[j]) * (x[i] - x[k]);
@@ -350,7 +393,7 @@ fn series<T: Scalar>(x: &[T; 3], y: &[T; 3]) -> [[T; 3]; MONOMIALS] {
         for n in 1..=DEGREE {
             for part in 0..n {
                 rate[n][part + 1] += differences * inverse[n - 1][part];
-                rate[n][part] += -differences * y[i] * inverse[n - 1][part];
+                rate[n][part] += -differences * x[i] * inverse[n - 1][part];
             }
         }
         let solution = riccati(x[i], &rate);

@@ -71,9 +71,13 @@ fn main() {
         let clock = Instant::now();
         for _ in 0..n { state = stepper.step(&state).unwrap(); }
         let exact = clock.elapsed().as_nanos() as f64 / n as f64;
+        let clock0 = Instant::now(); let _ = clock0;
         let mut state = plain.state(Matrix3::identity(), Vector3::new(0.3, 2.0, 0.6)).unwrap();
         let clock = Instant::now();
         for _ in 0..n { match plain.step(&state) { Ok(s) => state = s, Err(_) => break } }
+        let clock = Instant::now();
+        let state = stepper.advance(&stepper.state(Matrix3::identity(), Vector3::new(0.3, 2.0, 0.6)).unwrap(), n).unwrap();
+        println!("advance {:.1} ns {}", clock.elapsed().as_nanos() as f64 / n as f64, state.momentum().x);
         println!("free h={h}: exact {exact:.1} ns, plain {:.1}", clock.elapsed().as_nanos() as f64 / n as f64);
     }
     let clock = Instant::now();

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, code};
+use super::{Emitter, code, docs};
 
 impl Emitter<'_, '_> {
     /// The type of the constants of a stepper: those of one step, or of all that a step is composed of.
@@ -92,9 +92,18 @@ impl Emitter<'_, '_> {
     /// The method that makes several steps, where that is less than each of them.
     pub(super) fn steps_taken(&self) -> TokenStream {
         let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
-        let Some(split) = self.split_steps(&quote!(steps)) else { return TokenStream::new() };
+        let step = &self.names.step;
+        let (title, taken) = match self.split_steps(&quote!(steps)) {
+            Some(split) => ("Several steps, the drift at the end of one and that at the start of the next in one.", split),
+            None if self.keeps_motions() => (
+                "Several steps of one motion.",
+                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu).map(|(q, mu)| (q, mu, ()))),
+            ),
+            None => return TokenStream::new(),
+        };
+        let title = docs::lines(&[title.to_string()]);
         quote! {
-            /// Several steps, the drift at the end of one and that at the start of the next in one.
+            #title
             fn steps(
                 &self,
                 constants: &Self::Constants,
@@ -105,7 +114,7 @@ impl Emitter<'_, '_> {
                 impulse: &Self::Impulse,
                 u: &Self::Input,
             ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
-                #split
+                #taken
             }
         }
     }

@@ -55,7 +55,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The equations that are solved by the free rotation of a body, with the names of its constants.
-    fn free_rotations(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
+    pub(super) fn free_rotations(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
         let steps = self.program.steps.iter().enumerate();
         steps.flat_map(move |(index, step)| {
             let free = step.solves.iter().enumerate().filter(|(_, solve)| solve.solution == Solution::FreeRotation);

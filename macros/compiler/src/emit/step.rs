@@ -124,12 +124,13 @@ impl Emitter<'_, '_> {
             let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
             self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
         });
-        let solve = self.solve(name("solve"), suffix, step);
-        quote!(#start #rest #end #start_force #moving_force #end_force #start_gradient #end_gradient #coupled_gradient #solve #update)
+        let solve = self.solve(name("solve"), suffix, step, false);
+        let solve_kept = self.keeps_motions().then(|| self.solve(name("solve_kept"), suffix, step, true));
+        quote!(#solve_kept #start #rest #end #start_force #moving_force #end_force #start_gradient #end_gradient #coupled_gradient #solve #update)
     }
 
     /// The chart coordinates of all factors, equation by equation.
-    fn solve(&self, name: Ident, suffix: &str, step: &StepKernels) -> TokenStream {
+    fn solve(&self, name: Ident, suffix: &str, step: &StepKernels, kept: bool) -> TokenStream {
         let (private, krate, momentum) = (&self.paths.private, &self.paths.krate, self.momentum_type());
         let (place, input) = (self.time_argument(), self.input_argument());
         let parameters = self.place_parameters(step);
@@ -154,7 +155,13 @@ impl Emitter<'_, '_> {
                 Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
                 Solution::FreeRotation => {
                     let rotation = self.free_rotation(suffix, number);
-                    let found = |target| quote!(#private::FreeRotation::gibbs_vector(&self.constants.#rotation, &#target)?);
+                    let found = |target| match kept {
+                        true => {
+                            let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
+                            quote!(#private::FreeMotion::gibbs_vector(&kept[#index], &#target))
+                        }
+                        false => quote!(#private::FreeRotation::gibbs_vector(&self.constants.#rotation, &#target)?),
+                    };
                     // spatial momenta move as those of the body that turns back
                     let found = match self.is_left(solve) {
                         true => { let found = found(quote!(-#target)); quote!(-#found) }
@@ -170,11 +177,15 @@ impl Emitter<'_, '_> {
         let entries = components.iter().map(solved);
         let documentation =
             docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
+        let kept = kept.then(|| {
+            let (motions, _) = self.kept_motions();
+            quote!(kept: &#motions,)
+        });
         let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
         quote! {
             #documentation
             #[inline]
-            fn #name(&self, #parameters mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
+            fn #name(&self, #kept #parameters mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
                 #(#solutions)*
                 ::core::result::Result::Ok(#result)
             }
@@ -279,8 +290,9 @@ impl Emitter<'_, '_> {
             (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.impulse_type());
         let (time, input, inline) = (self.time_parameter(), self.input_parameter(), self.inline_of_steps());
         let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
-        let (next_impulse, symmetric) = (self.next_impulse(), self.symmetric());
+        let (next_impulse, symmetric, kept) = (self.next_impulse(), self.symmetric(), self.kept_steps());
         quote! {
+            #kept
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
             #inline
             fn euler_poincare(
@@ -297,6 +309,66 @@ impl Emitter<'_, '_> {
                 ::core::result::Result::Ok((q, mu, impulse))
             }
             #symmetric
+        }
+    }
+
+    /// Whether the free motions of several steps are the same, so that what they keep is computed once.
+    pub(super) fn keeps_motions(&self) -> bool {
+        self.program.formulas.is_exact && self.free_rotations().next().is_some()
+    }
+
+    /// The number of the free rotation of an equation among those of a step.
+    fn index_of_free_rotation(&self, number: usize) -> usize {
+        let before = self.program.steps[0].solves.iter().take(number);
+        before.filter(|solve| solve.solution == Solution::FreeRotation).count()
+    }
+
+    /// The type and the value of what the free motions from a momentum `mu` keep.
+    fn kept_motions(&self) -> (TokenStream, TokenStream) {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let motions: Vec<_> = self
+            .free_rotations()
+            .map(|(name, solve)| {
+                let target = self.part_of("mu", &solve.momenta);
+                let target = if self.is_left(solve) { quote!(-#target) } else { target };
+                quote!(#private::FreeRotation::motion(&self.constants.#name, &#target)?)
+            })
+            .collect();
+        let count = Literal::usize_unsuffixed(motions.len());
+        (quote!([#private::FreeMotion<'_, #scalar>; #count]), quote!([#(#motions),*]))
+    }
+
+    /// The steps of one free motion.
+    fn kept_steps(&self) -> TokenStream {
+        if !self.keeps_motions() {
+            return TokenStream::new();
+        }
+        let (krate, configuration, momentum) = (&self.paths.krate, self.configuration_type(), self.momentum_type());
+        let (_, motions) = self.kept_motions();
+        let step = &self.program.steps[0];
+        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
+        let (advanced, updated) =
+            (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
+        quote! {
+            /// (q, N) after several steps of one motion, whose invariants are used once.
+            fn euler_poincare_steps(
+                &self,
+                steps: ::core::primitive::usize,
+                q: &#configuration,
+                mu: &#momentum,
+            ) -> ::core::result::Result<(#configuration, #momentum), #krate::Error> {
+                let kept = #motions;
+                let mut state = (*q, *mu);
+                for _ in 0..steps {
+                    let (q, mu) = state;
+                    let x = self.solve_kept(&kept, &mu)?;
+                    #increment
+                    #advanced
+                    #updated
+                    state = (q, mu);
+                }
+                ::core::result::Result::Ok(state)
+            }
         }
     }
 
