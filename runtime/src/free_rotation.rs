@@ -69,7 +69,8 @@ impl<T: Scalar> FreeRotation<T> {
         if moments.iter().any(|moment| !moment.is_finite()) {
             return Err(Error::NotFinite { name: "the inertia" });
         }
-        let least = moments.iter().fold(moments[0], |least, &moment| if moment.abs() < least.abs() { moment } else { least });
+        let least =
+            moments.iter().fold(moments[0], |least, &moment| if moment.abs() < least.abs() { moment } else { least });
         let relative = moments.map(|moment| moment / least);
         if !relative.iter().all(|moment| moment.is_finite()) {
             return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
@@ -349,11 +350,7 @@ fn unit<T: Scalar>((p, r): (T, [T; 3])) -> (T, [T; 3]) {
 /// The product of two quaternions.
 fn product<T: Scalar>((p, [x, y, z]): (T, [T; 3]), (s, [a, b, c]): (T, [T; 3])) -> (T, [T; 3]) {
     let scalar = p * s - x * a - y * b - z * c;
-    let vector = [
-        p * a + s * x + y * c - z * b,
-        p * b + s * y + z * a - x * c,
-        p * c + s * z + x * b - y * a,
-    ];
+    let vector = [p * a + s * x + y * c - z * b, p * b + s * y + z * a - x * c, p * c + s * z + x * b - y * a];
     (scalar, vector)
 }
 

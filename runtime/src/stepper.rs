@@ -106,15 +106,8 @@ impl<S: Clebsch> Stepper<S> {
     pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
         let State { time, configuration, momentum, .. } = state;
         let (impulse, none) = (self.impulse_of(state), S::Input::origin());
-        let advanced = self.system.steps(
-            &self.constants,
-            (time.now(), self.h),
-            steps,
-            configuration,
-            momentum,
-            &impulse,
-            &none,
-        );
+        let advanced =
+            self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, momentum, &impulse, &none);
         let (configuration, momentum, impulse) = match advanced {
             Ok(next) => next,
             Err(error) => return Err(error.with_step_size(self.h.to_f64())),

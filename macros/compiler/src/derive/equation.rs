@@ -4,8 +4,8 @@ use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::action::identities;
 use super::clearing;
-use super::exact;
 use super::closed_form::{SineForm, closed_form, is_solved_by_predictor};
+use super::exact;
 use super::structure::{self, Structure};
 use super::trivialisation::Covector;
 use super::{ChartBlock, Symbols};

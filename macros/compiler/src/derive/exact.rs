@@ -53,13 +53,14 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
     let refused = |message: String, help: &str, note: &str| -> Result<(), Diagnostics> {
         Err(Diagnostic::new(model.spans.kinetic.place, message).help(help).note(note).into())
     };
-    let known = |group: Group| {
-        group.is_translation() || matches!(group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions)
-    };
+    let known =
+        |group: Group| group.is_translation() || matches!(group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
     if let Some(factor) = model.factors.iter().find(|factor| !known(factor.group)) {
         let name = factor.group.name(model.graph);
         return refused(
-            format!("`discretization = exact` knows the free motion on `SO<3>`, `SU<2>` and `Translation<n>`, not on `{name}`"),
+            format!(
+                "`discretization = exact` knows the free motion on `SO<3>`, `SU<2>` and `Translation<n>`, not on `{name}`"
+            ),
             "write `discretization = exponential`, which is exact where the kinetic energy is the same for all axes, or leave the key out",
             "the free motion of other groups is no power series whose coefficients depend on two invariants alone",
         );
@@ -78,8 +79,7 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
             "its discrete Lagrangian is the action of the free motion, which is no formula of the group element",
         );
     }
-    let moves = energy.depends_on(model.time)
-        || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
+    let moves = energy.depends_on(model.time) || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
     let quadratic = |velocity: &Expr<'g>| {
         let gradient = energy.gradient(*velocity);
         let inertia = gradient.matrix_of_linear(*velocity);
@@ -89,7 +89,9 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
         let velocity = velocities[0];
         return refused(
             "`discretization = exact` needs a constant quadratic form of the velocity of each factor".into(),
-            &format!("write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`, or leave the key out"),
+            &format!(
+                "write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`, or leave the key out"
+            ),
             "the free motion conserves the energy and the length of the momentum, and is known in terms of both",
         );
     }
@@ -172,11 +174,13 @@ pub(super) fn splitting<'g>(
 /// {V, {V, T}} = G·Σ⁻¹G.
 fn gradient_energy<'g>(sources: &Sources<'_, 'g>, force: &[Expr<'g>]) -> Expr<'g> {
     let (graph, inertia) = (sources.model.graph, sources.inertia);
-    let entries: Vec<Expr<'g>> = force.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0))).collect();
+    let entries: Vec<Expr<'g>> =
+        force.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0))).collect();
     match is_diagonal(inertia) {
-        true => entries.iter().enumerate().fold(graph.integer(0), |sum, (i, entry)| {
-            sum + *entry * *entry / inertia.entry(i, i).expand()
-        }),
+        true => entries
+            .iter()
+            .enumerate()
+            .fold(graph.integer(0), |sum, (i, entry)| sum + *entry * *entry / inertia.entry(i, i).expand()),
         false => {
             let force = graph.stack(Shape::vector(entries.len()), entries);
             force.dot(inertia_inverse(graph, inertia.shape()) * force)

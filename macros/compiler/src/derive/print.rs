@@ -4,7 +4,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
-use super::{Equation, Formulas, Reference, Solution, Splitting, Substep, reference};
+use super::{Equation, Formulas, Reference, Solution, Substep, reference};
 use crate::model::{Kinetic, Side};
 
 /// A derived formula, `symbol = expression`.
@@ -49,8 +49,17 @@ impl Formula {
 impl Formula {
     /// The kick of a splitting, with its weights b and g.
     pub fn of_splitting(formulas: &Formulas<'_>) -> Vec<Formula> {
-        let kick = |splitting: &Splitting<'_>| Formula::new("kick", format!("M⁺ − M, at {}", formulas.q()), &readable(&splitting.kick));
-        formulas.splitting.as_ref().map(kick).into_iter().collect()
+        let Some(splitting) = &formulas.splitting else { return Vec::new() };
+        let q = formulas.q();
+        let mut kick = Formula::new("kick", format!("M⁺ − M at {q}"), &splitting.kick);
+        let gradient = |plain: &str, with: &str| format!("{plain}{}", if splitting.has_gradient { with } else { "" });
+        kick.text =
+            vec![gradient(&format!("J({q}, ∂U), U = −h·b·V({q})"), &format!(" + h³·g·Gᵀ·Σ⁻¹·G, G = J({q}, ∂V)"))];
+        kick.latex = vec![gradient(
+            &format!("J({q}, \\partial U),\\quad U = -h b V({q})"),
+            &format!(" + h^3 g\\, G^T \\Sigma^{{-1}} G,\\quad G = J({q}, \\partial V)"),
+        )];
+        vec![kick]
     }
 }
 
@@ -194,7 +203,8 @@ impl<'g> Formulas<'g> {
         let mut formula = Formula::new("discrete Lagrangian", self.kinetic_symbol(), &[self.lagrangian.kinetic]);
         if (0..self.model.factors.len()).any(|k| self.is_free_rotation(k)) {
             formula.text = vec![format!("∫₀ʰ T dt along the free motion from I to {}", self.f())];
-            formula.latex = vec![format!("\\int_0^h T\\,dt \\text{{ along the free motion from }} I \\text{{ to }} {}", self.f())];
+            formula.latex =
+                vec![format!("\\int_0^h T\\,dt \\text{{ along the free motion from }} I \\text{{ to }} {}", self.f())];
         }
         formula
     }

@@ -94,7 +94,9 @@ impl Emitter<'_, '_> {
         let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
         let step = &self.names.step;
         let (title, taken) = match self.split_steps(&quote!(steps)) {
-            Some(split) => ("Several steps, the drift at the end of one and that at the start of the next in one.", split),
+            Some(split) => {
+                ("Several steps, the drift at the end of one and that at the start of the next in one.", split)
+            }
             None if self.keeps_motions() => (
                 "Several steps of one motion.",
                 quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu).map(|(q, mu)| (q, mu, ()))),

@@ -228,6 +228,12 @@ fn scheme(program: &Program<'_>) -> String {
             if program.formulas.potential_energy.is_zero() { "" } else { "; kicks between them are merged" }
         );
     }
+    if let Some(splitting) = &program.formulas.splitting {
+        text = split(model.order, splitting.has_gradient);
+    }
+    if program.formulas.is_exact {
+        text = "No potential acts, and a step is the exact motion of the time h: there is no error in h.\n".to_string();
+    }
     let mut told: Vec<String> = Vec::new();
     for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts) {
         for equation in &substep.equations {
@@ -246,6 +252,19 @@ fn scheme(program: &Program<'_>) -> String {
     let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
     text.extend(first.map(|(_, line)| line.as_str()));
     text
+}
+
+/// How a splitting goes.
+fn split(order: Order, has_gradient: bool) -> String {
+    let (kicks, kind) = match (order, has_gradient) {
+        (Order::Sixth, true) => (5, "with force gradients, of order (8, 6, 6) in V, V² and V³"),
+        (_, true) => (4, "with force gradients at the nodes of Gauss and Legendre, of order (8, 4) in V and V²"),
+        (Order::Sixth, false) => (10, "without force gradients, as the potential is opaque (Blanes and Moan)"),
+        (_, false) => (6, "without force gradients, as the potential is opaque (Blanes and Moan)"),
+    };
+    format!(
+        "The drift is exact, so drifts and kicks in turn make a step of order {order}: {kicks} kicks {kind}, the same forwards and backwards. A part a of the drift with the momentum μ is the whole drift with the momentum a μ.\n"
+    )
 }
 
 /// The factors of an equation, with the components that are meant where it holds not all of them.

@@ -164,7 +164,10 @@ impl Emitter<'_, '_> {
                     };
                     // spatial momenta move as those of the body that turns back
                     let found = match self.is_left(solve) {
-                        true => { let found = found(quote!(-#target)); quote!(-#found) }
+                        true => {
+                            let found = found(quote!(-#target));
+                            quote!(-#found)
+                        }
                         false => found(target),
                     };
                     quote!(let #solution = #found;)
@@ -378,7 +381,8 @@ impl Emitter<'_, '_> {
         let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
         let step = &self.program.steps[0];
         let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
-        let (advanced, updated) = (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
+        let (advanced, updated) =
+            (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
         let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
         let formula = Formula::of_splitting(&self.program.formulas);
         let kick = self.part("A kick.", &formula, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);

@@ -27,7 +27,9 @@ pub(super) fn motion<'g>(
             let chosen = declaration.dials.discretization.as_ref();
             let discretization =
                 chosen.map_or_else(|| default_discretization(context.graph, Some(system.factors)), |dial| dial.value);
-            if let (Some(dial), Discretization::Projection | Discretization::MoserVeselov | Discretization::Exact) = (chosen, discretization) {
+            if let (Some(dial), Discretization::Projection | Discretization::MoserVeselov | Discretization::Exact) =
+                (chosen, discretization)
+            {
                 let error = Diagnostic::new(dial.span, "controls move by the exponential or by Cayley's map");
                 context
                     .diagnostics

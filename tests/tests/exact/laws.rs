@@ -1,0 +1,164 @@
+//! What every step keeps, and what belongs together.
+
+use crate::systems::{eighth, fourth, sixth};
+use clebsch::{Clebsch, Conserved, Conserves, Error, Stepper};
+use clebsch_tests::fixtures::exact_body::ExactBody;
+use clebsch_tests::oracle::random::Random;
+use clebsch_tests::oracle::rotation::hat;
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+
+const MOMENTS: Vector3<f64> = Vector3::new(1.1, 2.0, 2.6);
+
+fn start() -> (Matrix3<f64>, Vector3<f64>) {
+    (Random::new(51).attitude::<3>(), Vector3::new(1.0, -1.5, 2.0))
+}
+
+macro_rules! top {
+    ($order:ident) => {
+        $order::Top { inertia: Matrix3::from_diagonal(&MOMENTS), weight: 3.0, center: Vector3::new(0.2, -0.1, 0.6) }
+    };
+}
+
+/// D of a step along R ↦ R exp(x^) and π, by central differences with one extrapolation: ten digits.
+fn derivative<S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>>(
+    stepper: &Stepper<S>,
+) -> (Matrix6<f64>, Vector3<f64>, Vector3<f64>) {
+    let (r, pi) = start();
+    let stepped = |y: Vector6<f64>| {
+        let turn = nalgebra::Rotation3::new(y.fixed_rows::<3>(0).into_owned()).into_inner();
+        let state = stepper.state(r * turn, pi + y.fixed_rows::<3>(3)).expect("a state");
+        let next = stepper.step(&state).expect("a step");
+        (*next.configuration(), *next.momentum())
+    };
+    let (r_next, pi_next) = stepped(Vector6::zeros());
+    let along = |i: usize, size: f64| {
+        let at = |sign: f64| {
+            let (r, pi) = stepped(Vector6::ith(i, sign * size));
+            let turn = r_next.transpose() * r;
+            let x = Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)])
+                / 2.0;
+            Vector6::from_iterator(x.iter().chain((pi - pi_next).iter()).copied())
+        };
+        (at(1.0) - at(-1.0)) / (2.0 * size)
+    };
+    let column = |i: usize| (along(i, 1e-3) * 4.0 - along(i, 2e-3)) / 3.0;
+    (Matrix6::from_columns(&[0, 1, 2, 3, 4, 5].map(column)), pi, pi_next)
+}
+
+/// The symplectic form of T*SO(3) in these coordinates: W(π) = (−π^ I; −I 0).
+fn form(pi: &Vector3<f64>) -> Matrix6<f64> {
+    let mut w = Matrix6::zeros();
+    w.fixed_view_mut::<3, 3>(0, 0).copy_from(&-hat(pi));
+    w.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
+    w.fixed_view_mut::<3, 3>(3, 0).copy_from(&-Matrix3::identity());
+    w
+}
+
+#[test]
+fn steps_are_symplectic() {
+    fn check<S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>>(stepper: &Stepper<S>) {
+        let (d, pi, next) = derivative(stepper);
+        let defect = (d.transpose() * form(&next) * d - form(&pi)).abs().max();
+        assert!(defect < 1e-9, "{}: {defect:e}", S::NAME);
+    }
+    check(&ExactBody { moments: MOMENTS }.stepper(0.3).expect("regular"));
+    check(&top!(fourth).stepper(0.3).expect("regular"));
+    check(&top!(sixth).stepper(0.3).expect("regular"));
+    check(&top!(eighth).stepper(0.3).expect("regular"));
+}
+
+/// Ten thousand steps: the momentum about the vertical at round-off, the energy in a band that does not move.
+#[test]
+fn momenta_stay_and_energy_swings() {
+    fn check<S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>> + Clone>(
+        system: &S,
+        h: f64,
+        band: f64,
+    ) where
+        S: Conserves<Conserved = Conserved<f64, 1>>,
+    {
+        let stepper = system.stepper(h).expect("regular");
+        let (r, pi) = start();
+        let begin = stepper.state(r, pi).expect("a state");
+        let [vertical] = *stepper.conserved(&begin).values();
+        let energy = stepper.energy(&begin);
+        let (mut state, mut halves) = (begin, [0.0_f64; 2]);
+        for half in &mut halves {
+            for _ in 0..5000 {
+                state = stepper.step(&state).expect("a step");
+                *half = half.max((stepper.energy(&state) - energy).abs());
+            }
+        }
+        let [now] = *stepper.conserved(&state).values();
+        let defect = (state.configuration().transpose() * state.configuration() - Matrix3::identity()).abs().max();
+        assert!((now - vertical).abs() < 1e-12, "{}: {:e}", S::NAME, now - vertical);
+        assert!(defect < 1e-12, "{}: off the group by {defect:e}", S::NAME);
+        assert!(halves[0] < band && halves[1] < 1.2 * halves[0], "{}: energy errors {halves:?}", S::NAME);
+    }
+    check(&top!(fourth), 0.1, 1e-3);
+    check(&top!(sixth), 0.1, 1e-4);
+}
+
+#[test]
+fn a_free_body_keeps_energy_and_momentum_at_any_step() {
+    for h in [0.01, 0.5, 3.0] {
+        let stepper = ExactBody { moments: MOMENTS }.stepper(h).expect("regular");
+        let (r, pi) = start();
+        let begin = stepper.state(r, pi).expect("a state");
+        let end = stepper.advance(&begin, 100_000).expect("steps");
+        let spatial = end.configuration() * end.momentum() - r * pi;
+        assert!((stepper.energy(&end) / stepper.energy(&begin) - 1.0).abs() < 3e-12, "h = {h}");
+        assert!(spatial.norm() < 3e-11, "h = {h}: {:e}", spatial.norm());
+    }
+}
+
+/// Both representations make the same step: π = J(R, p).
+#[test]
+fn both_representations_agree() {
+    let system = top!(sixth);
+    let stepper = system.stepper(0.2).expect("regular");
+    let (r, pi) = start();
+    // J(R, p) = components of Rᵀp: p = R π^/2
+    let p = r * hat(&pi) / 2.0;
+    let state = stepper.state(r, pi).expect("a state");
+    let lifted = stepper.cotangent_state(r, p).expect("a state");
+    let (next, lifted) = (stepper.step(&state).expect("a step"), stepper.step_symmetric(&lifted).expect("a step"));
+    let momentum = system.momentum_map(lifted.configuration(), lifted.covector());
+    assert!((next.configuration() - lifted.configuration()).norm() < 1e-14);
+    assert!((next.momentum() - momentum).norm() < 1e-13);
+}
+
+/// F⁻ℓd is the inverse of the solve, and F⁺ℓd the momentum that it ends with.
+#[test]
+fn legendre_transforms_belong_to_the_step() {
+    let system = crate::systems::second::Top {
+        inertia: Matrix3::from_diagonal(&MOMENTS),
+        weight: 3.0,
+        center: Vector3::new(0.2, -0.1, 0.6),
+    };
+    let h = 0.3;
+    let stepper = system.stepper(h).expect("regular");
+    let (r, pi) = start();
+    let constants = system.constants(h).expect("regular");
+    let f = system.inverse_legendre(&constants, 0.0, &r, &pi).expect("solved");
+    let state = stepper.step(&stepper.state(r, pi).expect("a state")).expect("a step");
+    assert!((system.act(&f, &r) - state.configuration()).norm() < 1e-14);
+    assert!((system.legendre(h, 0.0, &r, &f) - pi).norm() < 1e-13);
+    assert!((system.legendre_next(h, 0.0, &r, &f) - state.momentum()).norm() < 1e-13);
+    // and of a motion from the left
+    let mirrored = crate::systems::second::MirroredTop { moments: MOMENTS, moment: Vector3::new(0.6, -0.3, 1.8) };
+    let constants = mirrored.constants(h).expect("regular");
+    let f = mirrored.inverse_legendre(&constants, 0.0, &r, &pi).expect("solved");
+    assert!((mirrored.legendre(h, 0.0, &r, &f) - pi).norm() < 1e-13);
+}
+
+#[test]
+fn what_cannot_be_stepped_is_said() {
+    let stepper = ExactBody { moments: MOMENTS }.stepper(1.0).expect("regular");
+    let state = stepper.state(Matrix3::identity(), Vector3::new(1e7, 0.0, 0.0)).expect("a state");
+    assert!(matches!(stepper.step(&state), Err(Error::Unsolvable { .. })));
+    assert!(matches!(
+        ExactBody { moments: Vector3::new(1.0, 0.0, 2.0) }.stepper(0.1),
+        Err(Error::SingularKineticEnergy { .. })
+    ));
+}

@@ -1,0 +1,15 @@
+//! Exact drifts: the free motion of bodies without an error in h, and what splittings make of it: measured orders on nonlinear problems,
+//! against equations of motion integrated in tiny steps, and the laws that every step keeps.
+
+#![allow(missing_docs)]
+
+mod laws;
+mod orders;
+mod systems;
+
+use nalgebra::SVector;
+
+/// Numbers in one vector.
+fn flat<const N: usize>(parts: &[&[f64]]) -> SVector<f64, N> {
+    SVector::from_iterator(parts.iter().flat_map(|part| part.iter().copied()))
+}
