@@ -177,8 +177,13 @@ pub fn by_setting(points: &[Point]) -> impl Iterator<Item = &[Point]> {
     points.chunk_by(|a, b| a.name == b.name)
 }
 
-/// Time and length of steps at which a setting has an error, between two of its points by powers.
+/// Time and length of steps at which a setting has an error, between two of its points by powers, or of its longest steps where they are
+/// better than that.
 pub fn at_error(points: &[Point], error: f64) -> Option<(f64, f64)> {
+    let first = points.first()?;
+    if first.error <= error {
+        return Some((first.time, first.h));
+    }
     let pair = points.windows(2).find(|pair| pair[0].error > error && pair[1].error <= error)?;
     let share = (error / pair[0].error).ln() / (pair[1].error / pair[0].error).ln();
     let between = |of: fn(&Point) -> f64| of(&pair[0]) * (of(&pair[1]) / of(&pair[0])).powf(share);

@@ -11,8 +11,8 @@ pub const SAMPLES: u64 = 10;
 const OBSERVATIONS: u64 = 5120;
 /// A reading of the clock takes at least so long, nanoseconds: what it costs to read it does not show.
 pub const READING: u128 = 1_500_000;
-/// Steps between the first two looks at the clock; each time twice as many.
-const FIRST_LOOK: u64 = 16;
+/// Steps, or parts of a motion, between the first two looks at the clock; each time twice as many.
+const FIRST_LOOK: u64 = 1;
 
 /// What a person turns to trade time for accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,7 +129,9 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S
     fn clock(&self, dial: Dial, duration: f64) -> f64 {
         let (steps, h) = fixed(dial, duration);
         let Ok((stepper, start)) = self.prepare(h) else { return f64::NAN };
-        clock_steps(steps, h, start, |state| stepper.step(state).unwrap_or(*state))
+        // from one sample to the next at once
+        let part = (steps / SAMPLES) as usize;
+        clock_steps(SAMPLES, h * part as f64, start, |state| stepper.advance(state, part).unwrap_or(*state))
     }
 }
 

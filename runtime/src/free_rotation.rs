@@ -31,6 +31,15 @@ const DEGREE: usize = 12;
 /// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
 const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
+/// The degrees of polynomials that are evaluated: as many terms as α asks for.
+const DEGREES: [usize; 7] = [3, 4, 5, 6, 8, 10, 12];
+
+/// The place of the coefficient of α^i ε^j, those of one j after the other.
+const fn place(i: usize, j: usize) -> usize {
+    // Σ_{k<j} (DEGREE + 1 − k)
+    j * (2 * DEGREE + 3 - j) / 2 + i
+}
+
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
 
@@ -45,8 +54,10 @@ pub struct FreeRotation<T> {
     reciprocals: [T; 3],
     /// The columns are the principal axes, where they are not those of the coordinates.
     axes: Option<SMatrix<T, 3, 3>>,
-    /// The coefficients of α^{n−j} ε^j in x_i d_i, degree after degree; the fourth of each is 0, as registers hold two or four.
+    /// The coefficients of α^i ε^j in x_i d_i, at [`place`]; the fourth of each is 0, as registers hold two or four.
     series: [[T; 4]; MONOMIALS],
+    /// Up to which α each of [`DEGREES`] is enough.
+    reach: [T; 7],
 }
 
 /// A homogeneous polynomial of each degree n in α and ε: entry (n, j) belongs to α^{n−j} ε^j.
@@ -77,7 +88,8 @@ impl<T: Scalar> FreeRotation<T> {
         }
         let x = relative.map(T::recip);
         let series = series(&x);
-        Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series })
+        let reach = reach(&x, &series);
+        Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series, reach })
     }
 
     /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
@@ -142,18 +154,61 @@ impl<T: Scalar> FreeRotation<T> {
         let alpha = squares[0] + squares[1] + squares[2];
         let [a, b, c] = self.reciprocals;
         let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
-        let mut sum = Sum { value: [T::one(); 4], before: T::one(), monomials: [T::zero(); DEGREE + 1] };
-        sum.monomials[0] = T::one();
         macro_rules! degrees {
-            ($($degree:literal)*) => {$(
-                if sum.add::<$degree>(&self.series, alpha, epsilon) {
-                    let [a, b, c, _] = sum.value;
-                    return Some([a * self.inertia[0], b * self.inertia[1], c * self.inertia[2]]);
+            ($($number:literal $degree:literal),*) => {$(
+                if alpha <= self.reach[$number] {
+                    return Some(self.scaled(self.polynomial::<$degree>(alpha, epsilon)));
                 }
             )*};
         }
-        degrees!(1 2 3 4 5 6 7 8 9 10 11 12);
+        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12);
+        self.slowly_modified_inertia(alpha, epsilon)
+    }
+
+    /// d_i x where the reach of all states is exceeded, and that of this one need not be.
+    #[cold]
+    #[inline(never)]
+    fn slowly_modified_inertia(&self, alpha: T, epsilon: T) -> Option<[T; 3]> {
+        let mut monomials = [T::zero(); DEGREE + 1];
+        monomials[0] = T::one();
+        let (mut value, mut before) = ([T::one(); 4], T::one());
+        for n in 1..=DEGREE {
+            monomials[n] = monomials[n - 1] * epsilon;
+            monomials[..n].iter_mut().for_each(|monomial| *monomial *= alpha);
+            let mut terms = [T::zero(); 4];
+            for (j, monomial) in monomials[..=n].iter().enumerate() {
+                let coefficients = &self.series[place(n - j, j)];
+                terms.iter_mut().zip(coefficients).for_each(|(term, coefficient)| *term += *coefficient * *monomial);
+            }
+            value.iter_mut().zip(terms).for_each(|(value, term)| *value += term);
+            // of geometric decrease, what is left is t_n²/t_{n−1} and less
+            let size = terms[0].abs() + terms[1].abs() + terms[2].abs();
+            if size * size <= negligible::<T>() * before && size <= half(before) {
+                return Some(self.scaled(value));
+            }
+            before = size;
+        }
         None
+    }
+
+    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
+    #[inline(always)]
+    fn polynomial<const K: usize>(&self, alpha: T, epsilon: T) -> [T; 4] {
+        let mut sum = [T::zero(); 4];
+        for j in (0..=K).rev() {
+            let mut inner = self.series[place(K - j, j)];
+            for i in (0..K - j).rev() {
+                let coefficients = &self.series[place(i, j)];
+                inner = core::array::from_fn(|k| inner[k] * alpha + coefficients[k]);
+            }
+            sum = core::array::from_fn(|k| sum[k] * epsilon + inner[k]);
+        }
+        sum
+    }
+
+    #[inline]
+    fn scaled(&self, [a, b, c, _]: [T; 4]) -> [T; 3] {
+        [a * self.inertia[0], b * self.inertia[1], c * self.inertia[2]]
     }
 
     /// The free motions with the invariants of one of them, here those of `momentum`: for many steps of one.
@@ -258,40 +313,50 @@ pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3>
     SVector::from_fn(|i, _| f.coords[i] / f.coords[3])
 }
 
-/// The sum of a series so far.
-struct Sum<T> {
-    value: [T; 4],
-    /// The size of the last terms.
-    before: T,
-    /// Those of the last degree.
-    monomials: [T; DEGREE + 1],
+/// What cannot be seen beside 1.
+#[inline]
+fn negligible<T: Scalar>() -> T {
+    T::from_ratio(1, 8) * T::EPSILON
 }
 
-impl<T: Scalar> Sum<T> {
-    /// Adds the terms of degree `N`; whether those that are left cannot be seen.
-    ///
-    /// With terms t_n of geometric decrease what is left is t_n²/t_{n−1} and less.
-    #[inline(always)]
-    fn add<const N: usize>(&mut self, series: &[[T; 4]; MONOMIALS], alpha: T, epsilon: T) -> bool {
-        self.monomials[N] = self.monomials[N - 1] * epsilon;
-        for monomial in &mut self.monomials[..N] {
-            *monomial *= alpha;
-        }
-        let first = N * (N + 1) / 2;
-        let mut terms = [T::zero(); 4];
-        for (monomial, coefficients) in self.monomials[..=N].iter().zip(&series[first..=first + N]) {
-            for (term, coefficient) in terms.iter_mut().zip(coefficients) {
-                *term += *coefficient * *monomial;
-            }
-        }
-        for (value, term) in self.value.iter_mut().zip(terms) {
-            *value += term;
-        }
-        let size = terms[0].abs() + terms[1].abs() + terms[2].abs();
-        let converged = size * size <= T::from_ratio(1, 8) * T::EPSILON * self.before && size <= half(self.before);
-        self.before = size;
-        converged
+/// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α.
+///
+/// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
+#[cold]
+fn reach<T: Scalar>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 7] {
+    const SAMPLES: i64 = 16;
+    let (mut low, mut high) = (x[0], x[0]);
+    for &other in x {
+        low = if other < low { other } else { low };
+        high = if other > high { other } else { high };
     }
+    // the largest sum of terms of each degree where α = 1
+    let mut sizes = [T::zero(); DEGREE + 1];
+    for sample in 0..=SAMPLES {
+        let epsilon = low + (high - low) * T::from_ratio(sample, SAMPLES);
+        for (n, size) in sizes.iter_mut().enumerate() {
+            let terms = (0..=n).rev().fold([T::zero(); 4], |sum, j| {
+                let coefficients = &series[place(n - j, j)];
+                core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
+            });
+            *size = crate::space::larger(*size, terms[0].abs() + terms[1].abs() + terms[2].abs());
+        }
+    }
+    let root = |size: T, n: usize| match size > T::zero() {
+        true => (negligible::<T>() / size).powf(T::from_ratio(1, n as i64)),
+        false => T::one(),
+    };
+    DEGREES.map(|degree| {
+        // beyond the last degree, terms go on to shrink as they did
+        let reach = match degree == DEGREE {
+            true => root(sizes[degree], degree + 1),
+            false => root(sizes[degree + 1], degree + 1),
+        };
+        let next = degree + 2;
+        let other = if next <= DEGREE { root(sizes[next], next) } else { reach };
+        let reach = if other < reach { other } else { reach };
+        if reach.is_finite() { reach } else { T::zero() }
+    })
 }
 
 #[inline]
@@ -396,7 +461,7 @@ fn series<T: Scalar>(x: &[T; 3]) -> [[T; 4]; MONOMIALS] {
         let solution = riccati(x[i], &rate);
         for n in 0..=DEGREE {
             for part in 0..=n {
-                all[n * (n + 1) / 2 + part][i] = x[i] * solution[n][part];
+                all[place(n - part, part)][i] = x[i] * solution[n][part];
             }
         }
     }

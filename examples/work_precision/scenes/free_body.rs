@@ -81,6 +81,25 @@ bodies! {
     };
 }
 
+/// The motion itself, which no order makes better.
+mod exact {
+    use clebsch::Clebsch;
+    use nalgebra::Matrix3;
+
+    /// A free body.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        discretization = exact,
+    )]
+    pub struct Body {
+        /// Inertia tensor, kg·m².
+        #[clebsch(symmetric)]
+        pub inertia: Matrix3<f64>,
+    }
+}
+
 fn unturned() -> Matrix3<f64> {
     Matrix3::identity()
 }
@@ -104,6 +123,7 @@ pub fn scene() -> Scene<12> {
         compact_rates(&attitude, &omega, &momentum.cross(&omega))
     };
     let mut settings = declarations(inertia);
+    settings.push(declared("exact", exact::Body { inertia }, (unturned(), MOMENTUM), pack));
     settings.extend(Equation { field: fast, start: compact(&unit(), &MOMENTUM), flat: unpack_compact }.settings());
     Scene {
         name: "free_body",

@@ -57,6 +57,18 @@ macro_rules! tops {
 }
 
 tops! {
+    exact, "exact", tilted, pack, {
+        action = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |R| self.weight * (R * self.center).z,
+        discretization = exact
+    };
+    quaternion_exact, "quaternion exact", tilted_quaternion, pack_quaternion, {
+        action = |F: SU<2>, Q: SU<2>| Q * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |Q| self.weight * (Q * self.center).z,
+        discretization = exact
+    };
     moser_veselov, "moser_veselov", tilted, pack, {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
