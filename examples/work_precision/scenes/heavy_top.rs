@@ -14,20 +14,16 @@ const CENTER: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 const VELOCITY: Vector3<f64> = Vector3::new(0.1, 0.2, 5.0);
 const TILT: f64 = 0.5;
 
-/// The same top in one form after another, in every order.
+/// The same top in one form after another, in its orders.
 macro_rules! tops {
-    ($($module:ident, $label:literal, $start:ident, $flat:ident, {$($declared:tt)*};)*) => {
-        $(tops!(@orders $module, {$($declared)*}, [first 1, second 2, fourth 4, sixth 6, eighth 8]);)*
+    ($($module:ident, $label:literal, $start:ident, $flat:ident, [$($name:ident $order:literal),*], $declared:tt;)*) => {
+        $(tops!(@orders $module, $declared, [$($name $order),*]);)*
 
         fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec<Box<dyn Setting<12>>> {
             let momentum = inertia * VELOCITY;
-            vec![$(
-                declared($label, $module::first::Top { inertia, weight, center }, ($start(), momentum), $flat),
-                declared($label, $module::second::Top { inertia, weight, center }, ($start(), momentum), $flat),
-                declared($label, $module::fourth::Top { inertia, weight, center }, ($start(), momentum), $flat),
-                declared($label, $module::sixth::Top { inertia, weight, center }, ($start(), momentum), $flat),
-                declared($label, $module::eighth::Top { inertia, weight, center }, ($start(), momentum), $flat),
-            )*]
+            vec![$($(
+                declared($label, $module::$name::Top { inertia, weight, center }, ($start(), momentum), $flat),
+            )*)*]
         }
     };
     (@orders $module:ident, $declared:tt, [$($name:ident $order:literal),*]) => {
@@ -57,48 +53,48 @@ macro_rules! tops {
 }
 
 tops! {
-    exact, "exact", tilted, pack, {
+    exact, "exact", tilted, pack, [first 1, second 2, fourth 4, sixth 6], {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |R| self.weight * (R * self.center).z,
         discretization = exact
     };
-    quaternion_exact, "quaternion exact", tilted_quaternion, pack_quaternion, {
+    quaternion_exact, "quaternion exact", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6], {
         action = |F: SU<2>, Q: SU<2>| Q * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |Q| self.weight * (Q * self.center).z,
         discretization = exact
     };
-    moser_veselov, "moser_veselov", tilted, pack, {
+    moser_veselov, "moser_veselov", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |R| self.weight * (R * self.center).z,
         discretization = moser_veselov
     };
-    cayley, "cayley", tilted, pack, {
+    cayley, "cayley", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |R| self.weight * (R * self.center).z,
         discretization = cayley
     };
-    exponential, "exponential", tilted, pack, {
+    exponential, "exponential", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |R| self.weight * (R * self.center).z,
         discretization = exponential
     };
-    projection, "projection", tilted, pack, {
+    projection, "projection", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SO<3>, R: SO<3>| R * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |R| self.weight * (R * self.center).z,
         discretization = projection
     };
-    chord, "quaternion chord", tilted_quaternion, pack_quaternion, {
+    chord, "quaternion chord", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SU<2>, Q: SU<2>| Q * F,
         cost = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
         potential = |Q| self.weight * (Q * self.center).z
     };
-    quaternion, "quaternion cayley", tilted_quaternion, pack_quaternion, {
+    quaternion, "quaternion cayley", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SU<2>, Q: SU<2>| Q * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |Q| self.weight * (Q * self.center).z,
