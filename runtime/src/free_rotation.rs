@@ -101,11 +101,11 @@ impl<T: Scalar> FreeRotation<T> {
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
     #[inline]
     pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
-        let m = self.to_principal(momentum).map(|component| component * self.scale);
+        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         match self.modified_inertia(&m) {
             Some(d) => {
                 let (p, r) = turn(&d, &m);
-                Ok(self.from_principal(ratio(p, r)))
+                Ok(self.in_coordinates(ratio(p, r)))
             }
             None => self.in_parts(&m),
         }
@@ -116,7 +116,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
     #[cold]
     pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
-        let c = SVector::from(self.to_principal(gibbs_vector));
+        let c = SVector::from(self.in_principal_axes(gibbs_vector));
         let alone = Self { axes: None, scale: T::one(), ..*self };
         // the equation of Moser and Veselov, which is right to second order
         let [a, b, g] = [0, 1, 2].map(|i| self.inertia[i] * c[i]);
@@ -130,7 +130,7 @@ impl<T: Scalar> FreeRotation<T> {
             let size = largest(&defect);
             // written so that NaN ends it
             if !(size > T::zero() && size < before) {
-                return self.from_principal((m * self.scale.recip()).into());
+                return self.in_coordinates((m * self.scale.recip()).into());
             }
             before = size;
             let step = T::EPSILON.sqrt() * (largest(&m) + T::EPSILON);
@@ -216,7 +216,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// As [`gibbs_vector`](Self::gibbs_vector).
     pub fn motion(&self, momentum: &SVector<T, 3>) -> Result<FreeMotion<'_, T>, Error> {
-        let m = self.to_principal(momentum).map(|component| component * self.scale);
+        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         let (inertia, parts) = match self.modified_inertia(&m) {
             Some(inertia) => (inertia, 1),
             None => self.parts(&m)?,
@@ -229,7 +229,7 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline(never)]
     fn in_parts(&self, m: &[T; 3]) -> Result<SVector<T, 3>, Error> {
         let (d, parts) = self.parts(m)?;
-        Ok(self.from_principal(turn_in_parts(&d, m, parts)))
+        Ok(self.in_coordinates(turn_in_parts(&d, m, parts)))
     }
 
     /// d_i x of a part of the time for which the series converge, and how many parts there are.
@@ -251,7 +251,7 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     #[inline]
-    fn to_principal(&self, vector: &SVector<T, 3>) -> [T; 3] {
+    fn in_principal_axes(&self, vector: &SVector<T, 3>) -> [T; 3] {
         match &self.axes {
             Some(axes) => axes.tr_mul(vector).into(),
             None => [vector[0], vector[1], vector[2]],
@@ -259,7 +259,7 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     #[inline]
-    fn from_principal(&self, vector: [T; 3]) -> SVector<T, 3> {
+    fn in_coordinates(&self, vector: [T; 3]) -> SVector<T, 3> {
         match &self.axes {
             Some(axes) => axes * SVector::from(vector),
             None => SVector::from(vector),
@@ -282,8 +282,8 @@ impl<T: Scalar> FreeMotion<'_, T> {
     #[inline]
     pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> SVector<T, 3> {
         let rotation = self.rotation;
-        let m = rotation.to_principal(momentum).map(|component| component * rotation.scale);
-        rotation.from_principal(match self.parts {
+        let m = rotation.in_principal_axes(momentum).map(|component| component * rotation.scale);
+        rotation.in_coordinates(match self.parts {
             1 => {
                 let (p, r) = turn(&self.inertia, &m);
                 ratio(p, r)
