@@ -70,12 +70,10 @@ fn steps_are_symplectic() {
 /// Ten thousand steps: the momentum about the vertical at round-off, the energy in a band that does not move.
 #[test]
 fn momenta_stay_and_energy_swings() {
-    fn check<S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>> + Clone>(
-        system: &S,
-        h: f64,
-        band: f64,
-    ) where
-        S: Conserves<Conserved = Conserved<f64, 1>>,
+    fn check<S>(system: &S, h: f64, band: f64)
+    where
+        S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>,
+        S: Conserves<Conserved = Conserved<f64, 1>> + Clone,
     {
         let stepper = system.stepper(h).expect("regular");
         let (r, pi) = start();
