@@ -26,13 +26,13 @@ use crate::{Error, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
 
 /// The degree up to which the series are known.
-const DEGREE: usize = 12;
+const DEGREE: usize = 14;
 
 /// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
 const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
 /// The degrees of polynomials that are evaluated: as many terms as α asks for.
-const DEGREES: [usize; 7] = [3, 4, 5, 6, 8, 10, 12];
+const DEGREES: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 14];
 
 /// The place of the coefficient of α^i ε^j, those of one j after the other.
 const fn place(i: usize, j: usize) -> usize {
@@ -57,7 +57,7 @@ pub struct FreeRotation<T> {
     /// The coefficients of α^i ε^j in x_i d_i, at [`place`]; the fourth of each is 0, as registers hold two or four.
     series: [[T; 4]; MONOMIALS],
     /// Up to which α each of [`DEGREES`] is enough.
-    reach: [T; 7],
+    reach: [T; 8],
 }
 
 /// A homogeneous polynomial of each degree n in α and ε: entry (n, j) belongs to α^{n−j} ε^j.
@@ -94,18 +94,27 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
     ///
-    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 12 in two variables, and one rotation for
+    /// # Errors
+    /// As [`turn`](Self::turn).
+    #[inline]
+    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+        self.turn(momentum).map(ratio)
+    }
+
+    /// A multiple (w, x) of the quaternion of the rotation that starts with the momentum `momentum`: its Gibbs vector is x/w.
+    ///
+    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and one rotation for
     /// each 1.4 rad or so of the angle.
     ///
     /// # Errors
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
     #[inline]
-    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+    pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         match self.modified_inertia(&m) {
             Some(d) => {
-                let (p, r) = turn(&d, &m);
-                Ok(self.in_coordinates(ratio(p, r)))
+                let (w, x) = turn(&d, &m);
+                Ok((w, self.in_coordinates(x)))
             }
             None => self.in_parts(&m),
         }
@@ -147,7 +156,7 @@ impl<T: Scalar> FreeRotation<T> {
         SVector::from_element(T::from_f64(f64::NAN))
     }
 
-    /// d_i x of the whole time; `None` where the series have not converged at their end.
+    /// d_i x of the whole time; `None` where that is beyond the reach of the series.
     #[inline]
     fn modified_inertia(&self, m: &[T; 3]) -> Option<[T; 3]> {
         let squares = m.map(|component| component * component);
@@ -161,33 +170,7 @@ impl<T: Scalar> FreeRotation<T> {
                 }
             )*};
         }
-        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12);
-        self.slowly_modified_inertia(alpha, epsilon)
-    }
-
-    /// d_i x where the reach of all states is exceeded, and that of this one need not be.
-    #[cold]
-    #[inline(never)]
-    fn slowly_modified_inertia(&self, alpha: T, epsilon: T) -> Option<[T; 3]> {
-        let mut monomials = [T::zero(); DEGREE + 1];
-        monomials[0] = T::one();
-        let (mut value, mut before) = ([T::one(); 4], T::one());
-        for n in 1..=DEGREE {
-            monomials[n] = monomials[n - 1] * epsilon;
-            monomials[..n].iter_mut().for_each(|monomial| *monomial *= alpha);
-            let mut terms = [T::zero(); 4];
-            for (j, monomial) in monomials[..=n].iter().enumerate() {
-                let coefficients = &self.series[place(n - j, j)];
-                terms.iter_mut().zip(coefficients).for_each(|(term, coefficient)| *term += *coefficient * *monomial);
-            }
-            value.iter_mut().zip(terms).for_each(|(value, term)| *value += term);
-            // of geometric decrease, what is left is t_n²/t_{n−1} and less
-            let size = terms[0].abs() + terms[1].abs() + terms[2].abs();
-            if size * size <= negligible::<T>() * before && size <= half(before) {
-                return Some(self.scaled(value));
-            }
-            before = size;
-        }
+        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12, 7 14);
         None
     }
 
@@ -227,9 +210,10 @@ impl<T: Scalar> FreeRotation<T> {
     /// The same rotation as that of equal parts of the time, one after the other.
     #[cold]
     #[inline(never)]
-    fn in_parts(&self, m: &[T; 3]) -> Result<SVector<T, 3>, Error> {
+    fn in_parts(&self, m: &[T; 3]) -> Result<(T, SVector<T, 3>), Error> {
         let (d, parts) = self.parts(m)?;
-        Ok(self.in_coordinates(turn_in_parts(&d, m, parts)))
+        let (w, x) = turn_in_parts(&d, m, parts);
+        Ok((w, self.in_coordinates(x)))
     }
 
     /// d_i x of a part of the time for which the series converge, and how many parts there are.
@@ -281,15 +265,19 @@ impl<T: Scalar> FreeMotion<'_, T> {
     /// The Gibbs vector of the rotation that starts with the momentum `momentum`, one of the motion.
     #[inline]
     pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> SVector<T, 3> {
+        ratio(self.turn(momentum))
+    }
+
+    /// A multiple (w, x) of its quaternion.
+    #[inline]
+    pub fn turn(&self, momentum: &SVector<T, 3>) -> (T, SVector<T, 3>) {
         let rotation = self.rotation;
         let m = rotation.in_principal_axes(momentum).map(|component| component * rotation.scale);
-        rotation.in_coordinates(match self.parts {
-            1 => {
-                let (p, r) = turn(&self.inertia, &m);
-                ratio(p, r)
-            }
+        let (w, x) = match self.parts {
+            1 => turn(&self.inertia, &m),
             parts => turn_in_parts(&self.inertia, &m, parts),
-        })
+        };
+        (w, rotation.in_coordinates(x))
     }
 }
 
@@ -323,7 +311,7 @@ fn negligible<T: Scalar>() -> T {
 ///
 /// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
 #[cold]
-fn reach<T: Scalar>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 7] {
+fn reach<T: Scalar>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
     const SAMPLES: i64 = 16;
     let (mut low, mut high) = (x[0], x[0]);
     for &other in x {
@@ -383,8 +371,8 @@ fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
     (p, r)
 }
 
-/// The Gibbs vector of the turns of equal parts of the time, one after the other.
-fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> [T; 3] {
+/// The quaternion of the turns of equal parts of the time, one after the other.
+fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> (T, [T; 3]) {
     let size = T::from_ratio(1, i64::from(parts));
     let mut part = m.map(|component| component * size);
     let mut whole = (T::one(), [T::zero(); 3]);
@@ -393,16 +381,15 @@ fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> [T; 3] {
         whole = product(whole, (p, r));
         part = carried(&part, p, &r);
     }
-    ratio(whole.0, whole.1)
+    whole
 }
 
-/// r/p; at half a turn, where p vanishes, that of an angle which differs by a unit in the last place.
+/// x/w; at half a turn, where w vanishes, that of an angle which differs by a unit in the last place.
 #[inline]
-fn ratio<T: Scalar>(p: T, r: [T; 3]) -> [T; 3] {
-    let least = T::EPSILON * (r[0].abs() + r[1].abs() + r[2].abs());
-    let p = if p.abs() < least { least } else { p };
-    let inverse = p.recip();
-    r.map(|component| component * inverse)
+fn ratio<T: Scalar>((w, x): (T, SVector<T, 3>)) -> SVector<T, 3> {
+    let least = T::EPSILON * (x[0].abs() + x[1].abs() + x[2].abs());
+    let w = if w.abs() < least { least } else { w };
+    x * w.recip()
 }
 
 /// The unit quaternion of a multiple.
@@ -517,8 +504,13 @@ fn riccati<T: Scalar>(x: T, rate: &Series<T>) -> Series<T> {
     square[0][0] = v[0][0] * v[0][0];
     for n in 1..=DEGREE {
         let mut row = [T::zero(); DEGREE + 1];
-        for k in 1..n {
+        // both halves of the square are the same
+        for k in 1..n.div_ceil(2) {
             add_product(&mut row, (&v[k], k), (&v[n - k], n - k));
+        }
+        row = row.map(|coefficient| coefficient + coefficient);
+        if n % 2 == 0 {
+            add_product(&mut row, (&v[n / 2], n / 2), (&v[n / 2], n / 2));
         }
         if n == 1 {
             row[0] += T::one();

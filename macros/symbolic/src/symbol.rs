@@ -45,6 +45,8 @@ pub enum Role {
     Kick,
     /// The weight of the force gradient in such a kick.
     KickGradient,
+    /// The weight of chart coordinates that are given up to a factor, by its number.
+    ChartWeight(usize),
     /// The chart coordinates of a factor's group element.
     Chart(usize),
     /// Any other symbol, by an index of the user's.

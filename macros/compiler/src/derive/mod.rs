@@ -28,7 +28,7 @@ mod velocity;
 
 use std::cell::OnceCell;
 
-use clebsch_symbolic::{Chart, Expr, Shape, identity};
+use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Model;
@@ -391,6 +391,13 @@ impl Formulas<'_> {
     /// Whether F of a factor has its momentum from the constants of free rotation.
     pub fn is_free_rotation(&self, k: usize) -> bool {
         exact::is_free_rotation(&self.model, k)
+    }
+
+    /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
+    pub fn weighted(&self) -> Vec<usize> {
+        let rotates =
+            |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3) && self.is_free_rotation(*k);
+        (0..self.model.factors.len()).filter(rotates).collect()
     }
 
     /// Whether the cost or the potential depends on the time.

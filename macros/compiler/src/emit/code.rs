@@ -99,6 +99,10 @@ impl Scope<'_, '_> {
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
             Role::Multiplier => leaf("kappa", ""),
             Role::Weight => leaf("z", ""),
+            Role::ChartWeight(number) => {
+                let number = Literal::usize_unsuffixed(number);
+                quote!(w[#number])
+            }
             Role::Kick => quote!(weight),
             Role::KickGradient => quote!(gradient),
             Role::Momentum(k) => entry(self.momentum, &self.momenta, self.model.offset(k) + input.row),

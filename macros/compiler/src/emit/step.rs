@@ -155,22 +155,25 @@ impl Emitter<'_, '_> {
                 Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
                 Solution::FreeRotation => {
                     let rotation = self.free_rotation(suffix, number);
+                    let method = if self.weight_of(solve).is_some() { quote!(turn) } else { quote!(gibbs_vector) };
                     let found = |target| match kept {
                         true => {
                             let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
-                            quote!(#private::FreeMotion::gibbs_vector(&kept[#index], &#target))
+                            quote!(#private::FreeMotion::#method(&kept[#index], &#target))
                         }
-                        false => quote!(#private::FreeRotation::gibbs_vector(&self.constants.#rotation, &#target)?),
+                        false => quote!(#private::FreeRotation::#method(&self.constants.#rotation, &#target)?),
                     };
                     // spatial momenta move as those of the body that turns back
-                    let found = match self.is_left(solve) {
-                        true => {
-                            let found = found(quote!(-#target));
-                            quote!(-#found)
+                    let is_left = self.is_left(solve);
+                    let found = if is_left { found(quote!(-#target)) } else { found(target) };
+                    let turned_back = is_left.then(|| quote!(let #solution = -#solution;));
+                    match self.weight_of(solve) {
+                        Some(number) => {
+                            let weight = format_ident!("w{}", number + 1);
+                            quote!(let (#weight, #solution) = #found; #turned_back)
                         }
-                        false => found(target),
-                    };
-                    quote!(let #solution = #found;)
+                        None => quote!(let #solution = #found; #turned_back),
+                    }
                 }
                 Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
                 Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
@@ -185,10 +188,16 @@ impl Emitter<'_, '_> {
             quote!(kept: &#motions,)
         });
         let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
+        let (coordinates, weights) = (self.coordinates_type(), self.program.formulas.weighted().len());
+        let weights = (1..=weights).map(|number| format_ident!("w{number}"));
+        let result = match self.program.formulas.weighted().is_empty() {
+            true => result,
+            false => quote!((#result, [#(#weights),*])),
+        };
         quote! {
             #documentation
             #[inline]
-            fn #name(&self, #kept #parameters mu: &#momentum) -> ::core::result::Result<#momentum, #krate::Error> {
+            fn #name(&self, #kept #parameters mu: &#momentum) -> ::core::result::Result<#coordinates, #krate::Error> {
                 #(#solutions)*
                 ::core::result::Result::Ok(#result)
             }
@@ -230,7 +239,13 @@ impl Emitter<'_, '_> {
         let increment = self.part(
             "The increment D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
             &[],
-            quote!(increment(&self, x: &#momentum) -> #element),
+            match self.program.formulas.weighted().is_empty() {
+                true => quote!(increment(&self, x: &#momentum) -> #element),
+                false => {
+                    let coordinates = self.coordinates_type();
+                    quote!(increment(&self, (x, w): &#coordinates) -> #element)
+                }
+            },
             &step.increment,
             Some(Nesting::Element),
         );
@@ -312,6 +327,25 @@ impl Emitter<'_, '_> {
                 ::core::result::Result::Ok((q, mu, impulse))
             }
             #symmetric
+        }
+    }
+
+    /// The number of the weight of the chart coordinates of an equation, where they are given up to a factor.
+    fn weight_of(&self, solve: &Solve) -> Option<usize> {
+        let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
+        let factor = self.program.formulas.symbols.blocks[block].factor;
+        self.program.formulas.weighted().iter().position(|&other| other == factor)
+    }
+
+    /// The chart coordinates of all factors, with the weights of those that are given up to a factor.
+    fn coordinates_type(&self) -> TokenStream {
+        let (momentum, scalar) = (self.momentum_type(), &self.paths.scalar);
+        match self.program.formulas.weighted().len() {
+            0 => momentum,
+            count => {
+                let count = Literal::usize_unsuffixed(count);
+                quote!((#momentum, [#scalar; #count]))
+            }
         }
     }
 

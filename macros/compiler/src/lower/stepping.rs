@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Chart, Expr, Group, Role, Shape, Zero, identity};
+use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape, Zero, identity};
 
 use super::displacement;
 use super::kernel::kernel;
@@ -194,6 +194,7 @@ fn step<'g>(
         false => increment.cost().total() + advance.cost().total(),
     };
     let displace = displacement::displaced(formulas).map(|images| plain(scalars, &images));
+    let displace = displace.filter(|_| formulas.weighted().is_empty());
     let displace = displace.filter(|displace| displace.cost().total() < by_increments);
     StepKernels {
         end_is_start: substep.start == substep.end && !formulas.is_timed(),
@@ -359,9 +360,21 @@ fn momentum_entry<'g>(formulas: &Formulas<'g>, mut component: usize) -> Expr<'g>
 
 /// F − I of each factor, from the chart coordinates.
 fn increment(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let increments = (0..formulas.model.factors.len()).map(|k| formulas.symbols.chart_increment(&formulas.model, k));
-    let increments: Vec<_> = increments.collect();
+    let weighted = formulas.weighted();
+    let increment = |k: usize| match weighted.iter().position(|&other| other == k) {
+        Some(number) => weighted_increment(formulas, k, number),
+        None => formulas.symbols.chart_increment(&formulas.model, k),
+    };
+    let increments: Vec<_> = (0..formulas.model.factors.len()).map(increment).collect();
     plain(scalars, &increments)
+}
+
+/// F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
+fn weighted_increment<'g>(formulas: &Formulas<'g>, k: usize, number: usize) -> Expr<'g> {
+    let x = formulas.symbols.stacked_coordinates(k);
+    let w = formulas.model.graph.symbol("w", Shape::scalar(), Role::ChartWeight(number), Property::General);
+    let hat = formulas.model.factors[k].group.wedge(x);
+    2 * (w * hat + hat * hat) / (w * w + x.dot(x))
 }
 
 /// The replacement of each group element by that of the chart, and of its logarithm.
