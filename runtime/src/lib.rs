@@ -79,6 +79,8 @@ mod error;
 mod exponential;
 pub mod group;
 pub mod implicit;
+#[cfg(feature = "lanes")]
+mod lanes;
 mod linear;
 mod logarithm;
 mod opaque;
@@ -102,10 +104,12 @@ pub use conserved::{Conserved, Conserves};
 pub use control::{Control, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 pub use error::Error;
+#[cfg(feature = "lanes")]
+pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;
-pub use scalar::Scalar;
+pub use scalar::{Mask, Real, Scalar};
 pub use space::Space;
-pub use state::{CotangentState, State};
+pub use state::{Body, CotangentState, State};
 pub use stepper::Stepper;
 pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
