@@ -142,6 +142,13 @@ pub enum Error {
         /// The first such lane, counted from 0.
         lane: usize,
     },
+    /// There is no body with this number in an [ensemble](crate#what-is-where).
+    NoBody {
+        /// The number, counted from 0.
+        body: usize,
+        /// How many bodies there are.
+        bodies: usize,
+    },
     /// A step on T*Q was asked of a system with forces: they act on momenta in 𝔤*, which determine no covector.
     NoCovector,
     /// The step has no derivative: it is at the very edge of what is solvable.
@@ -276,6 +283,9 @@ impl Display for Error {
                 "the step of lane {lane} failed, and may have in others: `Stepper::failure` says why, and `Stepper::step_each` steps those \
                  that can be"
             ),
+            Self::NoBody { body, bodies } => {
+                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0")
+            }
             Self::NoCovector => f.write_str(
                 "a system with forces has no step in (q, p), as forces in 𝔤* are no covectors of the configuration: step in (q, N), by `Stepper::step`",
             ),

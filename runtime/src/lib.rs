@@ -61,6 +61,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
@@ -75,6 +77,8 @@ mod controlled;
 mod eigen;
 mod element;
 mod energy;
+#[cfg(feature = "alloc")]
+mod ensemble;
 mod error;
 mod exponential;
 pub mod group;
@@ -103,6 +107,8 @@ pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
 pub use control::{Control, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
+#[cfg(feature = "alloc")]
+pub use ensemble::{Ensemble, Failure};
 pub use error::Error;
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};

@@ -130,6 +130,7 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
 
 /// Exchanges two rows in the lanes of `mask`.
 #[inline]
+#[allow(clippy::needless_range_loop)] // as above
 fn exchange<T: Scalar, const M: usize, const K: usize>(mask: T::Mask, rows: &mut [[T; K]; M], i: usize, k: usize) {
     for j in 0..K {
         let (x, y) = (rows[i][j], rows[k][j]);

@@ -101,7 +101,7 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Where no lane has a solution, the error of the first whose momentum is finite.
     #[inline(always)]
-    fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+    pub(crate) fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
         let State { time, configuration, momentum, .. } = state;
         let impulse = self.impulse_of(state);
         match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse, u) {
