@@ -30,6 +30,9 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// |self − other|², the sum over all scalars, 0 for `()`.
     fn distance_squared(&self, other: &Self) -> T;
 
+    /// The sum of all scalars, 0 for `()`: where it is finite, all of them are.
+    fn sum(&self) -> T;
+
     /// The value in lane `lane` of all scalars; the value itself where they are single numbers.
     fn lane(&self, lane: usize) -> Self::Lane;
 
@@ -105,6 +108,10 @@ impl<T: Scalar> Space<T> for T {
         (*self - *other) * (*self - *other)
     }
     #[inline]
+    fn sum(&self) -> T {
+        *self
+    }
+    #[inline]
     fn lane(&self, lane: usize) -> T::Lane {
         Scalar::lane(*self, lane)
     }
@@ -136,6 +143,10 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         self.iter().zip(other.iter()).fold(T::zero(), |sum, (x, y)| sum + (*x - *y) * (*x - *y))
+    }
+    #[inline]
+    fn sum(&self) -> T {
+        self.iter().fold(T::zero(), |sum, &x| sum + x)
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
@@ -171,6 +182,10 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
         self.coords.distance_squared(&other.coords)
     }
     #[inline]
+    fn sum(&self) -> T {
+        Space::sum(&self.coords)
+    }
+    #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
         Quaternion { coords: lane_of(&self.coords, lane) }
     }
@@ -202,6 +217,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         self.iter().zip(other).fold(T::zero(), |sum, (part, other)| sum + part.distance_squared(other))
+    }
+    #[inline]
+    fn sum(&self) -> T {
+        self.iter().fold(T::zero(), |sum, part| sum + part.sum())
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
@@ -241,6 +260,10 @@ macro_rules! tuple {
             #[inline]
             fn distance_squared(&self, _other: &Self) -> T {
                 T::zero() $(+ self.$index.distance_squared(&_other.$index))*
+            }
+            #[inline]
+            fn sum(&self) -> T {
+                T::zero() $(+ self.$index.sum())*
             }
             #[inline]
             #[allow(clippy::unused_unit)] // of the tuple without parts

@@ -101,10 +101,18 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Where no lane has a solution, the error of the first whose momentum is finite.
     #[inline(always)]
-    pub(crate) fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+    fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+        self.attempt_with(state, &self.impulse_of(state), u)
+    }
+
+    /// The same with the impulse at the configuration.
+    ///
+    /// # Errors
+    /// Those of [`attempt`](Self::attempt).
+    #[inline(always)]
+    pub(crate) fn attempt_with(&self, state: &State<S>, impulse: &S::Impulse, u: &S::Input) -> Result<State<S>, Error> {
         let State { time, configuration, momentum, .. } = state;
-        let impulse = self.impulse_of(state);
-        match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse, u) {
+        match self.system.step(&self.constants, time.now(), configuration, momentum, impulse, u) {
             Ok((configuration, momentum, impulse)) => {
                 Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
             }
@@ -125,6 +133,13 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
+        self.impulse_anew(state)
+    }
+
+    /// The impulse that this stepper makes, in the lanes in which another one has made that of the state.
+    #[cold]
+    #[inline(never)]
+    fn impulse_anew(&self, state: &State<S>) -> S::Impulse {
         let mut impulse = self.system.impulse(&self.constants, state.time.now(), &state.configuration);
         let kept = state.h.equals(self.h);
         (0..S::Scalar::LANES)

@@ -42,13 +42,16 @@ impl<S: Clebsch> Chunk<S> {
         }
     }
 
-    /// One step of each body, the first of which is number `step`.
+    /// One step of each body; `step` have been made.
     #[inline(always)]
     pub fn step(&mut self, stepper: &Stepper<S>, step: u64) {
-        if let Ok(next) = stepper.attempt(&self.state, &S::Input::origin()) {
-            let finite = next.configuration.finite() & next.momentum.finite();
+        // the impulse has been made by this stepper
+        if let Ok(next) = stepper.attempt_with(&self.state, &self.state.impulse, &S::Input::origin()) {
+            // quicker than to look at each number; where the sum overflows, `part` looks at each
+            let finite = (next.configuration.sum() + next.momentum.sum()).finite();
             if finite.bits() & self.live == self.live {
-                self.state = next;
+                let State { time, configuration, momentum, impulse, h: _ } = next;
+                self.state = State { time, configuration, momentum, impulse, h: self.state.h };
                 return;
             }
         }

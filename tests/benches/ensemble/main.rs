@@ -112,13 +112,13 @@ fn compare<One, Four, Eight>(
     let eight = RefCell::new(Ensemble::new(eight, starts.clone()).expect("bodies"));
     for (setting, together) in [("blocks", BLOCK), ("sweeps", 1)] {
         let contestants: Vec<Run<'_>> = vec![
-            Box::new(|steps| one(steps, together)),
-            Box::new(|steps| (0..steps.div_ceil(together)).for_each(|_| four.borrow_mut().advance(together))),
-            Box::new(|steps| (0..steps.div_ceil(together)).for_each(|_| eight.borrow_mut().advance(together))),
+            Box::new(|rounds| one(rounds, together)),
+            Box::new(|rounds| (0..rounds).for_each(|_| four.borrow_mut().advance(together))),
+            Box::new(|rounds| (0..rounds).for_each(|_| eight.borrow_mut().advance(together))),
         ];
         let times = interleaved(&contestants);
         for (how, time) in ["one by one", "lanes of 4", "lanes of 8"].into_iter().zip(&times) {
-            let [least, median] = [time.least, time.median].map(|time| time / BODIES as f64);
+            let [least, median] = [time.least, time.median].map(|time| time / (BODIES as u64 * together) as f64);
             let ratio = time.least / times[0].least;
             println!("{name:22} {:20} {least:8.2} {median:8.2} {ratio:6.2}", format!("{how}, {setting}"));
         }
@@ -126,15 +126,15 @@ fn compare<One, Four, Eight>(
     assert_eq!(eight.borrow().failures().count(), 0);
 }
 
-/// Steps of all bodies, so many of each before the next.
+/// Rounds through all bodies, so many steps of each before the next.
 fn one_by_one<S: Clebsch<Scalar = f64>>(
     stepper: Stepper<S>,
     starts: &[(S::Configuration, S::Momentum)],
 ) -> impl Fn(u64, u64) {
     let states = starts.iter().map(|&(q, mu)| stepper.state(q, mu).expect("a state"));
     let states: RefCell<Vec<State<S>>> = RefCell::new(states.collect());
-    move |steps, together| {
-        for _ in 0..steps.div_ceil(together) {
+    move |rounds, together| {
+        for _ in 0..rounds {
             for state in states.borrow_mut().iter_mut() {
                 for _ in 0..together {
                     *state = stepper.step(state).expect("a step");
