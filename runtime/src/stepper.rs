@@ -133,19 +133,8 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
-        self.impulse_anew(state)
-    }
-
-    /// The impulse that this stepper makes, in the lanes in which another one has made that of the state.
-    #[cold]
-    #[inline(never)]
-    fn impulse_anew(&self, state: &State<S>) -> S::Impulse {
-        let mut impulse = self.system.impulse(&self.constants, state.time.now(), &state.configuration);
-        let kept = state.h.equals(self.h);
-        (0..S::Scalar::LANES)
-            .filter(|&lane| kept.lane(lane))
-            .for_each(|lane| impulse.set_lane(lane, &state.impulse.lane(lane)));
-        impulse
+        let anew = self.system.impulse(&self.constants, state.time.now(), &state.configuration);
+        if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
@@ -234,6 +223,15 @@ impl<S: Clebsch> Stepper<S> {
     pub(crate) fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
         check_configuration(&self.system, q)
     }
+}
+
+/// The impulse `kept` in the lanes of the mask, `anew` in the others.
+#[cold]
+#[inline(never)]
+fn kept_in_lanes<T: Scalar, I: Space<T>>(mut anew: I, kept: &I, mask: T::Mask) -> I {
+    let lanes = (0..T::LANES).filter(|&lane| mask.lane(lane));
+    lanes.for_each(|lane| anew.set_lane(lane, &kept.lane(lane)));
+    anew
 }
 
 /// The error itself where the scalar is a single number, else the lane.

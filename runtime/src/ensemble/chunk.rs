@@ -1,6 +1,6 @@
 //! The bodies that share the lanes of one state.
 
-use crate::{Body, Clebsch, Error, Mask, Scalar, Space, State, Stepper};
+use crate::{Body, Clebsch, Error, Mask, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
 use num_traits::Zero;
 
@@ -72,6 +72,7 @@ impl<S: Clebsch> Chunk<S> {
             }
             next.momentum.set_lane(lane, &undefined::<S>().lane(lane));
         }
+        next.time = self.state.time.after_step(stepper.h);
         self.state = next;
     }
 
