@@ -118,7 +118,12 @@ impl Watch {
             let reason = "second order; the mean of the distances at the end";
             claims.within(name, whole / half, 3.9..=4.1, 3, reason);
         } else {
-            claims.at_most(name, whole, (4.2 * half).max(rounding), "too short or too long a run for the order to show");
+            claims.at_most(
+                name,
+                whole,
+                (4.2 * half).max(rounding),
+                "too short or too long a run for the order to show",
+            );
         }
         let (apart, compared) = self.apart(rocks)?;
         let reason = format!("{compared} bodies were stepped alone: configurations and momenta are compared");

@@ -87,18 +87,22 @@ fn scale<T: Real, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
     (a.map(|row| row.map(|x| x * factor)), halvings)
 }
 
-/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms cannot be seen.
+/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms, and their derivatives, cannot be seen.
 fn series<T: Real, const N: usize>(a: &[[T; N]; N], shift: i64) -> [[T; N]; N] {
     let first = T::from_ratio(1, 1 + shift);
     let mut term = a.map(|row| row.map(|x| x * first));
     let mut sum = term;
     let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(&term);
+    let mut derivatives = T::DERIVATIVES;
     for k in 2..=TERMS {
         let factor = T::from_ratio(1, k + shift);
         term = product(&term, a).map(|row| row.map(|x| x * factor));
         sum = from_fn(|i| from_fn(|j| sum[i][j] + term[i][j]));
         if norm(&term) <= negligible {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     sum

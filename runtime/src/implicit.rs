@@ -100,7 +100,9 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
     target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
     let (xi, solved) = newton(equation, target);
-    let xi = if solved.all() { xi } else { lane::follow(equation, target, &xi, solved)? };
+    if !solved.all() {
+        return lane::follow(equation, target, &xi, solved);
+    }
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
 

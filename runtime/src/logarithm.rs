@@ -76,12 +76,16 @@ fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &Square<T, N>) -> Opti
     let square = product(&y, &y);
     let (mut power, mut sum) = (y, y);
     let first = norm(&y);
+    let mut derivatives = T::DERIVATIVES;
     for k in 1..=TERMS {
         power = product(&power, &square);
         let factor = T::from_ratio(1, 2 * k + 1);
         sum = from_fn(|i| from_fn(|j| sum[i][j] + power[i][j] * factor));
         if norm(&power) <= T::EPSILON * T::from_ratio(1, 8) * first {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     Some(sum)

@@ -24,16 +24,20 @@ fn stumpff_of_one<T: Real>(k: u32, s: T) -> T {
 /// More terms than any precision asks for: 16⁴⁰/83! is 10⁻⁷⁶.
 const TERMS: u32 = 40;
 
-/// Terms until they cannot be seen.
-fn series<T: Real>(k: u32, s: T) -> T {
+/// Terms until they, and their derivatives, cannot be seen.
+pub(crate) fn series<T: Real>(k: u32, s: T) -> T {
     let mut term = inverse_factorial::<T>(k);
     let mut sum = term;
+    let mut derivatives = T::DERIVATIVES;
     for j in 1..=TERMS {
         let n = i64::from(k + 2 * j);
         term = -term * s / T::from_f64((n * (n - 1)) as f64);
         sum += term;
         if term.abs() <= T::EPSILON * T::from_ratio(1, 8) * sum.abs() {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     sum

@@ -1,6 +1,6 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, path};
+use super::{Equation, path, with_derivatives};
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
@@ -26,8 +26,10 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
     let mut is_solved = solved.any();
     for lane in (0..T::LANES).filter(|&lane| !solved.lane(lane)) {
         let own = lane_of(target, lane);
-        match path::follow(&InLane { equation, lane, scalar: PhantomData }, &own) {
+        let equation = InLane { equation, lane, scalar: PhantomData };
+        match path::follow(&equation, &own) {
             Ok(found) => {
+                let found = if T::DERIVATIVES == 0 { found } else { with_derivatives(&equation, &own, found) };
                 set_lane(&mut xi, lane, &found);
                 is_solved = true;
             }
