@@ -86,7 +86,7 @@ proptest! {
         let mut found = b.map(|entry| [F64x8::from(entry)]);
         let orientation = eliminate(a.map(|row| row.map(F64x8::from)), &mut found);
         let mut signs = Vec::new();
-        for lane in 0..8 {
+        for lane in 0..F64x8::LANES {
             let mut expected = b.map(|entry| [entry[lane]]);
             let sign = eliminate(a.map(|row| row.map(|entry| entry[lane])), &mut expected);
             if sign.is_some() {
@@ -116,9 +116,10 @@ proptest! {
         };
         let matrix = Matrix3::from_fn(|i, j| F64x8::from_lanes(|lane| entry(i, j, lane)));
         let found = solve_symmetric(&matrix, &Vector3::from_fn(|i, _| F64x8::from(b[i])));
-        for lane in 0..8 {
+        let right = |lane: usize| Vector3::from_fn(|i, _| b[i][lane]);
+        for lane in 0..F64x8::LANES {
             let single = Matrix3::from_fn(|i, j| entry(i, j, lane));
-            if let Some((expected, sign)) = solve_symmetric(&single, &Vector3::from_fn(|i, _| b[i][lane])) {
+            if let Some((expected, sign)) = solve_symmetric(&single, &right(lane)) {
                 let (found, orientation) = found.expect("one lane is regular");
                 (0..3).for_each(|i| assert_eq!(bits(found[i].lane(lane)), bits(expected[i])));
                 prop_assert!(orientation.agrees::<F64x8>(Orientation::everywhere(sign)).lane(lane));
