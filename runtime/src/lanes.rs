@@ -208,7 +208,7 @@ macro_rules! lanes {
 
             #[inline]
             fn lane(self, lane: usize) -> $number {
-                self.0.as_array()[lane]
+                self.0.as_array().get(lane).copied().unwrap_or($number::NAN)
             }
             #[inline]
             fn from_lanes(value: impl FnMut(usize) -> $number) -> Self {

@@ -58,7 +58,7 @@ pub trait Scalar:
     /// Neither NaN nor infinite, in any lane.
     fn is_finite(self) -> bool;
 
-    /// The number in a lane below [`LANES`](Self::LANES).
+    /// The number in a lane below [`LANES`](Self::LANES); NaN where lanes have none of that number.
     fn lane(self, lane: usize) -> Self::Lane;
     /// What has `value(i)` in lane i.
     fn from_lanes(value: impl FnMut(usize) -> Self::Lane) -> Self;

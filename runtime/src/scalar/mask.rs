@@ -16,10 +16,10 @@ pub trait Mask:
     /// Whether all lanes are true.
     fn all(self) -> bool;
 
-    /// Whether lane `lane` is true.
+    /// Whether there is a lane `lane`, and it is true.
     #[inline]
     fn lane(self, lane: usize) -> bool {
-        self.bits() >> lane & 1 == 1
+        lane < 16 && self.bits() >> lane & 1 == 1
     }
 
     /// True in all lanes.
