@@ -142,7 +142,7 @@ pub enum Error {
         /// The first such lane, counted from 0.
         lane: usize,
     },
-    /// There is no body with this number in an [ensemble](crate#what-is-where).
+    /// There is no body with this number in an [ensemble](crate#many-bodies).
     NoBody {
         /// The number, counted from 0.
         body: usize,

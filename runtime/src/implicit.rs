@@ -101,7 +101,7 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
 ) -> Result<SVector<T, M>, Error> {
     let (xi, solved) = newton(equation, target);
     if !solved.all() {
-        return lane::follow(equation, target, &xi, solved);
+        return lane::follow(equation, target, xi, solved);
     }
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
