@@ -19,7 +19,6 @@ mod estimator;
 mod figure;
 mod fit;
 mod measurement;
-mod noise;
 mod report;
 mod rotation;
 mod unknowns;

@@ -1,9 +1,9 @@
 //! Attitudes measured with noise, of a motion that the steps have no part in.
 
-use crate::noise::Noise;
 use crate::rotation::exponential;
 use crate::unknowns::{COUNT, Start};
 use clebsch_examples::flags::Run;
+use clebsch_examples::noise::Noise;
 use clebsch_examples::reference::solve;
 use clebsch_examples::scene::Failure;
 use nalgebra::{Matrix3, SVector, Vector3};

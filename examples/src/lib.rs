@@ -14,6 +14,7 @@
 //! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
 //! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |
 //! | [`extremal`] | continuous problems with bounded inputs, by Pontryagin's conditions and shooting |
+//! | [`noise`] | normal random numbers from a seed |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
 
 pub mod claims;
@@ -27,6 +28,7 @@ pub mod figure;
 pub mod flags;
 pub mod integrate;
 pub mod jacobi;
+pub mod noise;
 pub mod progress;
 pub mod reference;
 pub mod round_off;

@@ -1,11 +1,11 @@
 //! Parts of scenes that have tests of their own: cargo runs no tests inside of examples, so they are taken in here.
 
 #[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../ensemble/euler.rs"]
+mod euler;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/geodesic.rs"]
 mod geodesic;
-#[allow(dead_code, reason = "taken in for the tests inside it")]
-#[path = "../inertia_estimation/noise.rs"]
-mod noise;
 #[allow(dead_code, reason = "what the next one needs")]
 #[path = "../unicycle/place.rs"]
 mod place;

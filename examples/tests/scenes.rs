@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 15] = [
+const SCENES: [(&str, &str); 16] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
@@ -31,6 +31,7 @@ const SCENES: [(&str, &str); 15] = [
     ("unicycle", "step,time,x,y,theta,omega,v,ltheta,lx,ly"),
     ("plate_ball", "step,time,x,y,R11,R12,R13,R21,R22,R23,R31,R32,R33,u1,u2,m1,m2,m3"),
     ("inertia_estimation", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
+    ("ensemble", "step,time,mean,least,greatest,exact"),
     ("spacecraft", "step,time,x1,x2,x3,R11,R12,R13,R21,R22,R23,R31,R32,R33,p1,p2,p3,pi1,pi2,pi3"),
 ];
 
@@ -147,6 +148,7 @@ fn other_flags_hold_all_their_claims() {
         ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
         ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
         ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
+        ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
         ("inertia_estimation", &["--spin", "0,0,2.67", "--radius", "1e9", "--step-size", "0.5", "--steps", "1200"]),
@@ -242,6 +244,9 @@ fn mistakes_are_explained() {
             "the trace is 3, so the flow would change the volume",
         ),
         ("fluid_ellipsoid", &["--semi-axes", "1e-300,1,1e300"], "are too far apart"),
+        ("ensemble", &["--inertia", "2,1,2.5"], "the second moment has to lie between the others"),
+        ("ensemble", &["--bodies", "0"], "at least 1 is needed"),
+        ("ensemble", &["--step-size", "2"], "step 1 was not reached"),
         ("spacecraft", &["--inertia", "1,1,3,0,0,0"], "no body has the principal moments"),
         ("spacecraft", &["--mass", "1e-9"], "is too large for an orbit"),
         ("spacecraft", &["--step-size", "1e4"], "is too long for an orbit with a period"),

@@ -35,13 +35,13 @@ pub use node::Node;
 pub use several::Way;
 
 use crate::stepper::check_time;
-use crate::{Clebsch, Clock, Error, Scalar, Space, Stepper, Variational};
+use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
 use num_traits::{One, Zero};
 use sweep::Problem;
 
 /// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
 #[derive(Debug)]
-pub struct Boundary<'a, S: Variational<M>, const M: usize> {
+pub struct Boundary<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     stepper: &'a Stepper<S>,
     time: S::Scalar,
 }
@@ -58,7 +58,7 @@ impl<S: Clebsch> Stepper<S> {
     #[inline]
     pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M>
     where
-        S: Variational<M>,
+        S: Variational<M, Scalar: Real>,
     {
         const { assert!(S::ORDER <= 2, "paths of least action are of steps of order 2: write `order = 2`") };
         Boundary { stepper: self, time: S::Scalar::zero() }
@@ -66,7 +66,7 @@ impl<S: Clebsch> Stepper<S> {
 }
 
 /// Where the cost or the potential depends on the time.
-impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>>, const M: usize> Boundary<'_, S, M> {
+impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
     /// The same with paths that start at the time `t` instead of 0.
     ///
     /// # Errors
@@ -77,7 +77,7 @@ impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>>, const M: usize> Bo
     }
 }
 
-impl<'a, S: Variational<M>, const M: usize> Boundary<'a, S, M> {
+impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
     /// The stepper.
     #[inline]
     pub fn stepper(&self) -> &'a Stepper<S> {

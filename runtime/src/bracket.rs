@@ -1,6 +1,6 @@
 //! The zero of a slope between two limits, by the secant method inside a bracket.
 
-use crate::Scalar;
+use crate::Real;
 use crate::space::larger;
 
 /// A step size with the slope dV/dh there, and the sum of the sizes of its terms.
@@ -23,7 +23,7 @@ pub(crate) struct Bracket<T> {
     last: Option<Sample<T>>,
 }
 
-impl<T: Scalar> Bracket<T> {
+impl<T: Real> Bracket<T> {
     pub fn of(limits: (T, T)) -> Self {
         Self { limits, short: None, long: None, impossible: None, last: None }
     }

@@ -1,6 +1,6 @@
 //! Momenta that no step changes, with their names.
 
-use crate::Clebsch;
+use crate::{Clebsch, Scalar};
 use core::fmt::{self, Debug, Display, Formatter};
 use core::iter::Zip;
 use core::ops::Index;
@@ -65,6 +65,14 @@ impl<T: Copy, const K: usize> Conserved<T, K> {
     #[inline]
     pub fn iter(&self) -> Zip<core::array::IntoIter<&'static str, K>, core::array::IntoIter<T, K>> {
         self.names.into_iter().zip(self.values)
+    }
+}
+
+impl<T: Scalar, const K: usize> Conserved<T, K> {
+    /// Those of the body in lane `lane`.
+    #[inline]
+    pub fn lane(&self, lane: usize) -> Conserved<T::Lane, K> {
+        Conserved { names: self.names, values: self.values.map(|value| value.lane(lane)) }
     }
 }
 

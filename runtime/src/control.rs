@@ -46,7 +46,7 @@ pub use optimum::Optimum;
 pub use stage::Stage;
 
 use crate::stepper::check_time;
-use crate::{Controlled, Error, Scalar, Space};
+use crate::{Controlled, Error, Real, Scalar, Space};
 use end::Goal;
 use nalgebra::SVector;
 use num_traits::Zero;
@@ -54,7 +54,7 @@ use sweep::Problem;
 
 /// A system whose inputs are chosen, with its step size. Made by [`Controlled::control`].
 #[derive(Clone, Debug)]
-pub struct Control<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     system: S,
     h: S::Scalar,
     constants: S::Constants,
@@ -81,7 +81,7 @@ impl<X> Target<X> {
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
         if !h.is_finite() || h == S::Scalar::zero() {

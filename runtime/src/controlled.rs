@@ -1,6 +1,6 @@
 //! What `#[derive(Clebsch)]` implements for systems whose inputs are chosen: one step, its price, its bounds, and their derivatives.
 
-use crate::{Control, Error, Scalar, Space};
+use crate::{Control, Error, Real, Scalar, Space};
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
@@ -51,7 +51,10 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ///
     /// # Errors
     /// [`Error::StepSize`], and those of [`prepare`](Self::prepare).
-    fn control(self, h: Self::Scalar) -> Result<Control<Self, D, U, C>, Error> {
+    fn control(self, h: Self::Scalar) -> Result<Control<Self, D, U, C>, Error>
+    where
+        Self::Scalar: Real,
+    {
         Control::new(self, h)
     }
 

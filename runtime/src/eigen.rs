@@ -1,6 +1,6 @@
 //! Eigenvalues of small symmetric matrices, where a pivot is not positive or a metric has a kernel.
 
-use crate::Scalar;
+use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A = V Λ Vᵀ of a symmetric matrix.
@@ -15,7 +15,7 @@ pub(crate) struct Spectrum<T, const M: usize> {
 /// Sweeps over all pairs of rows. Convergence is quadratic: six do for M = 3, ten for M = 64.
 const SWEEPS: usize = 24;
 
-impl<T: Scalar, const M: usize> Spectrum<T, M> {
+impl<T: Real, const M: usize> Spectrum<T, M> {
     /// By Jacobi rotations, of which only the lower triangle of `a` is read. NaN stay NaN.
     ///
     /// Accuracy: ε‖A‖ for each eigenvalue. Cost: about 3M³ multiplications a sweep.
@@ -53,7 +53,7 @@ impl<T: Scalar, const M: usize> Spectrum<T, M> {
 }
 
 /// The rotation of rows and columns p and q that makes a_pq vanish; `false` where it is nothing beside the diagonal.
-fn annihilate<T: Scalar, const M: usize>(
+fn annihilate<T: Real, const M: usize>(
     a: &mut SMatrix<T, M, M>,
     vectors: &mut SMatrix<T, M, M>,
     p: usize,

@@ -2,7 +2,9 @@
 
 use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
-use crate::{Scalar, Space};
+use crate::space::lane_of;
+use crate::{Real, Scalar, Space};
+use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
 /// ½ μ·Σ⁻¹μ.
@@ -19,6 +21,10 @@ pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu:
 ///
 /// 0 for μ = 0, whatever Σ is; else NaN where Σ or μ is not finite.
 pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
+    T::from_lanes(|lane| kinetic_energy_of_one(&lane_of(inertia, lane), &lane_of(mu, lane)))
+}
+
+fn kinetic_energy_of_one<T: Real, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
     if mu.iter().all(|x| *x == T::zero()) {
         return T::zero();
     }
@@ -44,6 +50,24 @@ pub trait VelocityEquation<T: Scalar, const M: usize> {
 ///
 /// +∞ where no velocity is found, NaN where μ or the Lagrangian at rest is not finite.
 pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {
+    T::from_lanes(|lane| transform_of_one(&InLane { equation, lane, scalar: PhantomData }, &lane_of(mu, lane)))
+}
+
+/// The equation in one lane.
+struct InLane<'a, T, E> {
+    equation: &'a E,
+    lane: usize,
+    scalar: PhantomData<T>,
+}
+
+impl<T: Scalar, E: VelocityEquation<T, M>, const M: usize> VelocityEquation<T::Lane, M> for InLane<'_, T, E> {
+    fn linearize(&self, xi: &SVector<T::Lane, M>) -> (T::Lane, SVector<T::Lane, M>, SMatrix<T::Lane, M, M>) {
+        let (value, gradient, hessian) = self.equation.linearize(&xi.map(|x| T::from_lanes(|_| x)));
+        (value.lane(self.lane), lane_of(&gradient, self.lane), lane_of(&hessian, self.lane))
+    }
+}
+
+fn transform_of_one<T: Real, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {
     let (_, at_rest, hessian) = equation.linearize(&SVector::from_element(T::zero()));
     if !(mu.is_finite() && at_rest.is_finite() && hessian.is_finite()) {
         return T::zero() / T::zero();

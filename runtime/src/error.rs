@@ -136,6 +136,19 @@ pub enum Error {
         /// Number of linearisations that were made.
         iterations: u32,
     },
+    /// The step of a lane failed, where the scalar has several: [`Stepper::failure`](crate::Stepper::failure) says why, and
+    /// [`Stepper::step_each`](crate::Stepper::step_each) steps the others.
+    InLane {
+        /// The first such lane, counted from 0.
+        lane: usize,
+    },
+    /// There is no body with this number in an [ensemble](crate#many-bodies).
+    NoBody {
+        /// The number, counted from 0.
+        body: usize,
+        /// How many bodies there are.
+        bodies: usize,
+    },
     /// A step on T*Q was asked of a system with forces: they act on momenta in 𝔤*, which determine no covector.
     NoCovector,
     /// The step has no derivative: it is at the very edge of what is solvable.
@@ -265,6 +278,14 @@ impl Display for Error {
                 "the implicit equation was not solved in {iterations} linearisations (relative residual {residual:.1e}): \
                  reduce the step size"
             ),
+            Self::InLane { lane } => write!(
+                f,
+                "the step of lane {lane} failed, and may have in others: `Stepper::failure` says why, and `Stepper::step_each` steps those \
+                 that can be"
+            ),
+            Self::NoBody { body, bodies } => {
+                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0")
+            }
             Self::NoCovector => f.write_str(
                 "a system with forces has no step in (q, p), as forces in 𝔤* are no covectors of the configuration: step in (q, N), by `Stepper::step`",
             ),

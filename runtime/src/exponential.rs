@@ -9,8 +9,8 @@
 //! Algorithm for the Matrix Exponential*, 2009, theorem 4.2.
 
 use crate::linear::{norm, product, rows, shifted, undefined};
-use crate::space::larger;
-use crate::{Scalar, Space};
+use crate::space::{by_lane, larger};
+use crate::{Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::SMatrix;
 
@@ -22,6 +22,10 @@ const HALVINGS: u32 = 1100;
 
 /// exp A = Σ Aᵏ/k!; NaN where A is not finite.
 pub fn exponential<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    by_lane(a, exponential_of_one)
+}
+
+fn exponential_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     if !a.is_finite() {
         return undefined();
     }
@@ -43,6 +47,10 @@ pub fn exponential<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T
 ///
 /// φ(ad_ξ) is the right-trivialised derivative of exp at ξ: the derivative of exp(ξ + εη) by ε is (φ(ad_ξ)η) exp ξ.
 pub fn phi<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    by_lane(a, phi_of_one)
+}
+
+fn phi_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     if !a.is_finite() {
         return undefined();
     }
@@ -59,7 +67,7 @@ pub fn phi<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> 
 }
 
 /// A/2ˢ, of which all powers from the second on are at most one in norm (or A/2ˢ itself is), and s.
-fn scale<T: Scalar, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
+fn scale<T: Real, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
     let (one, half) = (T::one(), T::from_ratio(1, 2));
     let mut first = norm(&a);
     if first <= one {
@@ -79,31 +87,35 @@ fn scale<T: Scalar, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
     (a.map(|row| row.map(|x| x * factor)), halvings)
 }
 
-/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms cannot be seen.
-fn series<T: Scalar, const N: usize>(a: &[[T; N]; N], shift: i64) -> [[T; N]; N] {
+/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms, and their derivatives, cannot be seen.
+fn series<T: Real, const N: usize>(a: &[[T; N]; N], shift: i64) -> [[T; N]; N] {
     let first = T::from_ratio(1, 1 + shift);
     let mut term = a.map(|row| row.map(|x| x * first));
     let mut sum = term;
     let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(&term);
+    let mut derivatives = T::DERIVATIVES;
     for k in 2..=TERMS {
         let factor = T::from_ratio(1, k + shift);
         term = product(&term, a).map(|row| row.map(|x| x * factor));
         sum = from_fn(|i| from_fn(|j| sum[i][j] + term[i][j]));
         if norm(&term) <= negligible {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     sum
 }
 
 /// exp 2A − I = 2E + E², E = exp A − I.
-fn double<T: Scalar, const N: usize>(increment: &[[T; N]; N]) -> [[T; N]; N] {
+fn double<T: Real, const N: usize>(increment: &[[T; N]; N]) -> [[T; N]; N] {
     let square = product(increment, increment);
     from_fn(|i| from_fn(|j| increment[i][j] + increment[i][j] + square[i][j]))
 }
 
 /// Whether I + E is at most ½ on its diagonal.
-fn is_small<T: Scalar, const N: usize>(increment: &[[T; N]; N]) -> bool {
+fn is_small<T: Real, const N: usize>(increment: &[[T; N]; N]) -> bool {
     let largest = (0..N).fold(T::zero(), |max, i| larger(max, (increment[i][i] + T::one()).abs()));
     largest <= T::from_ratio(1, 2)
 }

@@ -22,8 +22,9 @@
 
 use crate::eigen::Spectrum;
 use crate::linear::solve_dense;
-use crate::{Error, Scalar};
+use crate::{Error, Real, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
+use num_traits::{One, Zero};
 
 /// The degree up to which the series are known.
 const DEGREE: usize = 14;
@@ -69,6 +70,238 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where a principal moment is 0, [`Error::NotFinite`].
     pub fn new(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
+        let of_lane = |lane: usize| FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane));
+        let first = of_lane(0)?;
+        let everywhere = |number: T::Lane| T::from_lanes(|_| number);
+        let mut all = Self {
+            scale: everywhere(first.scale),
+            inertia: first.inertia.map(everywhere),
+            reciprocals: first.reciprocals.map(everywhere),
+            axes: first.axes.map(|axes| axes.map(everywhere)),
+            series: first.series.map(|coefficients| coefficients.map(everywhere)),
+            reach: first.reach.map(everywhere),
+        };
+        for lane in 1..T::LANES {
+            all.put(lane, &of_lane(lane)?);
+        }
+        Ok(all)
+    }
+
+    /// Puts the constants of one body into a lane.
+    #[cold]
+    fn put(&mut self, lane: usize, other: &FreeRotation<T::Lane>) {
+        let put = |number: &mut T, other: T::Lane| {
+            let before = *number;
+            *number = T::from_lanes(|i| if i == lane { other } else { before.lane(i) });
+        };
+        let put_all = |numbers: &mut [T], others: &[T::Lane]| {
+            numbers.iter_mut().zip(others).for_each(|(number, other)| put(number, *other));
+        };
+        put(&mut self.scale, other.scale);
+        put_all(&mut self.inertia, &other.inertia);
+        put_all(&mut self.reciprocals, &other.reciprocals);
+        put_all(&mut self.reach, &other.reach);
+        self.series.iter_mut().zip(&other.series).for_each(|(numbers, others)| put_all(numbers, others));
+        // the axes of the coordinates are those of the identity, by which nothing is rounded
+        if self.axes.is_some() || other.axes.is_some() {
+            let mut axes = self.axes.unwrap_or_else(identity);
+            put_all(axes.as_mut_slice(), other.axes.unwrap_or_else(identity).as_slice());
+            self.axes = Some(axes);
+        }
+    }
+
+    /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
+    ///
+    /// # Errors
+    /// As [`turn`](Self::turn).
+    #[inline]
+    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+        self.turn(momentum).map(ratio)
+    }
+
+    /// A multiple (w, x) of the quaternion of the rotation that starts with the momentum `momentum`: its Gibbs vector is x/w.
+    ///
+    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and one rotation for
+    /// each 1.4 rad or so of the angle. Lanes are turned one after the other; those that fail beside others are NaN.
+    ///
+    /// # Errors
+    /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
+    #[inline]
+    pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
+        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
+        let (w, x) = in_lanes(|lane| match self.modified_inertia(lane, &of_lane(&m, lane)) {
+            Some(d) => Ok(turn(&d, &of_lane(&m, lane))),
+            None => self.in_parts(lane, &of_lane(&m, lane)),
+        })?;
+        Ok((w, self.in_coordinates(x)))
+    }
+
+    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
+    ///
+    /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
+    #[cold]
+    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+        let c = self.in_principal_axes(gibbs_vector);
+        let found: Result<(T, [T; 3]), Error> =
+            in_lanes(|lane| Ok((<T::Lane as One>::one(), self.momentum_of_number(lane, &of_lane(&c, lane)))));
+        match found {
+            Ok((_, m)) => self.in_coordinates(m.map(|component| component * self.scale.recip())),
+            Err(_) => SVector::from_element(T::from_f64(f64::NAN)),
+        }
+    }
+
+    /// The same for one body, in principal axes and without units.
+    fn momentum_of_number(&self, lane: usize, c: &[T::Lane; 3]) -> [T::Lane; 3] {
+        let (one, nothing) = (<T::Lane as One>::one(), [T::Lane::from_f64(f64::NAN); 3]);
+        let reached = |m: &SVector<T::Lane, 3>| {
+            let m = [m[0], m[1], m[2]];
+            match self.modified_inertia(lane, &m) {
+                Some(d) => Some(turn(&d, &m)),
+                None => self.in_parts(lane, &m).ok(),
+            }
+            .map(|(w, x)| ratio((w, SVector::from(x))))
+        };
+        // the equation of Moser and Veselov, which is right to second order
+        let moments = of_lane(&self.inertia, lane);
+        let [a, b, g] = [0, 1, 2].map(|i| moments[i] * c[i]);
+        let cross = SVector::from([c[1] * g - c[2] * b, c[2] * a - c[0] * g, c[0] * b - c[1] * a]);
+        let square = one + c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        let mut m = (SVector::from([a, b, g]) + cross) * square.recip();
+        let c = SVector::from(*c);
+        let mut before = T::Lane::from_f64(f64::INFINITY);
+        for _ in 0..50 {
+            let Some(now) = reached(&m) else { break };
+            let defect = now - c;
+            let size = largest(&defect);
+            // written so that NaN ends it
+            if !(size > <T::Lane as Zero>::zero() && size < before) {
+                return m.into();
+            }
+            before = size;
+            let step = T::Lane::EPSILON.sqrt() * (largest(&m) + T::Lane::EPSILON);
+            let mut slope = SMatrix::<T::Lane, 3, 3>::from_element(<T::Lane as Zero>::zero());
+            for j in 0..3 {
+                let mut beside = m;
+                beside[j] += step;
+                let Some(other) = reached(&beside) else { break };
+                slope.set_column(j, &((other - now) * step.recip()));
+            }
+            let Some((correction, _)) = solve_dense(&slope, &defect) else { break };
+            m -= correction;
+        }
+        nothing
+    }
+
+    /// d_i x of the whole time in a lane; `None` where that is beyond the reach of the series.
+    #[inline]
+    fn modified_inertia(&self, lane: usize, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
+        let squares = m.map(|component| component * component);
+        let alpha = squares[0] + squares[1] + squares[2];
+        let [a, b, c] = of_lane(&self.reciprocals, lane);
+        let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
+        macro_rules! degrees {
+            ($($number:literal $degree:literal),*) => {$(
+                if alpha <= self.reach[$number].lane(lane) {
+                    return Some(self.scaled(lane, self.polynomial::<$degree>(lane, alpha, epsilon)));
+                }
+            )*};
+        }
+        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12, 7 14);
+        None
+    }
+
+    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
+    #[inline(always)]
+    fn polynomial<const K: usize>(&self, lane: usize, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
+        let coefficients = |i: usize, j: usize| of_lane(&self.series[place(i, j)], lane);
+        let mut sum = [<T::Lane as Zero>::zero(); 4];
+        for j in (0..=K).rev() {
+            let mut inner = coefficients(K - j, j);
+            for i in (0..K - j).rev() {
+                let next = coefficients(i, j);
+                inner = core::array::from_fn(|k| inner[k] * alpha + next[k]);
+            }
+            sum = core::array::from_fn(|k| sum[k] * epsilon + inner[k]);
+        }
+        sum
+    }
+
+    #[inline]
+    fn scaled(&self, lane: usize, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
+        let [x, y, z] = of_lane(&self.inertia, lane);
+        [a * x, b * y, c * z]
+    }
+
+    /// The free motions with the invariants of one of them, here those of `momentum`: for many steps of one.
+    ///
+    /// # Errors
+    /// As [`turn`](Self::turn).
+    pub fn motion(&self, momentum: &SVector<T, 3>) -> Result<FreeMotion<'_, T>, Error> {
+        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
+        let mut parts = [1; LANES];
+        let (_, inertia) = in_lanes(|lane| {
+            let m = of_lane(&m, lane);
+            let inertia = match self.modified_inertia(lane, &m) {
+                Some(inertia) => inertia,
+                None => {
+                    let (inertia, count) = self.parts(lane, &m)?;
+                    parts[lane] = count;
+                    inertia
+                }
+            };
+            Ok((<T::Lane as One>::one(), inertia))
+        })?;
+        Ok(FreeMotion { rotation: self, inertia, parts })
+    }
+
+    /// The same rotation as that of equal parts of the time, one after the other.
+    #[cold]
+    #[inline(never)]
+    fn in_parts(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
+        let (d, parts) = self.parts(lane, m)?;
+        Ok(turn_in_parts(&d, m, parts))
+    }
+
+    /// d_i x of a part of the time that is in reach of the series, and how many parts there are.
+    #[cold]
+    fn parts(&self, lane: usize, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], u32), Error> {
+        if m.iter().any(|component| !component.is_finite()) {
+            return Err(Error::NotFinite { name: "the momentum" });
+        }
+        let (mut parts, mut part) = (1, *m);
+        while parts < PARTS {
+            parts *= 2;
+            part = part.map(half);
+            if let Some(d) = self.modified_inertia(lane, &part) {
+                return Ok((d, parts));
+            }
+        }
+        let [.., reach] = of_lane(&self.reach, lane);
+        let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
+        let fraction = T::Lane::from_f64(f64::from(PARTS)) * (reach / square).sqrt();
+        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
+    }
+
+    #[inline]
+    fn in_principal_axes(&self, vector: &SVector<T, 3>) -> [T; 3] {
+        match &self.axes {
+            Some(axes) => axes.tr_mul(vector).into(),
+            None => [vector[0], vector[1], vector[2]],
+        }
+    }
+
+    #[inline]
+    fn in_coordinates(&self, vector: [T; 3]) -> SVector<T, 3> {
+        match &self.axes {
+            Some(axes) => axes * SVector::from(vector),
+            None => SVector::from(vector),
+        }
+    }
+}
+
+impl<T: Real> FreeRotation<T> {
+    /// The constants of one body.
+    fn of_number(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
         let is_diagonal = [(1, 0), (2, 0), (2, 1)].iter().all(|&place| inertia[place] == T::zero());
         let (moments, axes) = match is_diagonal {
             true => ([0, 1, 2].map(|i| inertia[(i, i)]), None),
@@ -91,164 +324,6 @@ impl<T: Scalar> FreeRotation<T> {
         let reach = reach(&x, &series);
         Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series, reach })
     }
-
-    /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
-    ///
-    /// # Errors
-    /// As [`turn`](Self::turn).
-    #[inline]
-    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
-        self.turn(momentum).map(ratio)
-    }
-
-    /// A multiple (w, x) of the quaternion of the rotation that starts with the momentum `momentum`: its Gibbs vector is x/w.
-    ///
-    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and one rotation for
-    /// each 1.4 rad or so of the angle.
-    ///
-    /// # Errors
-    /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
-    #[inline]
-    pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
-        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        match self.modified_inertia(&m) {
-            Some(d) => {
-                let (w, x) = turn(&d, &m);
-                Ok((w, self.in_coordinates(x)))
-            }
-            None => self.in_parts(&m),
-        }
-    }
-
-    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
-    ///
-    /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
-    #[cold]
-    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
-        let c = SVector::from(self.in_principal_axes(gibbs_vector));
-        let alone = Self { axes: None, scale: T::one(), ..*self };
-        // the equation of Moser and Veselov, which is right to second order
-        let [a, b, g] = [0, 1, 2].map(|i| self.inertia[i] * c[i]);
-        let cross = SVector::from([c[1] * g - c[2] * b, c[2] * a - c[0] * g, c[0] * b - c[1] * a]);
-        let square = T::one() + c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-        let mut m = (SVector::from([a, b, g]) + cross) * square.recip();
-        let mut before = T::from_f64(f64::INFINITY);
-        for _ in 0..50 {
-            let Ok(reached) = alone.gibbs_vector(&m) else { break };
-            let defect = reached - c;
-            let size = largest(&defect);
-            // written so that NaN ends it
-            if !(size > T::zero() && size < before) {
-                return self.in_coordinates((m * self.scale.recip()).into());
-            }
-            before = size;
-            let step = T::EPSILON.sqrt() * (largest(&m) + T::EPSILON);
-            let mut slope = SMatrix::<T, 3, 3>::from_element(T::zero());
-            for j in 0..3 {
-                let mut beside = m;
-                beside[j] += step;
-                let Ok(other) = alone.gibbs_vector(&beside) else { break };
-                slope.set_column(j, &((other - reached) * step.recip()));
-            }
-            let Some((correction, _)) = solve_dense(&slope, &defect) else { break };
-            m -= correction;
-        }
-        SVector::from_element(T::from_f64(f64::NAN))
-    }
-
-    /// d_i x of the whole time; `None` where that is beyond the reach of the series.
-    #[inline]
-    fn modified_inertia(&self, m: &[T; 3]) -> Option<[T; 3]> {
-        let squares = m.map(|component| component * component);
-        let alpha = squares[0] + squares[1] + squares[2];
-        let [a, b, c] = self.reciprocals;
-        let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
-        macro_rules! degrees {
-            ($($number:literal $degree:literal),*) => {$(
-                if alpha <= self.reach[$number] {
-                    return Some(self.scaled(self.polynomial::<$degree>(alpha, epsilon)));
-                }
-            )*};
-        }
-        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12, 7 14);
-        None
-    }
-
-    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
-    #[inline(always)]
-    fn polynomial<const K: usize>(&self, alpha: T, epsilon: T) -> [T; 4] {
-        let mut sum = [T::zero(); 4];
-        for j in (0..=K).rev() {
-            let mut inner = self.series[place(K - j, j)];
-            for i in (0..K - j).rev() {
-                let coefficients = &self.series[place(i, j)];
-                inner = core::array::from_fn(|k| inner[k] * alpha + coefficients[k]);
-            }
-            sum = core::array::from_fn(|k| sum[k] * epsilon + inner[k]);
-        }
-        sum
-    }
-
-    #[inline]
-    fn scaled(&self, [a, b, c, _]: [T; 4]) -> [T; 3] {
-        [a * self.inertia[0], b * self.inertia[1], c * self.inertia[2]]
-    }
-
-    /// The free motions with the invariants of one of them, here those of `momentum`: for many steps of one.
-    ///
-    /// # Errors
-    /// As [`gibbs_vector`](Self::gibbs_vector).
-    pub fn motion(&self, momentum: &SVector<T, 3>) -> Result<FreeMotion<'_, T>, Error> {
-        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let (inertia, parts) = match self.modified_inertia(&m) {
-            Some(inertia) => (inertia, 1),
-            None => self.parts(&m)?,
-        };
-        Ok(FreeMotion { rotation: self, inertia, parts })
-    }
-
-    /// The same rotation as that of equal parts of the time, one after the other.
-    #[cold]
-    #[inline(never)]
-    fn in_parts(&self, m: &[T; 3]) -> Result<(T, SVector<T, 3>), Error> {
-        let (d, parts) = self.parts(m)?;
-        let (w, x) = turn_in_parts(&d, m, parts);
-        Ok((w, self.in_coordinates(x)))
-    }
-
-    /// d_i x of a part of the time for which the series converge, and how many parts there are.
-    #[cold]
-    fn parts(&self, m: &[T; 3]) -> Result<([T; 3], u32), Error> {
-        if m.iter().any(|component| !component.is_finite()) {
-            return Err(Error::NotFinite { name: "the momentum" });
-        }
-        let (mut parts, mut part) = (1, *m);
-        while parts < PARTS {
-            parts *= 2;
-            part = part.map(half);
-            if let Some(d) = self.modified_inertia(&part) {
-                return Ok((d, parts));
-            }
-        }
-        let fraction = T::from_f64(0.5 * f64::from(PARTS)) / largest(&SVector::from(*m));
-        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
-    }
-
-    #[inline]
-    fn in_principal_axes(&self, vector: &SVector<T, 3>) -> [T; 3] {
-        match &self.axes {
-            Some(axes) => axes.tr_mul(vector).into(),
-            None => [vector[0], vector[1], vector[2]],
-        }
-    }
-
-    #[inline]
-    fn in_coordinates(&self, vector: [T; 3]) -> SVector<T, 3> {
-        match &self.axes {
-            Some(axes) => axes * SVector::from(vector),
-            None => SVector::from(vector),
-        }
-    }
 }
 
 /// The free motions of a body with the same energy and the same length of the momentum.
@@ -257,8 +332,8 @@ pub struct FreeMotion<'a, T> {
     rotation: &'a FreeRotation<T>,
     /// d_i x of a part of the time.
     inertia: [T; 3],
-    /// How many parts there are, a power of two.
-    parts: u32,
+    /// How many parts there are in each lane, a power of two.
+    parts: [u32; LANES],
 }
 
 impl<T: Scalar> FreeMotion<'_, T> {
@@ -273,10 +348,12 @@ impl<T: Scalar> FreeMotion<'_, T> {
     pub fn turn(&self, momentum: &SVector<T, 3>) -> (T, SVector<T, 3>) {
         let rotation = self.rotation;
         let m = rotation.in_principal_axes(momentum).map(|component| component * rotation.scale);
-        let (w, x) = match self.parts {
-            1 => turn(&self.inertia, &m),
-            parts => turn_in_parts(&self.inertia, &m, parts),
-        };
+        let turned = in_lanes(|lane| {
+            let (d, m) = (of_lane(&self.inertia, lane), of_lane(&m, lane));
+            Ok(if self.parts[lane] == 1 { turn(&d, &m) } else { turn_in_parts(&d, &m, self.parts[lane]) })
+        });
+        // by construction: none of them fails
+        let Ok((w, x)) = turned else { return (T::zero(), SVector::from_element(T::zero())) };
         (w, rotation.in_coordinates(x))
     }
 }
@@ -303,7 +380,7 @@ pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3>
 
 /// What cannot be seen beside 1.
 #[inline]
-fn negligible<T: Scalar>() -> T {
+fn negligible<T: Real>() -> T {
     T::from_ratio(1, 8) * T::EPSILON
 }
 
@@ -311,7 +388,7 @@ fn negligible<T: Scalar>() -> T {
 ///
 /// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
 #[cold]
-fn reach<T: Scalar>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
+fn reach<T: Real>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
     const SAMPLES: i64 = 16;
     let (mut low, mut high) = (x[0], x[0]);
     for &other in x {
@@ -347,12 +424,57 @@ fn reach<T: Scalar>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
     })
 }
 
+/// Lanes, at most.
+const LANES: usize = 16;
+
+/// The numbers of one lane.
+#[inline]
+fn of_lane<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane; N] {
+    numbers.map(|number| number.lane(lane))
+}
+
+fn identity<T: Scalar>() -> SMatrix<T, 3, 3> {
+    SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() })
+}
+
+/// What a function of the lane gives, side by side; NaN in the lanes that fail.
+///
+/// # Errors
+/// That of the first lane that is not merely NaN, where all of them fail.
+#[inline]
+fn in_lanes<T: Scalar>(
+    mut value: impl FnMut(usize) -> Result<(T::Lane, [T::Lane; 3]), Error>,
+) -> Result<(T, [T; 3]), Error> {
+    if T::LANES == 1 {
+        let (w, x) = value(0)?;
+        return Ok((T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry))));
+    }
+    let nothing = T::Lane::from_f64(f64::NAN);
+    let (mut all, mut first, mut some) = ([(nothing, [nothing; 3]); LANES], None, false);
+    for (lane, place) in all.iter_mut().enumerate().take(T::LANES) {
+        match value(lane) {
+            Ok(found) => (*place, some) = (found, true),
+            // lanes that have failed before are NaN, and say nothing new
+            Err(Error::NotFinite { .. }) if first.is_some() => {}
+            Err(error) if matches!(first, None | Some(Error::NotFinite { .. })) => first = Some(error),
+            Err(_) => {}
+        }
+    }
+    match first {
+        Some(error) if !some => Err(error),
+        _ => Ok((
+            T::from_lanes(|lane| all[lane].0),
+            core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i])),
+        )),
+    }
+}
+
 #[inline]
 fn half<T: Scalar>(x: T) -> T {
     T::from_ratio(1, 2) * x
 }
 
-fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {
+fn largest<T: Real>(vector: &SVector<T, 3>) -> T {
     vector.iter().fold(T::zero(), |most, component| crate::space::larger(most, component.abs()))
 }
 
@@ -388,8 +510,7 @@ fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> (T, [T; 3]) {
 #[inline]
 fn ratio<T: Scalar>((w, x): (T, SVector<T, 3>)) -> SVector<T, 3> {
     let least = T::EPSILON * (x[0].abs() + x[1].abs() + x[2].abs());
-    let w = if w.abs() < least { least } else { w };
-    x * w.recip()
+    x * T::select(w.abs().below(least), least, w).recip()
 }
 
 /// The unit quaternion of a multiple.

@@ -5,6 +5,7 @@
 //! until it arrives or is found to turn back: then no solution is connected to the identity. [`solve_linear_equation`] does
 //! without iteration where ρ is affine in ξ.
 
+mod lane;
 mod linear_equation;
 mod path;
 
@@ -12,7 +13,7 @@ pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
 use crate::linear::{Orientation, rows, solve_dense};
-use crate::{Error, Scalar};
+use crate::{Error, Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
@@ -41,7 +42,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
 
-    /// Δ with Dρ Δ = ρ, and the sign of det Dρ; `None` where it is singular.
+    /// Δ with Dρ Δ = ρ, and the sign of det Dρ; `None` where it is singular in all lanes.
     ///
     /// The provided method eliminates with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
     /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`] for each block on its diagonal.
@@ -83,27 +84,30 @@ pub fn orientation<T: Scalar, const M: usize, const N: usize>(
 /// Newton steps that are tried before the path is followed. Each at least halves the correction and most square it.
 const QUICK: usize = 12;
 
-/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0.
+/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane the same as for a single number. Lanes without a
+/// solution are NaN.
 ///
 /// Accuracy: the correction that Newton's method would make next is below a quarter of a unit in the last place of ξ, or the
 /// residual is round-off. Work: at most 12 linearisations, and where they do not decide at most
 /// [`LINEARIZATIONS`] more (ten to two hundred in practice).
 ///
 /// # Errors
-/// [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
+/// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
 /// one; [`Error::NotFinite`] where `target` or the equation is not; [`Error::NotConverged`] where the work was not enough.
 #[inline]
 pub fn solve<T: Scalar, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
     target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
-    match newton(equation, target) {
-        Some(xi) => Ok(xi),
-        None => path::follow(equation, target),
+    let (xi, solved) = newton(equation, target);
+    if !solved.all() {
+        return lane::follow(equation, target, xi, solved);
     }
+    Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
 
-/// Newton's method from the predictor: `None` as soon as it does not contract cleanly, or leaves the branch.
+/// Newton's method from the predictor: ξ, and in which lanes it is the solution. A lane stays as it is once it has arrived, and is given
+/// up as soon as it does not contract cleanly, or leaves the branch.
 ///
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
 /// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0, and where it is 0 the
@@ -112,46 +116,85 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
 fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
-) -> Option<SVector<T, M>> {
-    let branch = equation.orientation()?;
+) -> (SVector<T, M>, T::Mask) {
+    let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
+    let mut xi = equation.predict(target);
+    let Some(branch) = equation.orientation() else { return (xi, solved) };
     let terms = equation.prepare(target);
-    let mut start = equation.predict(target);
-    let mut xi = start;
+    let mut start = xi;
     let half = T::from_ratio(1, 2);
     let negligible = T::EPSILON * T::from_ratio(1, 4);
     let mut predicted = size(&start);
     let (mut before, mut residual_before) = (predicted, xi);
     for iteration in 0..QUICK {
         let (residual, jacobian) = equation.linearize(&terms, &xi);
-        let (correction, orientation) = E::correct(&jacobian, &residual)?;
+        let Some((correction, orientation)) = E::correct(&jacobian, &residual) else { break };
         if orientation != branch {
-            return None;
+            open = open & orientation.agrees::<T>(branch);
+            if !open.any() {
+                break;
+            }
         }
         let old = xi;
-        xi -= correction;
+        xi = select(open, &(xi - correction), &xi);
         let (now, scale) = (size(&correction), size(&xi));
-        // All comparisons are written so that NaN leads to `None`.
-        if now <= T::EPSILON * scale {
-            return Some(xi);
+        // All comparisons are written so that NaN leads to no solution.
+        let seen = open & now.at_most(T::EPSILON * scale);
+        (solved, open) = (solved | seen, open & !seen);
+        if !open.any() {
+            break;
         }
         let ratio = now / before;
-        if predicted == T::zero() {
-            (start, predicted) = (xi, now);
-        } else if ratio <= half {
-            if now * ratio * ratio <= negligible * scale {
-                return Some(xi);
+        let unpredicted = open & predicted.equals(T::zero());
+        if unpredicted.any() {
+            start = select(unpredicted, &xi, &start);
+            predicted = T::select(unpredicted, now, predicted);
+        }
+        let contracts = open & !unpredicted & ratio.at_most(half);
+        if contracts.any() {
+            let arrived = contracts & (now * ratio * ratio).at_most(negligible * scale);
+            (solved, open) = (solved | arrived, open & !arrived);
+            if !open.any() {
+                break;
             }
-        } else if iteration > 0 {
-            if is_round_off(&residual, &jacobian, &old) {
-                return Some(xi);
-            }
-            if size(&(xi - start)) > predicted || !is_much_smaller(&residual, &residual_before) {
-                return None;
+        }
+        let others = open & !unpredicted & !contracts;
+        if iteration > 0 && others.any() {
+            let arrived = others & is_round_off(&residual, &jacobian, &old);
+            let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&residual, &residual_before);
+            (solved, open) = (solved | arrived, open & !arrived & !(others & strays));
+            if !open.any() {
+                break;
             }
         }
         (before, residual_before) = (now, residual);
     }
-    None
+    (xi, solved)
+}
+
+/// The same solution with its derivatives: each of Newton's corrections doubles the order to which they are right.
+///
+/// Source: Griewank and Walther, *Evaluating Derivatives*, 2nd edition, SIAM 2008, section 15.4 (the derivatives of what Newton's method
+/// finds).
+#[inline(never)]
+fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    equation: &E,
+    target: &SVector<T, N>,
+    mut xi: SVector<T, M>,
+) -> SVector<T, M> {
+    let terms = equation.prepare(target);
+    for _ in 0..=T::DERIVATIVES.ilog2() {
+        let (residual, jacobian) = equation.linearize(&terms, &xi);
+        let Some((correction, _)) = E::correct(&jacobian, &residual) else { break };
+        xi -= correction;
+    }
+    xi
+}
+
+/// The entries of `yes` in the lanes of `mask`, those of `no` elsewhere.
+#[inline]
+fn select<T: Scalar, const M: usize>(mask: T::Mask, yes: &SVector<T, M>, no: &SVector<T, M>) -> SVector<T, M> {
+    yes.zip_map(no, |yes, no| T::select(mask, yes, no))
 }
 
 /// Whether the residual is no more than the rounding of the terms that it is made of, of size |Dρ||ξ|.
@@ -160,16 +203,16 @@ fn is_round_off<T: Scalar, const M: usize>(
     residual: &SVector<T, M>,
     jacobian: &SMatrix<T, M, M>,
     xi: &SVector<T, M>,
-) -> bool {
+) -> T::Mask {
     let terms = (0..M).fold(T::zero(), |sum, j| sum + size(&jacobian.column(j).into_owned()) * xi[j].abs());
-    size(residual) <= T::from_f64(8.0) * T::EPSILON * terms
+    size(residual).at_most(T::from_f64(8.0) * T::EPSILON * terms)
 }
 
 /// Whether the residual shrank to less than a quarter: progress too where stiff directions are settled before soft ones, while
 /// corrections grow.
 #[cold]
-fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: &SVector<T, M>) -> bool {
-    size(residual) <= T::from_ratio(1, 4) * size(before)
+fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: &SVector<T, M>) -> T::Mask {
+    size(residual).at_most(T::from_ratio(1, 4) * size(before))
 }
 
 /// The sum of all |x_i|: NaN where one of them is.

@@ -49,7 +49,31 @@
 //! | give each step an input of its forces | [`Stepper::step_with`] |
 //! | choose the inputs, within bounds and at least price | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control`], [`Optimum`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
-//! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars |
+//! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars; [`Real`] for one that has an order |
+//! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
+//!
+//! # Features
+//!
+//! All are off by default, and none changes what another computes, but for `std`.
+//!
+//! | feature | gives |
+//! |---|---|
+//! | `std` | elementary functions of the standard library in place of `libm` |
+//! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
+//! | `alloc` | `Ensemble`: many bodies, on the heap |
+//! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
+//! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
+//! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
+//!
+//! # Many bodies
+//!
+//! A declaration over `T: Scalar` runs on lanes: with `F64x8` for `T` a [`State`] holds eight bodies, and a step makes the step of each. Lanes
+//! are independent: each has, bit for bit, the result that it would have alone, however many iterations the others need and whether or not
+//! they fail. [`Stepper::step`] asks for all lanes to succeed, [`Stepper::step_each`] steps those that can be, and
+//! [`Stepper::failure`] says why another cannot. Parameters and step sizes are lanes too, so that each body can have its own.
+//!
+//! `Ensemble` does this for any number of bodies. Build for the instruction set of the machine, by
+//! `RUSTFLAGS="-C target-cpu=native"`: without it registers are those of the oldest processor of the architecture, and lanes gain little.
 //!
 //! # What holds everywhere
 //!
@@ -61,6 +85,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
@@ -72,14 +98,22 @@ mod composition;
 mod conserved;
 mod control;
 mod controlled;
+#[cfg(feature = "double-double")]
+mod double_double;
+#[cfg(feature = "num-dual")]
+mod dual;
 mod eigen;
 mod element;
 mod energy;
+#[cfg(feature = "alloc")]
+mod ensemble;
 mod error;
 mod exponential;
 mod free_rotation;
 pub mod group;
 pub mod implicit;
+#[cfg(feature = "lanes")]
+mod lanes;
 mod linear;
 mod logarithm;
 mod opaque;
@@ -103,11 +137,19 @@ pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
 pub use control::{Control, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
+#[cfg(feature = "double-double")]
+pub use double_double::DoubleDouble;
+#[cfg(feature = "alloc")]
+pub use ensemble::{Ensemble, Failure};
 pub use error::Error;
+#[cfg(feature = "lanes")]
+pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;
-pub use scalar::Scalar;
+#[cfg(feature = "num-dual")]
+pub use num_dual;
+pub use scalar::{Mask, Real, Scalar};
 pub use space::Space;
-pub use state::{CotangentState, State};
+pub use state::{Body, CotangentState, State};
 pub use stepper::Stepper;
 pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};

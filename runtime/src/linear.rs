@@ -3,19 +3,19 @@
 //! For M = 3 the loops unroll and the matrix stays in registers. Only signs of pivots are used, never the determinant, which
 //! overflows long before its factors do.
 
-use crate::Scalar;
 use crate::space::larger;
+use crate::{Mask, Scalar};
 use core::array::from_fn;
 use core::ops::Mul;
 use nalgebra::{SMatrix, SVector};
 
-/// The sign of the determinant of a regular matrix.
+/// The sign of the determinant of a matrix, in each lane in which the matrix is regular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Orientation {
-    /// det > 0
-    Positive,
-    /// det < 0
-    Negative,
+pub struct Orientation {
+    /// The lanes with det > 0, one bit for each.
+    positive: u16,
+    /// The lanes with det < 0.
+    negative: u16,
 }
 
 impl Mul for Orientation {
@@ -24,21 +24,82 @@ impl Mul for Orientation {
     /// The sign of the product of two determinants.
     #[inline]
     fn mul(self, other: Self) -> Self {
-        if self == other { Self::Positive } else { Self::Negative }
+        Self {
+            positive: self.positive & other.positive | self.negative & other.negative,
+            negative: self.positive & other.negative | self.negative & other.positive,
+        }
     }
 }
 
 impl Orientation {
-    /// The sign of the determinant of `rows`, `None` where it is singular or not finite.
+    /// det > 0 of a single number.
+    pub const POSITIVE: Self = Self { positive: 1, negative: 0 };
+    /// det < 0 of a single number.
+    pub const NEGATIVE: Self = Self { positive: 0, negative: 1 };
+
+    /// The sign of the determinant of `rows`, `None` where it is singular or not finite in some lane.
     #[inline]
     pub fn of<T: Scalar, const M: usize>(rows: [[T; M]; M]) -> Option<Self> {
-        eliminate::<T, M, 0>(rows, &mut [[]; M])
+        eliminate::<T, M, 0>(rows, &mut [[]; M]).filter(|orientation| orientation.lanes::<T>().all())
     }
+
+    /// The sign of a single number in all lanes.
+    #[cfg(all(test, feature = "lanes"))]
+    pub(crate) fn everywhere(single: Self) -> Self {
+        Self { positive: single.positive * u16::MAX, negative: single.negative * u16::MAX }
+    }
+
+    /// From the lanes in which the matrix is regular, and those in which an odd number of signs was negative.
+    #[inline]
+    fn new<M: Mask>(regular: M, negative: M) -> Self {
+        Self { positive: (regular & !negative).bits(), negative: (regular & negative).bits() }
+    }
+
+    /// The lanes in which the matrix is regular.
+    #[inline]
+    fn lanes<T: Scalar>(self) -> T::Mask {
+        T::Mask::from_bits(self.positive | self.negative)
+    }
+
+    /// The lanes in which the sign is that of `other`.
+    #[inline]
+    pub(crate) fn agrees<T: Scalar>(self, other: Self) -> T::Mask {
+        T::Mask::from_bits(self.positive & other.positive | self.negative & other.negative)
+    }
+
+    /// The sign here in the lanes of `mask`, that of `other` elsewhere.
+    #[inline]
+    fn or(self, mask: u16, other: Option<Self>) -> Self {
+        let merge = |own, other| own & mask | other & !mask;
+        let other = other.unwrap_or(Self { positive: 0, negative: 0 });
+        Self { positive: merge(self.positive, other.positive), negative: merge(self.negative, other.negative) }
+    }
+}
+
+/// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
+///
+/// Without that, a loop over loops whose bounds depend on it stays a loop for lanes, with the matrix in memory: a step of eight free bodies
+/// took half as long again.
+macro_rules! unrolled {
+    ($k:ident in 0..$n:ident $body:block) => {
+        unrolled!(@ $k $n $body 0 1 2 3);
+        for $k in 4..$n $body
+    };
+    ($k:ident in (0..$n:ident).rev() $body:block) => {
+        for $k in (4..$n).rev() $body
+        unrolled!(@ $k $n $body 3 2 1 0);
+    };
+    (@ $k:ident $n:ident $body:block $($number:literal)*) => {$(
+        if $number < $n {
+            let $k: usize = $number;
+            $body
+        }
+    )*};
 }
 
 /// Solves A X = B in place of `b`: Gaussian elimination with partial pivoting, X of shape M×K.
 ///
-/// Returns the sign of det A. `None` where a pivot is zero or not finite; `b` is spoilt then.
+/// Returns the sign of det A. Where a pivot is zero or not finite `b` is spoilt; `None` where that is so in all lanes.
 /// Cost: M³/3 + M²/2 + M²K multiplications to leading orders and M divisions.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
@@ -46,22 +107,24 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
     mut a: [[T; M]; M],
     b: &mut [[T; K]; M],
 ) -> Option<Orientation> {
-    let mut negative = false;
+    let (mut regular, mut negative) = (T::Mask::everywhere(), T::Mask::nowhere());
     let mut reciprocals = [T::zero(); M];
-    for k in 0..M {
+    unrolled!(k in 0..M {
         // Exchanging at every larger row, instead of once with the largest, keeps all indices constant after unrolling.
         for i in k + 1..M {
-            if a[i][k].abs() > a[k][k].abs() {
-                a.swap(i, k);
-                b.swap(i, k);
-                negative = !negative;
+            let is_larger = a[k][k].abs().below(a[i][k].abs());
+            if is_larger.any() {
+                exchange(is_larger, &mut a, i, k);
+                exchange(is_larger, b, i, k);
+                negative = negative ^ is_larger;
             }
         }
         let pivot = a[k][k];
-        if pivot == T::zero() || !pivot.is_finite() {
+        regular = regular & !pivot.equals(T::zero()) & pivot.finite();
+        if !regular.any() {
             return None;
         }
-        negative ^= pivot < T::zero();
+        negative = negative ^ pivot.below(T::zero());
         // divisions that wait for each other are most of the time of small systems
         reciprocals[k] = T::one() / pivot;
         for i in k + 1..M {
@@ -73,8 +136,8 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
                 b[i][j] -= factor * b[k][j];
             }
         }
-    }
-    for k in (0..M).rev() {
+    });
+    unrolled!(k in (0..M).rev() {
         for j in 0..K {
             let mut sum = b[k][j];
             for i in k + 1..M {
@@ -82,17 +145,28 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
             }
             b[k][j] = sum * reciprocals[k];
         }
-    }
-    Some(if negative { Orientation::Negative } else { Orientation::Positive })
+    });
+    Some(Orientation::new(regular, negative))
 }
 
-/// x of A x = b; `None` where A is singular or not finite.
+/// Exchanges two rows in the lanes of `mask`.
+#[inline]
+#[allow(clippy::needless_range_loop)] // as above
+fn exchange<T: Scalar, const M: usize, const K: usize>(mask: T::Mask, rows: &mut [[T; K]; M], i: usize, k: usize) {
+    for j in 0..K {
+        let (x, y) = (rows[i][j], rows[k][j]);
+        (rows[i][j], rows[k][j]) = (T::select(mask, y, x), T::select(mask, x, y));
+    }
+}
+
+/// x of A x = b; `None` where A is singular or not finite in some lane.
 #[inline]
 pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
-    solve_dense(a, b).map(|(x, _)| x)
+    let (x, orientation) = solve_dense(a, b)?;
+    orientation.lanes::<T>().all().then_some(x)
 }
 
-/// x of A x = b and the sign of det A, by elimination with pivoting; `None` where A is singular or not finite.
+/// x of A x = b and the sign of det A, by elimination with pivoting; `None` where A is singular or not finite in all lanes.
 #[inline]
 pub fn solve_dense<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,
@@ -117,10 +191,12 @@ pub fn solve_symmetric<T: Scalar, const M: usize>(
     let mut l = rows(a);
     let mut x: [T; M] = from_fn(|i| b[i]);
     let mut reciprocals = [T::zero(); M];
+    let (first, mut is_definite) = (T::zero().below(a[(0, 0)]), T::Mask::everywhere());
     for k in 0..M {
         let pivot = l[k][k];
-        let agrees = (pivot > T::zero()) == (a[(0, 0)] > T::zero());
-        if !agrees || pivot == T::zero() || !pivot.is_finite() {
+        let agrees = !(T::zero().below(pivot) ^ first);
+        is_definite = is_definite & agrees & !pivot.equals(T::zero()) & pivot.finite();
+        if !is_definite.any() {
             return solve_dense(a, b);
         }
         reciprocals[k] = T::one() / pivot;
@@ -139,8 +215,14 @@ pub fn solve_symmetric<T: Scalar, const M: usize>(
         }
         x[k] *= reciprocals[k];
     }
-    let negative = M % 2 == 1 && a[(0, 0)] < T::zero();
-    Some((SVector::from_fn(|i, _| x[i]), if negative { Orientation::Negative } else { Orientation::Positive }))
+    let (x, negative) = (SVector::from_fn(|i, _| x[i]), if M % 2 == 1 { !first } else { T::Mask::nowhere() });
+    let orientation = Orientation::new(is_definite, negative);
+    if is_definite.all() {
+        return Some((x, orientation));
+    }
+    let (others, signs) = solve_dense(a, b).unzip();
+    let others = others.unwrap_or(x);
+    Some((x.zip_map(&others, |x, other| T::select(is_definite, x, other)), orientation.or(is_definite.bits(), signs)))
 }
 
 /// A square matrix by rows.
@@ -187,7 +269,7 @@ mod tests {
     #[test]
     fn pivots_away_from_zero() {
         let mut b = [[2.0], [1.0]];
-        assert_eq!(eliminate([[0.0, 1.0], [1.0, 0.0]], &mut b), Some(Orientation::Negative));
+        assert_eq!(eliminate([[0.0, 1.0], [1.0, 0.0]], &mut b), Some(Orientation::NEGATIVE));
         assert_eq!(b, [[1.0], [2.0]]);
     }
 
@@ -205,21 +287,21 @@ mod tests {
     fn symmetric_systems() {
         let b = Vector2::new(3.0, -1.0);
         let of = |a: f64, c: f64, d: f64| solve_symmetric(&Matrix2::new(a, f64::NAN, c, d), &b);
-        assert_eq!(of(2.0, 1.0, 1.0), Some((Vector2::new(4.0, -5.0), Orientation::Positive)));
-        assert_eq!(of(-2.0, -1.0, -1.0), Some((Vector2::new(-4.0, 5.0), Orientation::Positive)));
+        assert_eq!(of(2.0, 1.0, 1.0), Some((Vector2::new(4.0, -5.0), Orientation::POSITIVE)));
+        assert_eq!(of(-2.0, -1.0, -1.0), Some((Vector2::new(-4.0, 5.0), Orientation::POSITIVE)));
         let solved = |a: f64, c: f64, d: f64| solve_symmetric(&Matrix2::new(a, c, c, d), &b);
-        assert_eq!(solved(1.0, 2.0, 2.0), Some((Vector2::new(-4.0, 3.5), Orientation::Negative)));
-        assert_eq!(solved(0.0, 1.0, 0.0), Some((Vector2::new(-1.0, 3.0), Orientation::Negative)));
+        assert_eq!(solved(1.0, 2.0, 2.0), Some((Vector2::new(-4.0, 3.5), Orientation::NEGATIVE)));
+        assert_eq!(solved(0.0, 1.0, 0.0), Some((Vector2::new(-1.0, 3.0), Orientation::NEGATIVE)));
         assert_eq!(solved(1.0, 1.0, 1.0), None);
         assert_eq!(solved(f64::NAN, 1.0, 1.0), None);
         assert_eq!(solved(f64::INFINITY, 1.0, 1.0), None);
         let cubic = solve_symmetric(&-Matrix3::<f64>::identity(), &Vector3::x());
-        assert_eq!(cubic, Some((-Vector3::x(), Orientation::Negative)));
+        assert_eq!(cubic, Some((-Vector3::x(), Orientation::NEGATIVE)));
     }
 
     #[test]
     fn signs_of_determinants_multiply() {
-        let (plus, minus) = (Orientation::Positive, Orientation::Negative);
+        let (plus, minus) = (Orientation::POSITIVE, Orientation::NEGATIVE);
         assert_eq!([plus * plus, plus * minus, minus * plus, minus * minus], [plus, minus, minus, plus]);
     }
 
@@ -237,7 +319,7 @@ mod tests {
         for scale in [2.0_f64.powi(-1000), 2.0_f64.powi(1000)] {
             let rows = [[0.0, scale, 0.0], [scale, 0.0, 0.0], [0.0, 0.0, scale]];
             let mut b = [[scale], [2.0 * scale], [3.0 * scale]];
-            assert_eq!(eliminate(rows, &mut b), Some(Orientation::Negative));
+            assert_eq!(eliminate(rows, &mut b), Some(Orientation::NEGATIVE));
             assert_eq!(b, [[2.0], [1.0], [3.0]]);
         }
     }
@@ -279,7 +361,7 @@ mod tests {
             let det = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0])
                 + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
             prop_assume!(det.abs() > 1e-12);
-            let sign = if det > 0.0 { Orientation::Positive } else { Orientation::Negative };
+            let sign = if det > 0.0 { Orientation::POSITIVE } else { Orientation::NEGATIVE };
             prop_assert_eq!(Orientation::of(a), Some(sign));
         }
     }

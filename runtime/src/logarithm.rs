@@ -4,7 +4,8 @@
 //! Beavers) and 11 (equation 11.31).
 
 use crate::linear::{eliminate, multiple_of_identity, norm, product, rows, shifted, undefined};
-use crate::{Scalar, Space};
+use crate::space::by_lane;
+use crate::{Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::SMatrix;
 
@@ -23,6 +24,10 @@ const TERMS: i64 = 40;
 /// square roots have lost half of the digits, as for eigenvalues that only round-off keeps from that axis. For an angle θ near π
 /// the error grows like ε/(π − θ), for so ill-conditioned is the logarithm there.
 pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    by_lane(a, logarithm_of_one)
+}
+
+fn logarithm_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     if !a.is_finite() {
         return undefined();
     }
@@ -32,7 +37,7 @@ pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, 
     }
 }
 
-fn scaled_logarithm<T: Scalar, const N: usize>(a: Square<T, N>) -> Option<Square<T, N>> {
+fn scaled_logarithm<T: Real, const N: usize>(a: Square<T, N>) -> Option<Square<T, N>> {
     let (mut root, mut factor) = (a, T::from_f64(2.0));
     let mut roots = 0;
     while !is_near_identity(&root) {
@@ -50,7 +55,7 @@ fn scaled_logarithm<T: Scalar, const N: usize>(a: Square<T, N>) -> Option<Square
 /// Whether |X − I| ≤ ½, or at least its powers N and N + 1 are as small: then the series converges like 9⁻ᵏ.
 ///
 /// These powers vanish for a unipotent X, whose series is finite however large its entries are.
-fn is_near_identity<T: Scalar, const N: usize>(x: &Square<T, N>) -> bool {
+fn is_near_identity<T: Real, const N: usize>(x: &Square<T, N>) -> bool {
     let difference = shifted(x, -T::one());
     let half = T::from_ratio(1, 2);
     let (mut power, mut bound) = (difference, half);
@@ -65,18 +70,22 @@ fn is_near_identity<T: Scalar, const N: usize>(x: &Square<T, N>) -> bool {
 }
 
 /// ½ log X = Y + Y³/3 + Y⁵/5 + …, Y = (X + I)⁻¹(X − I).
-fn inverse_hyperbolic_tangent<T: Scalar, const N: usize>(x: &Square<T, N>) -> Option<Square<T, N>> {
+fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &Square<T, N>) -> Option<Square<T, N>> {
     let mut y = shifted(x, -T::one());
     eliminate(shifted(x, T::one()), &mut y)?;
     let square = product(&y, &y);
     let (mut power, mut sum) = (y, y);
     let first = norm(&y);
+    let mut derivatives = T::DERIVATIVES;
     for k in 1..=TERMS {
         power = product(&power, &square);
         let factor = T::from_ratio(1, 2 * k + 1);
         sum = from_fn(|i| from_fn(|j| sum[i][j] + power[i][j] * factor));
         if norm(&power) <= T::EPSILON * T::from_ratio(1, 8) * first {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     Some(sum)
@@ -89,7 +98,7 @@ const ITERATIONS: u32 = 40;
 /// to one.
 ///
 /// The product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
-fn square_root<T: Scalar, const N: usize>(a: &Square<T, N>) -> Option<Square<T, N>> {
+fn square_root<T: Real, const N: usize>(a: &Square<T, N>) -> Option<Square<T, N>> {
     let (mut x, mut y) = (*a, multiple_of_identity(T::one()));
     let (half, hundredth) = (T::from_ratio(1, 2), T::from_ratio(1, 100));
     let mut before = T::one() / T::zero();
@@ -120,7 +129,7 @@ fn square_root<T: Scalar, const N: usize>(a: &Square<T, N>) -> Option<Square<T, 
 }
 
 /// Whether X² is A to half of the digits at least.
-fn is_root<T: Scalar, const N: usize>(root: &Square<T, N>, a: &Square<T, N>) -> bool {
+fn is_root<T: Real, const N: usize>(root: &Square<T, N>, a: &Square<T, N>) -> bool {
     let square = product(root, root);
     let difference: Square<T, N> = from_fn(|i| from_fn(|j| square[i][j] - a[i][j]));
     norm(&difference) <= T::EPSILON.sqrt() * norm(a)

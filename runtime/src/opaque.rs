@@ -1,6 +1,7 @@
 //! Opaque potentials: whether a gradient method belongs to a value method.
 
-use crate::{Error, Scalar};
+use crate::space::check_lanes;
+use crate::{Error, Real, Scalar};
 
 /// Checks one entry of a gradient against differences of the value along it.
 ///
@@ -10,6 +11,13 @@ use crate::{Error, Scalar};
 /// # Errors
 /// [`Error::WrongGradient`]; [`Error::NotFinite`] where the value or the gradient is not.
 pub fn check_slope<T: Scalar>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
+    check_lanes::<T>(|lane| {
+        let value = |x| value(T::from_lanes(|_| x)).lane(lane);
+        check_slope_of_one(value, x.lane(lane), slope.lane(lane), entry)
+    })
+}
+
+fn check_slope_of_one<T: Real>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
     let one = T::one();
     let size = if x.abs() > one { x.abs() } else { one };
     let delta = T::EPSILON.powf(T::from_ratio(1, 5)) * size;

@@ -1,9 +1,8 @@
 //! Where configurations lie: by how much they are off their groups and spheres.
 
-use crate::Scalar;
 use crate::linear::{Orientation, rows};
-use crate::space::larger;
-use core::cmp::Ordering;
+use crate::space::{lane_of, larger};
+use crate::{Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The largest entry of |RᵀR − I|; +∞ for a reflection, whose determinant is negative.
@@ -16,18 +15,18 @@ pub fn orthogonality_defect<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> 
             defect = larger(defect, (product - expected).abs());
         }
     }
-    match Orientation::of(rows(r)) {
-        Some(Orientation::Negative) => T::one() / T::zero(),
-        _ => defect,
-    }
+    T::select(orientated(r, Orientation::NEGATIVE), T::one() / T::zero(), defect)
 }
 
 /// 0 for a matrix with a positive determinant, +∞ for the others: those on another component, or singular.
 pub fn orientation_defect<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
-    match Orientation::of(rows(a)) {
-        Some(Orientation::Positive) => T::zero(),
-        _ => T::one() / T::zero(),
-    }
+    T::select(orientated(a, Orientation::POSITIVE), T::zero(), T::one() / T::zero())
+}
+
+/// The lanes in which the determinant has the sign `orientation`.
+fn orientated<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, orientation: Orientation) -> T::Mask {
+    let has_sign = |lane| Orientation::of(rows(&lane_of(a, lane))) == Some(orientation);
+    T::Mask::from_bits((0..T::LANES).fold(0, |bits, lane| bits | u16::from(has_sign(lane)) << lane))
 }
 
 /// ||q|² − 1|.
@@ -42,10 +41,9 @@ pub fn largest<T: Scalar, const K: usize>(values: [T; K]) -> T {
 
 /// The largest of numbers that are not negative. Unlike [`larger`] it keeps NaN, which overflow makes of a difference.
 fn largest_of<T: Scalar>(values: impl Iterator<Item = T>) -> T {
-    values.fold(T::zero(), |max, x| match x.partial_cmp(&max) {
-        Some(Ordering::Greater) => x,
-        Some(_) => max,
-        None => T::zero() / T::zero(),
+    values.fold(T::zero(), |max, x| {
+        let is_ordered = x.at_most(max) | max.at_most(x);
+        T::select(is_ordered, larger(max, x), T::zero() / T::zero())
     })
 }
 

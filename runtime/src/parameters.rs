@@ -1,10 +1,11 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
 use crate::linear::{eliminate, multiple_of_identity, rows};
-use crate::space::larger;
-use crate::{Error, Scalar, Space};
+use crate::space::{check_lanes, lane_of, larger, set_lane};
+use crate::{Error, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
+use num_traits::{One, Zero};
 
 /// Fails with the name of the field if a number in it is NaN or infinite.
 ///
@@ -19,12 +20,15 @@ pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Res
 /// # Errors
 /// [`Error::NotSymmetric`].
 pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
-    let defect = (matrix - matrix.transpose()).max_abs();
-    let tolerance = T::from_f64(1024.0) * T::EPSILON * matrix.max_abs();
-    if defect > tolerance {
-        return Err(Error::NotSymmetric { field: name, defect: defect.to_f64(), tolerance: tolerance.to_f64() });
-    }
-    Ok(())
+    check_lanes::<T>(|lane| {
+        let matrix = lane_of(matrix, lane);
+        let defect = (matrix - matrix.transpose()).max_abs();
+        let tolerance = T::Lane::from_f64(1024.0) * T::Lane::EPSILON * matrix.max_abs();
+        if defect > tolerance {
+            return Err(Error::NotSymmetric { field: name, defect: defect.to_f64(), tolerance: tolerance.to_f64() });
+        }
+        Ok(())
+    })
 }
 
 /// Fails if `matrix` has an entry off its diagonal.
@@ -33,10 +37,10 @@ pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &S
 /// [`Error::NotDiagonal`].
 pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
     let off_diagonal = SMatrix::<T, N, N>::from_fn(|i, j| if i == j { T::zero() } else { matrix[(i, j)] });
-    match off_diagonal.max_abs() {
-        defect if defect > T::zero() => Err(Error::NotDiagonal { field: name, defect: defect.to_f64() }),
+    check_lanes::<T>(|lane| match off_diagonal.max_abs().lane(lane) {
+        defect if defect > T::Lane::zero() => Err(Error::NotDiagonal { field: name, defect: defect.to_f64() }),
         _ => Ok(()),
-    }
+    })
 }
 
 /// Fails if the length of `vector` differs from one by more than round-off, √ε as for the input of configurations.
@@ -44,12 +48,14 @@ pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SM
 /// # Errors
 /// [`Error::NotUnit`].
 pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVector<T, N>) -> Result<(), Error> {
-    let entries: [T; N] = from_fn(|i| vector[i]);
-    let length = length(&entries);
-    match (length - T::one()).abs() > T::EPSILON.sqrt() {
-        true => Err(Error::NotUnit { field: name, length: length.to_f64() }),
-        false => Ok(()),
-    }
+    check_lanes::<T>(|lane| {
+        let entries: [T::Lane; N] = from_fn(|i| vector[i].lane(lane));
+        let length = length(&entries);
+        match (length - T::Lane::one()).abs() > T::Lane::EPSILON.sqrt() {
+            true => Err(Error::NotUnit { field: name, length: length.to_f64() }),
+            false => Ok(()),
+        }
+    })
 }
 
 /// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
@@ -60,6 +66,15 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
 /// # Errors
 /// [`Error::SingularKineticEnergy`].
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
+    let mut inverse = *matrix;
+    check_lanes::<T>(|lane| {
+        set_lane(&mut inverse, lane, &invert_one(&lane_of(matrix, lane))?);
+        Ok(())
+    })?;
+    Ok(inverse)
+}
+
+fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse: [[T; N]; N] = multiple_of_identity(T::one());
     let rows = rows(matrix);
     if eliminate(rows, &mut inverse).is_none() {
@@ -84,7 +99,12 @@ pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
 
 /// The distance of `mu` from the span of `rows`, the momenta that motions of a configuration can have.
 pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> T {
-    length(&rest(orthonormal(rows).as_slice(), mu))
+    T::from_lanes(|lane| length(&rest(orthonormal(&rows_of(rows, lane)).as_slice(), &lane_of(mu, lane))))
+}
+
+/// One lane of some rows.
+fn rows_of<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], lane: usize) -> [[T::Lane; M]; D] {
+    rows.map(|row| row.map(|entry| entry.lane(lane)))
 }
 
 /// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly.
@@ -94,6 +114,14 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     rows: &[[T; M]; D],
     mu: &SVector<T, M>,
 ) -> SVector<T, M> {
+    let mut projection = *mu;
+    for lane in 0..T::LANES {
+        set_lane(&mut projection, lane, &projection_of_one(&rows_of(rows, lane), &lane_of(mu, lane)));
+    }
+    projection
+}
+
+fn projection_of_one<T: Real, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> SVector<T, M> {
     let basis = orthonormal(rows);
     let mut projection = *mu;
     for _ in 0..2 {
@@ -107,7 +135,7 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
 ///
 /// Modified Gram–Schmidt, each row made orthogonal twice (once more than round-off needs); a row of which less than √ε is left
 /// is taken for dependent.
-fn orthonormal<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D]) -> [[T; M]; D] {
+fn orthonormal<T: Real, const M: usize, const D: usize>(rows: &[[T; M]; D]) -> [[T; M]; D] {
     let mut basis = *rows;
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);
@@ -129,20 +157,20 @@ fn orthonormal<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D]) ->
 }
 
 /// What is left of `mu` without its components along `basis`.
-fn rest<T: Scalar, const M: usize>(basis: &[[T; M]], mu: &SVector<T, M>) -> [T; M] {
+fn rest<T: Real, const M: usize>(basis: &[[T; M]], mu: &SVector<T, M>) -> [T; M] {
     let mut rest: [T; M] = from_fn(|i| mu[i]);
     basis.iter().for_each(|unit| remove(&mut rest, unit));
     rest
 }
 
 /// `vector` −= its component along `unit`.
-fn remove<T: Scalar, const M: usize>(vector: &mut [T; M], unit: &[T; M]) {
+fn remove<T: Real, const M: usize>(vector: &mut [T; M], unit: &[T; M]) {
     let component = vector.iter().zip(unit).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
     vector.iter_mut().zip(unit).for_each(|(a, &b)| *a -= component * b);
 }
 
 /// The Euclidean length, scaled so that squares neither overflow nor vanish.
-fn length<T: Scalar, const M: usize>(vector: &[T; M]) -> T {
+fn length<T: Real, const M: usize>(vector: &[T; M]) -> T {
     let scale = vector.iter().fold(T::zero(), |max, x| larger(max, x.abs()));
     if scale == T::zero() || !scale.is_finite() {
         return scale;

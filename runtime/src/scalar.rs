@@ -1,20 +1,27 @@
 //! The numbers that an integrator computes with.
 
+mod mask;
+
+pub use mask::Mask;
+
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
-/// A real number that declarations can be integrated in: `f32` and `f64` here.
+/// What declarations can be integrated in: `f32` and `f64`, several of them side by side as lanes, numbers that carry derivatives.
 ///
 /// Everything that the language of declarations can write about a scalar is a method of this trait, so that generated
 /// code works for any implementation. Angles are in radians. Functions outside their domain give NaN, as for `f64`; the
 /// stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
+///
+/// Operations act on each lane by itself. Lanes have no order: where numbers are compared, the answer is a
+/// [`Mask`](Self::Mask), and code that needs a single answer asks for a [`Real`]. An implementation for a single number writes
+/// [`one_number!`](crate::one_number) in place of what is about lanes.
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
     + Display
     + Debug
-    + PartialOrd
     + Zero
     + One
     + Neg<Output = Self>
@@ -27,6 +34,16 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
+    /// A single number: the type itself, or that of one lane.
+    type Lane: Real;
+    /// What a comparison answers: `bool`, or one for each lane.
+    type Mask: Mask;
+    /// The number of lanes: 1 for a single number, at most 16.
+    const LANES: usize;
+    /// The order of the derivatives that a number carries along: 0 for a plain one.
+    ///
+    /// An iteration that stops when the value can no longer change goes on until they cannot either.
+    const DERIVATIVES: u32 = 0;
     /// Distance from 1 to the next larger number.
     const EPSILON: Self;
     /// Half of the circumference of the unit circle.
@@ -36,10 +53,25 @@ pub trait Scalar:
     fn from_ratio(numerator: i64, denominator: i64) -> Self;
     /// The number of this type next to `value`.
     fn from_f64(value: f64) -> Self;
-    /// The `f64` next to this number, for messages and tables.
+    /// The `f64` next to this number, for messages and tables; that of the first lane.
     fn to_f64(self) -> f64;
-    /// Neither NaN nor infinite.
+    /// Neither NaN nor infinite, in any lane.
     fn is_finite(self) -> bool;
+
+    /// The number in a lane below [`LANES`](Self::LANES); NaN where lanes have none of that number.
+    fn lane(self, lane: usize) -> Self::Lane;
+    /// What has `value(i)` in lane i.
+    fn from_lanes(value: impl FnMut(usize) -> Self::Lane) -> Self;
+    /// Where x < `other`; nowhere where either is NaN.
+    fn below(self, other: Self) -> Self::Mask;
+    /// Where x ≤ `other`; nowhere where either is NaN.
+    fn at_most(self, other: Self) -> Self::Mask;
+    /// Where x = `other`; nowhere where either is NaN.
+    fn equals(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Where x is neither NaN nor infinite.
+    fn finite(self) -> Self::Mask;
 
     /// |x|
     fn abs(self) -> Self;
@@ -75,9 +107,55 @@ pub trait Scalar:
     fn powf(self, exponent: Self) -> Self;
 }
 
+/// A single number, with an order: what has no lanes.
+///
+/// Implemented for every [`Scalar`] that is one.
+pub trait Real: Scalar<Lane = Self, Mask = bool> + PartialOrd {}
+
+impl<T: Scalar<Lane = T, Mask = bool> + PartialOrd> Real for T {}
+
+/// What an implementation of [`Scalar`](crate::Scalar) for a single number, which is its own only lane, says of lanes.
+#[macro_export]
+macro_rules! one_number {
+    () => {
+        type Lane = Self;
+        type Mask = bool;
+        const LANES: usize = 1;
+
+        #[inline]
+        fn lane(self, _: usize) -> Self {
+            self
+        }
+        #[inline]
+        fn from_lanes(mut value: impl FnMut(usize) -> Self) -> Self {
+            value(0)
+        }
+        #[inline]
+        fn below(self, other: Self) -> bool {
+            self < other
+        }
+        #[inline]
+        fn at_most(self, other: Self) -> bool {
+            self <= other
+        }
+        #[inline]
+        fn equals(self, other: Self) -> bool {
+            self == other
+        }
+        #[inline]
+        fn select(mask: bool, yes: Self, no: Self) -> Self {
+            if mask { yes } else { no }
+        }
+        #[inline]
+        fn finite(self) -> bool {
+            $crate::Scalar::is_finite(self)
+        }
+    };
+}
+
 /// xⁿ by squaring; negative exponents through the reciprocal.
 #[inline]
-fn power<T: Scalar>(base: T, exponent: i32) -> T {
+pub(crate) fn power<T: Scalar>(base: T, exponent: i32) -> T {
     let mut square = if exponent < 0 { base.recip() } else { base };
     let mut rest = exponent.unsigned_abs();
     let mut power = T::one();
@@ -107,6 +185,8 @@ macro_rules! elementary {
 /// What is the same for every floating point type.
 macro_rules! floating_point {
     ($scalar:ident, $pow:ident) => {
+        $crate::one_number!();
+
         const EPSILON: Self = $scalar::EPSILON;
         const PI: Self = core::$scalar::consts::PI;
 

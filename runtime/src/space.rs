@@ -1,6 +1,6 @@
 //! The spaces that configurations, group elements and momenta live in: arrays of scalars, nested as declared.
 
-use crate::Scalar;
+use crate::{Error, Mask, Scalar};
 use core::fmt::Debug;
 use nalgebra::{Quaternion, SMatrix};
 
@@ -9,19 +9,48 @@ use nalgebra::{Quaternion, SMatrix};
 ///
 /// Implementations only have to say how their scalars are visited.
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
+    /// What one lane of it is; the space itself where scalars are single numbers.
+    type Lane: Space<T::Lane>;
+
     /// Combines `visit(x)` of all scalars x by `and`, without leaving early: on small arrays branches cost more than comparisons.
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool;
 
     /// The largest |x| of all scalars x, 0 for `()`. NaN are passed over.
     fn max_abs(&self) -> T;
 
+    /// Where all scalars are `value`.
+    fn filled(value: T) -> Self;
+
     /// Where all scalars are 0.
-    fn origin() -> Self;
+    #[inline]
+    fn origin() -> Self {
+        Self::filled(T::zero())
+    }
 
     /// |self − other|², the sum over all scalars, 0 for `()`.
     fn distance_squared(&self, other: &Self) -> T;
 
-    /// Whether no scalar is NaN or infinite.
+    /// The sum of all scalars, 0 for `()`: where it is finite, all of them are.
+    fn sum(&self) -> T;
+
+    /// The value in lane `lane` of all scalars; the value itself where they are single numbers.
+    fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// What has `value(i)` in lane i.
+    #[inline]
+    fn side_by_side(mut value: impl FnMut(usize) -> Self::Lane) -> Self {
+        let mut all = Self::origin();
+        (0..T::LANES).for_each(|lane| all.set_lane(lane, &value(lane)));
+        all
+    }
+
+    /// Puts `value` into lane `lane` of all scalars.
+    fn set_lane(&mut self, lane: usize, value: &Self::Lane);
+
+    /// The lanes in which no scalar is NaN or infinite.
+    fn finite(&self) -> T::Mask;
+
+    /// Whether no scalar is NaN or infinite in any lane.
     #[inline]
     fn is_finite(&self) -> bool {
         self.all(|x| x.is_finite())
@@ -30,11 +59,38 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
 
 /// The larger one; `a` where either is NaN.
 #[inline]
-pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
-    if b > a { b } else { a }
+pub(crate) fn larger<T: Scalar>(a: T, b: T) -> T {
+    T::select(a.below(b), b, a)
+}
+
+/// One lane of a matrix.
+#[inline]
+pub(crate) fn lane_of<T: Scalar, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+    lane: usize,
+) -> SMatrix<T::Lane, R, C> {
+    matrix.map(|x| x.lane(lane))
+}
+
+/// `value` with `number` in lane `lane`.
+#[inline]
+fn with_lane<T: Scalar>(value: T, lane: usize, number: T::Lane) -> T {
+    T::from_lanes(|i| if i == lane { number } else { value.lane(i) })
+}
+
+/// Puts `value` into one lane of a matrix.
+#[inline]
+pub(crate) fn set_lane<T: Scalar, const R: usize, const C: usize>(
+    matrix: &mut SMatrix<T, R, C>,
+    lane: usize,
+    value: &SMatrix<T::Lane, R, C>,
+) {
+    matrix.zip_apply(value, |x, number| *x = with_lane(*x, lane, number));
 }
 
 impl<T: Scalar> Space<T> for T {
+    type Lane = T::Lane;
+
     #[inline]
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
         visit(*self)
@@ -44,16 +100,34 @@ impl<T: Scalar> Space<T> for T {
         larger(T::zero(), self.abs())
     }
     #[inline]
-    fn origin() -> Self {
-        T::zero()
+    fn filled(value: T) -> Self {
+        value
     }
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         (*self - *other) * (*self - *other)
     }
+    #[inline]
+    fn sum(&self) -> T {
+        *self
+    }
+    #[inline]
+    fn lane(&self, lane: usize) -> T::Lane {
+        Scalar::lane(*self, lane)
+    }
+    #[inline]
+    fn set_lane(&mut self, lane: usize, value: &T::Lane) {
+        *self = with_lane(*self, lane, *value);
+    }
+    #[inline]
+    fn finite(&self) -> T::Mask {
+        Scalar::finite(*self)
+    }
 }
 
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
+    type Lane = SMatrix<T::Lane, R, C>;
+
     #[inline]
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
         self.iter().fold(true, |all, &x| all & visit(x))
@@ -63,16 +137,34 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
         self.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
     }
     #[inline]
-    fn origin() -> Self {
-        SMatrix::from_element(T::zero())
+    fn filled(value: T) -> Self {
+        SMatrix::from_element(value)
     }
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         self.iter().zip(other.iter()).fold(T::zero(), |sum, (x, y)| sum + (*x - *y) * (*x - *y))
     }
+    #[inline]
+    fn sum(&self) -> T {
+        self.iter().fold(T::zero(), |sum, &x| sum + x)
+    }
+    #[inline]
+    fn lane(&self, lane: usize) -> Self::Lane {
+        lane_of(self, lane)
+    }
+    #[inline]
+    fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
+        set_lane(self, lane, value);
+    }
+    #[inline]
+    fn finite(&self) -> T::Mask {
+        self.iter().fold(T::Mask::everywhere(), |finite, x| finite & x.finite())
+    }
 }
 
 impl<T: Scalar> Space<T> for Quaternion<T> {
+    type Lane = Quaternion<T::Lane>;
+
     #[inline]
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
         self.coords.all(visit)
@@ -82,16 +174,34 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
         self.coords.max_abs()
     }
     #[inline]
-    fn origin() -> Self {
-        Quaternion { coords: SMatrix::origin() }
+    fn filled(value: T) -> Self {
+        Quaternion { coords: SMatrix::filled(value) }
     }
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         self.coords.distance_squared(&other.coords)
     }
+    #[inline]
+    fn sum(&self) -> T {
+        Space::sum(&self.coords)
+    }
+    #[inline]
+    fn lane(&self, lane: usize) -> Self::Lane {
+        Quaternion { coords: lane_of(&self.coords, lane) }
+    }
+    #[inline]
+    fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
+        set_lane(&mut self.coords, lane, &value.coords);
+    }
+    #[inline]
+    fn finite(&self) -> T::Mask {
+        self.coords.finite()
+    }
 }
 
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
+    type Lane = [S::Lane; N];
+
     #[inline]
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
         self.iter().fold(true, |all, part| all & part.all(visit))
@@ -101,12 +211,28 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
         self.iter().fold(T::zero(), |max, part| larger(max, part.max_abs()))
     }
     #[inline]
-    fn origin() -> Self {
-        [S::origin(); N]
+    fn filled(value: T) -> Self {
+        [S::filled(value); N]
     }
     #[inline]
     fn distance_squared(&self, other: &Self) -> T {
         self.iter().zip(other).fold(T::zero(), |sum, (part, other)| sum + part.distance_squared(other))
+    }
+    #[inline]
+    fn sum(&self) -> T {
+        self.iter().fold(T::zero(), |sum, part| sum + part.sum())
+    }
+    #[inline]
+    fn lane(&self, lane: usize) -> Self::Lane {
+        self.map(|part| part.lane(lane))
+    }
+    #[inline]
+    fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
+        self.iter_mut().zip(value).for_each(|(part, value)| part.set_lane(lane, value));
+    }
+    #[inline]
+    fn finite(&self) -> T::Mask {
+        self.iter().fold(T::Mask::everywhere(), |finite, part| finite & part.finite())
     }
 }
 
@@ -114,6 +240,8 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
 macro_rules! tuple {
     ($($name:ident . $index:tt),*) => {
         impl<T: Scalar, $($name: Space<T>),*> Space<T> for ($($name,)*) {
+            type Lane = ($($name::Lane,)*);
+
             #[inline]
             fn all(&self, _visit: impl Fn(T) -> bool + Copy) -> bool {
                 true $(& self.$index.all(_visit))*
@@ -126,12 +254,29 @@ macro_rules! tuple {
             }
             #[inline]
             #[allow(clippy::unused_unit)] // of the tuple without parts
-            fn origin() -> Self {
-                ($($name::origin(),)*)
+            fn filled(_value: T) -> Self {
+                ($($name::filled(_value),)*)
             }
             #[inline]
             fn distance_squared(&self, _other: &Self) -> T {
                 T::zero() $(+ self.$index.distance_squared(&_other.$index))*
+            }
+            #[inline]
+            fn sum(&self) -> T {
+                T::zero() $(+ self.$index.sum())*
+            }
+            #[inline]
+            #[allow(clippy::unused_unit)] // of the tuple without parts
+            fn lane(&self, _lane: usize) -> Self::Lane {
+                ($(self.$index.lane(_lane),)*)
+            }
+            #[inline]
+            fn set_lane(&mut self, _lane: usize, _value: &Self::Lane) {
+                $(self.$index.set_lane(_lane, &_value.$index);)*
+            }
+            #[inline]
+            fn finite(&self) -> T::Mask {
+                T::Mask::everywhere() $(& self.$index.finite())*
             }
         }
     };
@@ -146,6 +291,23 @@ tuple!(A.0, B.1, C.2, D.3, E.4);
 tuple!(A.0, B.1, C.2, D.3, E.4, F.5);
 tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6);
 tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
+
+/// f(A), lane by lane: for what decides by comparisons which way to go.
+#[inline]
+pub(crate) fn by_lane<T: Scalar, const R: usize, const C: usize>(
+    a: &SMatrix<T, R, C>,
+    f: impl Fn(&SMatrix<T::Lane, R, C>) -> SMatrix<T::Lane, R, C>,
+) -> SMatrix<T, R, C> {
+    let mut value = *a;
+    (0..T::LANES).for_each(|lane| set_lane(&mut value, lane, &f(&lane_of(a, lane))));
+    value
+}
+
+/// The first error of a check that is made lane by lane.
+#[inline]
+pub(crate) fn check_lanes<T: Scalar>(check: impl FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {
+    (0..T::LANES).try_for_each(check)
+}
 
 #[cfg(test)]
 mod tests {

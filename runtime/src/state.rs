@@ -1,6 +1,6 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
-use crate::{Clebsch, Clock, Time};
+use crate::{Clebsch, Clock, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
@@ -36,7 +36,28 @@ impl<S: Clebsch> State<S> {
     pub fn into_parts(self) -> (S::Configuration, S::Momentum) {
         (self.configuration, self.momentum)
     }
+
+    /// (q, N) of the body in lane `lane`, where the scalar has lanes.
+    #[inline]
+    pub fn lane(&self, lane: usize) -> Body<S> {
+        (self.configuration.lane(lane), self.momentum.lane(lane))
+    }
+
+    /// Takes lane `lane` of another state.
+    pub(crate) fn take_lane(&mut self, lane: usize, other: &Self) {
+        self.time.take_lane(lane, &other.time);
+        self.configuration.set_lane(lane, &other.configuration.lane(lane));
+        self.momentum.set_lane(lane, &other.momentum.lane(lane));
+        self.impulse.set_lane(lane, &other.impulse.lane(lane));
+        self.h.set_lane(lane, &Space::lane(&other.h, lane));
+    }
 }
+
+/// (q, N) of one body: of the single one, or of that in a lane.
+pub type Body<S> = (
+    <<S as Clebsch>::Configuration as Space<<S as Clebsch>::Scalar>>::Lane,
+    <<S as Clebsch>::Momentum as Space<<S as Clebsch>::Scalar>>::Lane,
+);
 
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> State<S> {
     /// The time t of the configuration, in the unit of the step size.

@@ -2,6 +2,7 @@
 
 use crate::boundary::shortest;
 use crate::linear::{eliminate, rows};
+use crate::space::{lane_of, set_lane};
 use crate::stepper::{check_configuration, check_momentum, check_on_orbit as on_orbit};
 use crate::tangent::{of_edge, times};
 use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
@@ -45,7 +46,11 @@ where
 /// The shortest η with GᵀG η = Gᵀ(q⁺ − q).
 #[inline]
 pub fn displacement<T: Scalar, const M: usize>(metric: &SMatrix<T, M, M>, approach: &SVector<T, M>) -> SVector<T, M> {
-    shortest(metric, approach)
+    let mut displacement = *approach;
+    for lane in 0..T::LANES {
+        set_lane(&mut displacement, lane, &shortest(&lane_of(metric, lane), &lane_of(approach, lane)));
+    }
+    displacement
 }
 
 /// (a, b)

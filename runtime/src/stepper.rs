@@ -1,9 +1,11 @@
 //! A system with a step size: what a person integrates with.
 
+mod each;
 mod formulas;
 mod step_size;
 
-use crate::{Clebsch, Clock, Conserves, CotangentState, Error, Scalar, Space, State, Time, Trajectory};
+use crate::space::check_lanes;
+use crate::{Clebsch, Clock, Conserves, CotangentState, Error, Mask, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
 
 /// A system, a step size and what no step changes, computed once.
@@ -19,9 +21,10 @@ pub struct Stepper<S: Clebsch> {
 impl<S: Clebsch> Stepper<S> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
-        if !h.is_finite() || h == S::Scalar::zero() {
-            return Err(Error::StepSize { value: h.to_f64() });
-        }
+        check_lanes::<S::Scalar>(|lane| match h.lane(lane) {
+            h if h.is_finite() && h != Zero::zero() => Ok(()),
+            h => Err(Error::StepSize { value: h.to_f64() }),
+        })?;
         let constants = system.constants(h)?;
         Ok(Self { system, h, constants })
     }
@@ -64,7 +67,7 @@ impl<S: Clebsch> Stepper<S> {
     ///
     /// # Errors
     /// [`Error::Unsolvable`] where the step is too long for the momentum, [`Error::NotFinite`] where the potential gave
-    /// NaN or numbers overflowed, [`Error::NotConverged`].
+    /// NaN or numbers overflowed, [`Error::NotConverged`]. Where the scalar has lanes: [`Error::InLane`].
     // a call hands states through memory, which costs as much as half of a short step; long ones stay calls within
     #[inline(always)]
     pub fn step(&self, state: &State<S>) -> Result<State<S>, Error> {
@@ -83,17 +86,14 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        let State { time, configuration, momentum, .. } = state;
-        let impulse = self.impulse_of(state);
-        let (configuration, momentum, impulse) =
-            match self.system.step(&self.constants, time.now(), configuration, momentum, &impulse, u) {
-                Ok(next) => next,
-                Err(error) => return Err(error.with_step_size(self.h.to_f64())),
-            };
-        if !(configuration.is_finite() & momentum.is_finite()) {
-            return Err(Error::NotFinite { name: "the state after the step" });
+        let next = match self.attempt(state, u) {
+            Ok(next) => next,
+            Err(error) => return Err(whole_or_lane::<S::Scalar>(0, error)),
+        };
+        if !(next.configuration.is_finite() & next.momentum.is_finite()) {
+            return Err(self.beyond(next.configuration.finite() & next.momentum.finite()));
         }
-        Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
+        Ok(next)
     }
 
     /// The state after `steps` steps.
@@ -110,22 +110,54 @@ impl<S: Clebsch> Stepper<S> {
             self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, momentum, &impulse, &none);
         let (configuration, momentum, impulse) = match advanced {
             Ok(next) => next,
-            Err(error) => return Err(error.with_step_size(self.h.to_f64())),
+            Err(error) => return Err(whole_or_lane::<S::Scalar>(0, error.with_step_size(self.h.to_f64()))),
         };
         if !(configuration.is_finite() & momentum.is_finite()) {
-            return Err(Error::NotFinite { name: "the state after the step" });
+            return Err(self.beyond(configuration.finite() & momentum.finite()));
         }
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
         Ok(State { time, configuration, momentum, impulse, h: self.h })
     }
 
-    /// The impulse that a state brings along, or a new one where a stepper of another step size has made it.
+    /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN.
+    ///
+    /// # Errors
+    /// Where no lane has a solution, the error of the first whose momentum is finite.
+    #[inline(always)]
+    fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+        self.attempt_with(state, &self.impulse_of(state), u)
+    }
+
+    /// The same with the impulse at the configuration.
+    ///
+    /// # Errors
+    /// Those of [`attempt`](Self::attempt).
+    #[inline(always)]
+    pub(crate) fn attempt_with(&self, state: &State<S>, impulse: &S::Impulse, u: &S::Input) -> Result<State<S>, Error> {
+        let State { time, configuration, momentum, .. } = state;
+        match self.system.step(&self.constants, time.now(), configuration, momentum, impulse, u) {
+            Ok((configuration, momentum, impulse)) => {
+                Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
+            }
+            Err(error) => Err(error.with_step_size(self.h.to_f64())),
+        }
+    }
+
+    /// The error of a step whose state is finite in these lanes alone.
+    #[cold]
+    fn beyond(&self, finite: <S::Scalar as Scalar>::Mask) -> Error {
+        let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
+        whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the state after the step" })
+    }
+
+    /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
     #[inline]
     fn impulse_of(&self, state: &State<S>) -> S::Impulse {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
-        self.system.impulse(&self.constants, state.time.now(), &state.configuration)
+        let anew = self.system.impulse(&self.constants, state.time.now(), &state.configuration);
+        if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
@@ -138,10 +170,12 @@ impl<S: Clebsch> Stepper<S> {
         let (configuration, covector) =
             match self.system.step_symmetric(&self.constants, time.now(), configuration, covector) {
                 Ok(next) => next,
-                Err(error) => return Err(error.with_step_size(self.h.to_f64())),
+                Err(error) => {
+                    return Err(whole_or_lane::<S::Scalar>(0, error.with_step_size(self.h.to_f64())));
+                }
             };
         if !(configuration.is_finite() & covector.is_finite()) {
-            return Err(Error::NotFinite { name: "the state after the step" });
+            return Err(self.beyond(configuration.finite() & covector.finite()));
         }
         Ok(CotangentState { time: time.after_step(self.h), configuration, covector })
     }
@@ -214,6 +248,20 @@ impl<S: Clebsch> Stepper<S> {
     }
 }
 
+/// The impulse `kept` in the lanes of the mask, `anew` in the others.
+#[cold]
+#[inline(never)]
+fn kept_in_lanes<T: Scalar, I: Space<T>>(mut anew: I, kept: &I, mask: T::Mask) -> I {
+    let lanes = (0..T::LANES).filter(|&lane| mask.lane(lane));
+    lanes.for_each(|lane| anew.set_lane(lane, &kept.lane(lane)));
+    anew
+}
+
+/// The error itself where the scalar is a single number, else the lane.
+fn whole_or_lane<T: Scalar>(lane: usize, error: Error) -> Error {
+    if T::LANES == 1 { error } else { Error::InLane { lane } }
+}
+
 /// q is finite and on its orbit, up to √ε.
 pub(crate) fn check_configuration<S: Clebsch>(system: &S, q: &S::Configuration) -> Result<(), Error> {
     check_on_orbit(q, system.orbit_defect(q))
@@ -224,11 +272,14 @@ pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result
     if !q.is_finite() {
         return Err(Error::NotFinite { name: "the configuration" });
     }
-    let tolerance = T::EPSILON.sqrt();
-    if defect <= tolerance {
-        return Ok(());
-    }
-    Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+    let tolerance = T::Lane::EPSILON.sqrt();
+    check_lanes::<T>(|lane| {
+        let defect = defect.lane(lane);
+        if defect <= tolerance {
+            return Ok(());
+        }
+        Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+    })
 }
 
 /// N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
@@ -238,11 +289,14 @@ pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &
     }
     let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
     let violation = system.isotropy_defect(q, mu);
-    // Written so that NaN is a violation.
-    if !matches!(violation.partial_cmp(&tolerance), Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)) {
-        return Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() });
-    }
-    Ok(())
+    check_lanes::<S::Scalar>(|lane| {
+        let (violation, tolerance) = (violation.lane(lane), tolerance.lane(lane));
+        // Written so that NaN is a violation.
+        if violation <= tolerance {
+            return Ok(());
+        }
+        Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() })
+    })
 }
 
 /// Where the cost or the potential depends on the time.

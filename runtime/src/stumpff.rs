@@ -1,6 +1,6 @@
 //! The functions of Stumpff, by which closed forms of exponentials are written without a case for small angles.
 
-use crate::Scalar;
+use crate::{Real, Scalar};
 
 /// c_k(s) = Σ_j (−s)ʲ/(k + 2j)! for k ≤ 7: c₀ = cos √s, c₁ = sin √s/√s, and cosh, sinh for negative s.
 ///
@@ -13,6 +13,10 @@ use crate::Scalar;
 ///
 /// Source: Stumpff, *Himmelsmechanik* I, 1959, section V.
 pub fn stumpff<T: Scalar>(k: u32, s: T) -> T {
+    T::from_lanes(|lane| stumpff_of_one(k, s.lane(lane)))
+}
+
+fn stumpff_of_one<T: Real>(k: u32, s: T) -> T {
     let switch = if k < 3 { T::one() } else { T::from_f64(16.0) };
     if s.abs() <= switch { series(k, s) } else { closed(k, s) }
 }
@@ -20,22 +24,26 @@ pub fn stumpff<T: Scalar>(k: u32, s: T) -> T {
 /// More terms than any precision asks for: 16⁴⁰/83! is 10⁻⁷⁶.
 const TERMS: u32 = 40;
 
-/// Terms until they cannot be seen.
-fn series<T: Scalar>(k: u32, s: T) -> T {
+/// Terms until they, and their derivatives, cannot be seen.
+pub(crate) fn series<T: Real>(k: u32, s: T) -> T {
     let mut term = inverse_factorial::<T>(k);
     let mut sum = term;
+    let mut derivatives = T::DERIVATIVES;
     for j in 1..=TERMS {
         let n = i64::from(k + 2 * j);
         term = -term * s / T::from_f64((n * (n - 1)) as f64);
         sum += term;
         if term.abs() <= T::EPSILON * T::from_ratio(1, 8) * sum.abs() {
-            break;
+            if derivatives == 0 {
+                break;
+            }
+            derivatives -= 1;
         }
     }
     sum
 }
 
-fn closed<T: Scalar>(k: u32, s: T) -> T {
+fn closed<T: Real>(k: u32, s: T) -> T {
     let root = s.abs().sqrt();
     let (even, odd) = if s > T::zero() { (root.cos(), root.sin() / root) } else { (root.cosh(), root.sinh() / root) };
     let (mut value, mut index) = if k.is_multiple_of(2) { (even, 0) } else { (odd, 1) };
@@ -47,7 +55,7 @@ fn closed<T: Scalar>(k: u32, s: T) -> T {
 }
 
 /// 1/k!
-fn inverse_factorial<T: Scalar>(k: u32) -> T {
+fn inverse_factorial<T: Real>(k: u32) -> T {
     T::one() / (2..=k).fold(T::one(), |product, factor| product * T::from_f64(f64::from(factor)))
 }
 

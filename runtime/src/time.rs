@@ -1,6 +1,6 @@
 //! The time of a state: nothing for autonomous systems, a clock for the others.
 
-use crate::Scalar;
+use crate::{Scalar, Space};
 use core::fmt::Debug;
 
 /// What a state knows of the time: [`Clock`] where the cost or the potential depends on it, else `()`, which costs nothing.
@@ -11,6 +11,8 @@ pub trait Time<T: Scalar>: Copy + Debug + PartialEq {
     fn now(&self) -> T;
     /// The time after a step of size h.
     fn after_step(&self, h: T) -> Self;
+    /// Takes lane `lane` of `other`.
+    fn take_lane(&mut self, lane: usize, other: &Self);
 }
 
 impl<T: Scalar> Time<T> for () {
@@ -24,6 +26,9 @@ impl<T: Scalar> Time<T> for () {
 
     #[inline]
     fn after_step(&self, _h: T) -> Self {}
+
+    #[inline]
+    fn take_lane(&mut self, _lane: usize, _other: &Self) {}
 }
 
 /// A time to which steps are added without drift: after k steps of size h from t₀ it shows t₀ + kh to the last place.
@@ -63,6 +68,12 @@ impl<T: Scalar> Time<T> for Clock<T> {
         let (sum, lost) = exact_sum(self.now, h);
         let (now, carry) = exact_sum(sum, self.carry + lost);
         Self { now, carry }
+    }
+
+    #[inline]
+    fn take_lane(&mut self, lane: usize, other: &Self) {
+        self.now.set_lane(lane, &Space::lane(&other.now, lane));
+        self.carry.set_lane(lane, &Space::lane(&other.carry, lane));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Node;
 use super::pivot::Curvature;
 use super::sweep::Problem;
-use crate::{Scalar, Space, Variational};
+use crate::{Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
@@ -17,7 +17,7 @@ const CORRECTIONS: usize = 3;
 /// The motions of the vertices of a coarse path, q_0 first.
 pub(super) type Motions<S, const M: usize> = [SVector<<S as crate::Clebsch>::Scalar, M>; COARSE + 1];
 
-impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least.
     ///
     /// The path has as many steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where
@@ -54,7 +54,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
 
 /// The motions of the vertices of a path of so many edges after the first, one after the other: cubics through those of the four coarse
 /// vertices about each.
-pub(super) fn interpolated<T: Scalar, const M: usize>(
+pub(super) fn interpolated<T: Real, const M: usize>(
     motions: &[SVector<T, M>; COARSE + 1],
     edges: usize,
 ) -> impl FnMut(usize) -> SVector<T, M> {

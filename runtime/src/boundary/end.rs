@@ -2,7 +2,7 @@
 
 use crate::eigen::Spectrum;
 use crate::space::larger;
-use crate::{EndpointExpansion, Scalar, Space, Variational};
+use crate::{EndpointExpansion, Real, Space, Variational};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -27,7 +27,7 @@ pub(super) struct End<T, const M: usize> {
     pub curvature: Option<SMatrix<T, M, M>>,
 }
 
-impl<T: Scalar, const M: usize> End<T, M> {
+impl<T: Real, const M: usize> End<T, M> {
     /// The end of a path at `q`.
     ///
     /// The kernel is of eigenvalues below √ε of the largest.
@@ -111,7 +111,7 @@ impl<T: Scalar, const M: usize> End<T, M> {
 /// A⁻¹b by L Δ Lᵀ; `None` where a pivot is below √ε of its diagonal.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
-fn regular<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
+fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
     let mut l: [[T; M]; M] = from_fn(|i| from_fn(|j| a[(i, j)]));
     let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));
     let mut x: [T; M] = from_fn(|i| b[i]);
@@ -139,7 +139,7 @@ fn regular<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -
 
 /// The smallest x with A x = b, for a symmetric A with no negative eigenvalue.
 #[inline]
-pub(crate) fn shortest<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> SVector<T, M> {
+pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> SVector<T, M> {
     match regular(a, b) {
         Some(x) => x,
         None => singular(a, b).0,
@@ -148,7 +148,7 @@ pub(crate) fn shortest<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVec
 
 /// A⁺b and the projector to the kernel of A.
 #[cold]
-fn singular<T: Scalar, const M: usize>(
+fn singular<T: Real, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {

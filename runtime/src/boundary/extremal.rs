@@ -2,14 +2,14 @@
 
 use super::Node;
 use super::sweep::time_after;
-use crate::{State, Stepper, Time, Variational};
+use crate::{Real, State, Stepper, Time, Variational};
 use core::fmt::{self, Debug, Formatter};
 use core::iter::FusedIterator;
 use nalgebra::SVector;
 
 /// A path between fixed endpoints on which the action is critical, solved to round-off by
 /// [`Boundary::solve`](crate::Boundary::solve). The nodes that it was solved in hold the path itself.
-pub struct Extremal<'a, S: Variational<M>, const M: usize> {
+pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub(super) stepper: &'a Stepper<S>,
     pub(super) path: &'a [Node<S, M>],
     pub(super) time: S::Scalar,
@@ -22,7 +22,7 @@ pub struct Extremal<'a, S: Variational<M>, const M: usize> {
     pub(super) after: SVector<S::Scalar, M>,
 }
 
-impl<'a, S: Variational<M>, const M: usize> Extremal<'a, S, M> {
+impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
     /// The action Σ ℓd, in the unit of ℓd: J·s.
     pub fn action(&self) -> S::Scalar {
         self.action
@@ -91,7 +91,7 @@ impl<'a, S: Variational<M>, const M: usize> Extremal<'a, S, M> {
 }
 
 /// Without the path, which is long.
-impl<S: Variational<M>, const M: usize> Debug for Extremal<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Debug for Extremal<'_, S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_struct("Extremal")
             .field("action", &self.action)
@@ -105,12 +105,12 @@ impl<S: Variational<M>, const M: usize> Debug for Extremal<'_, S, M> {
 
 /// The states of an [`Extremal`].
 #[derive(Debug)]
-pub struct States<'e, 'a, S: Variational<M>, const M: usize> {
+pub struct States<'e, 'a, S: Variational<M, Scalar: Real>, const M: usize> {
     extremal: &'e Extremal<'a, S, M>,
     next: usize,
 }
 
-impl<S: Variational<M>, const M: usize> Iterator for States<'_, '_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Iterator for States<'_, '_, S, M> {
     type Item = State<S>;
 
     fn next(&mut self) -> Option<State<S>> {
@@ -120,4 +120,4 @@ impl<S: Variational<M>, const M: usize> Iterator for States<'_, '_, S, M> {
     }
 }
 
-impl<S: Variational<M>, const M: usize> FusedIterator for States<'_, '_, S, M> {}
+impl<S: Variational<M, Scalar: Real>, const M: usize> FusedIterator for States<'_, '_, S, M> {}

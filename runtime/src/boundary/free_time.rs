@@ -3,14 +3,14 @@
 use super::sweep::Problem;
 use super::{Boundary, Guess, Node};
 use crate::bracket::{Bracket, Sample};
-use crate::{Error, Scalar, Stepper, Variational};
+use crate::{Error, Real, Scalar, Stepper, Variational};
 use core::ops::RangeInclusive;
 use num_traits::{One, Zero};
 
 /// Step sizes that are tried.
 const TRIALS: usize = 60;
 
-impl<S: Variational<M>, const M: usize> Boundary<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
     /// The step size in `steps`, and with it the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is
     /// critical: where the energy is ∂φ/∂t. It is looked for where the sum falls, from the step size of the stepper on, and at a limit
     /// the sum may fall beyond it.
@@ -61,7 +61,7 @@ impl<S: Variational<M>, const M: usize> Boundary<'_, S, M> {
     }
 }
 
-impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     /// The derivative of the sum by h at a fixed path.
     fn slope(&self, path: &[Node<S, M>], end: &S::Configuration, step: S::Scalar) -> Result<Sample<S::Scalar>, Error> {
         let [longer, shorter] = [self.h + step, self.h - step].map(|h| -> Result<S::Scalar, Error> {

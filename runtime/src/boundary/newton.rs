@@ -6,7 +6,7 @@ use super::pivot::Curvature;
 use super::sweep::Problem;
 use super::vertex::Summary;
 use crate::space::larger;
-use crate::{Error, Scalar, Variational};
+use crate::{Error, Real, Scalar, Variational};
 use num_traits::{One, Zero};
 
 /// Backward sweeps of which one solution may make use.
@@ -17,7 +17,7 @@ const HALVINGS: usize = 6;
 const DAMPING_LIMIT: f64 = 1e12;
 
 /// A path on which the action is critical.
-pub(super) struct Solved<S: Variational<M>, const M: usize> {
+pub(super) struct Solved<S: Variational<M, Scalar: Real>, const M: usize> {
     pub summary: Summary<S::Scalar, M>,
     pub end: S::Configuration,
     pub sweeps: u32,
@@ -30,7 +30,7 @@ struct Progress<T> {
     decrement: T,
 }
 
-impl<T: Scalar> Progress<T> {
+impl<T: Real> Progress<T> {
     /// Whether the correction takes so little from the action, √ε of it, that the action tells no more how good it was.
     fn is_near(&self) -> bool {
         self.size * self.size <= T::EPSILON.sqrt()
@@ -52,7 +52,7 @@ impl<T: Scalar> Progress<T> {
     }
 }
 
-impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
@@ -201,7 +201,7 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
 }
 
 /// The damping after a step: eight times less after a full one, eight times more after one of less than a quarter.
-fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
+fn adapted<T: Real>(damping: T, fraction: T) -> T {
     let (least, factor) = (T::from_ratio(1, 8), T::from_f64(8.0));
     if fraction >= T::one() {
         if damping > least { damping / factor } else { T::zero() }
@@ -217,7 +217,7 @@ fn adapted<T: Scalar>(damping: T, fraction: T) -> T {
 /// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of
 /// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
 #[inline]
-fn has_converged<T: Scalar, const M: usize>(
+fn has_converged<T: Real, const M: usize>(
     summary: &Summary<T, M>,
     before: Option<&Progress<T>>,
     closed: bool,
@@ -238,7 +238,7 @@ fn has_converged<T: Scalar, const M: usize>(
 
 /// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
 #[inline]
-fn is_last<T: Scalar, const M: usize>(summary: &Summary<T, M>, before: Option<&Progress<T>>) -> bool {
+fn is_last<T: Real, const M: usize>(summary: &Summary<T, M>, before: Option<&Progress<T>>) -> bool {
     let size = summary.size();
     let contraction = |before: &Progress<T>| size / before.size;
     size <= T::EPSILON.sqrt()
@@ -246,6 +246,6 @@ fn is_last<T: Scalar, const M: usize>(summary: &Summary<T, M>, before: Option<&P
 }
 
 /// The gap that is left where none of it can be closed.
-pub(super) fn unreachable<T: Scalar, const M: usize>(end: &End<T, M>) -> Error {
+pub(super) fn unreachable<T: Real, const M: usize>(end: &End<T, M>) -> Error {
     Error::Unreachable { distance: end.distance.to_f64() }
 }

@@ -1,6 +1,6 @@
 //! What the caller keeps for each edge of a path.
 
-use crate::{Clebsch, Variational};
+use crate::{Clebsch, Real, Variational};
 use core::fmt::{self, Debug, Formatter};
 use nalgebra::{SMatrix, SVector};
 
@@ -17,7 +17,7 @@ pub struct Node<S: Clebsch, const M: usize> {
     pub(super) motion: SVector<S::Scalar, M>,
 }
 
-impl<S: Variational<M>, const M: usize> Node<S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Node<S, M> {
     /// The edge that stays at `q`.
     pub(super) fn rest(system: &S, q: &S::Configuration) -> Self {
         let zero = SVector::from_element(num_traits::Zero::zero());

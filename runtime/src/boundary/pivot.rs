@@ -1,6 +1,6 @@
 //! The symmetric M×M pivot of a vertex, and what is made of it: gain and shift.
 
-use crate::Scalar;
+use crate::Real;
 use crate::eigen::Spectrum;
 use crate::linear::rows;
 use crate::space::larger;
@@ -40,7 +40,7 @@ pub(super) enum Curvature<T> {
     Mirrored { damping: T },
 }
 
-impl<T: Scalar> Curvature<T> {
+impl<T: Real> Curvature<T> {
     pub fn is_mirrored(self) -> bool {
         matches!(self, Self::Mirrored { .. })
     }
@@ -70,7 +70,7 @@ impl<T: Scalar> Curvature<T> {
 /// D = L Δ Lᵀ without pivoting where D is definite: M³/6 + M²(M + 1) multiplications, M divisions; for M = 3 from cofactors. Else from
 /// eigenvalues. Inlined, for what it answers is taken apart at once.
 #[inline(always)]
-pub(super) fn solve<T: Scalar, const M: usize>(
+pub(super) fn solve<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
     g: &SVector<T, M>,
@@ -101,7 +101,7 @@ pub(super) fn solve<T: Scalar, const M: usize>(
 /// Errors of D⁻¹C relative to it are those of elimination, ε times the condition number of D.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // As below.
-fn cofactors<T: Scalar, const M: usize>(
+fn cofactors<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
     g: &SVector<T, M>,
@@ -155,7 +155,7 @@ fn cofactors<T: Scalar, const M: usize>(
 /// matrix, for such loops are unrolled where M is small, and matrices stay in registers.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
-fn definite<T: Scalar, const M: usize>(
+fn definite<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
     g: &SVector<T, M>,
@@ -192,7 +192,7 @@ fn definite<T: Scalar, const M: usize>(
     Some(feedback.filled(&gain, &shift, g, hessian, gradient))
 }
 
-impl<T: Scalar, const M: usize> Feedback<'_, T, M> {
+impl<T: Real, const M: usize> Feedback<'_, T, M> {
     /// Of a definite pivot.
     #[inline(always)]
     fn filled(
@@ -213,7 +213,7 @@ impl<T: Scalar, const M: usize> Feedback<'_, T, M> {
 /// L below the diagonal and the reciprocals of Δ, where all of Δ has the sign of `sign`.
 #[inline]
 #[allow(clippy::needless_range_loop)] // As above.
-fn factors<T: Scalar, const M: usize>(d: &[[T; M]; M], sign: T) -> Option<([[T; M]; M], [T; M])> {
+fn factors<T: Real, const M: usize>(d: &[[T; M]; M], sign: T) -> Option<([[T; M]; M], [T; M])> {
     let (mut l, mut reciprocals) = (*d, [T::zero(); M]);
     let mut is_definite = true;
     for k in 0..M {
@@ -234,13 +234,13 @@ fn factors<T: Scalar, const M: usize>(d: &[[T; M]; M], sign: T) -> Option<([[T; 
 
 /// Σ_k
 #[inline]
-fn sum<T: Scalar, const M: usize>(term: impl Fn(usize) -> T) -> T {
+fn sum<T: Real, const M: usize>(term: impl Fn(usize) -> T) -> T {
     (1..M).fold(term(0), |sum, k| sum + term(k))
 }
 
 /// The matrix of these rows.
 #[inline]
-fn matrix<T: Scalar, const M: usize>(rows: &[[T; M]; M]) -> SMatrix<T, M, M> {
+fn matrix<T: Real, const M: usize>(rows: &[[T; M]; M]) -> SMatrix<T, M, M> {
     SMatrix::from_fn(|i, j| rows[i][j])
 }
 
@@ -249,7 +249,7 @@ const MIRRORED: f64 = 1e-4;
 
 /// [`solve`] from eigenvalues. Those that are nothing beside the largest are treated as that round-off, not as zero.
 #[cold]
-fn indefinite<T: Scalar, const M: usize>(
+fn indefinite<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
     g: &SVector<T, M>,

@@ -2,7 +2,7 @@
 
 use super::{Boundary, Guess, Node};
 use crate::space::larger;
-use crate::{Error, Scalar, Variational};
+use crate::{Error, Real, Scalar, Variational};
 use core::cmp::Ordering;
 use nalgebra::SVector;
 use num_traits::Zero;
@@ -25,7 +25,7 @@ const QUARTERS: [f64; 4] = [1.0, 3.0, 5.0, 7.0];
 /// Momenta that differ by less, relative to their size, are those of one extremal.
 const APART: f64 = 1e-6;
 
-impl<S: Variational<M>, const M: usize> Boundary<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
     /// Extremals from `start` to `target` in order of their action, at most K: the shortest way, and what is found from velocities
     /// along each direction of the algebra and between each two, both ways, through one to seven quarters of a turn in the time of the path.
     ///
@@ -97,7 +97,7 @@ impl<S: Variational<M>, const M: usize> Boundary<'_, S, M> {
 }
 
 /// Puts a way in its place, if it is none of those that are known; of more than K the one with the largest action is dropped.
-fn insert<T: Scalar, const M: usize, const K: usize>(ways: &mut [Option<Way<T, M>>; K], way: Way<T, M>) {
+fn insert<T: Real, const M: usize, const K: usize>(ways: &mut [Option<Way<T, M>>; K], way: Way<T, M>) {
     let is_known = |known: &Way<T, M>| {
         let apart = known.momentum - way.momentum;
         let size = larger(known.momentum.dot(&known.momentum), way.momentum.dot(&way.momentum));

@@ -15,13 +15,13 @@ use super::Node;
 use super::end::End;
 use super::pivot::{Curvature, Feedback};
 use super::vertex::{Pending, Summary};
-use crate::{Edge, Momenta, Scalar, Space, Variational};
+use crate::{Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;
 
 /// Fixed endpoints for a system and a step size.
 #[derive(Clone, Copy)]
-pub(super) struct Problem<'a, S: Variational<M>, const M: usize> {
+pub(super) struct Problem<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub system: &'a S,
     pub h: S::Scalar,
     pub constants: &'a S::Constants,
@@ -34,7 +34,7 @@ pub(super) struct Problem<'a, S: Variational<M>, const M: usize> {
     pub sign: S::Scalar,
 }
 
-impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     /// What is known of a path of so many edges that ends at `q`.
     #[inline]
     pub fn end(&self, q: &S::Configuration, edges: usize) -> End<S::Scalar, M> {
@@ -208,6 +208,10 @@ impl<S: Variational<M>, const M: usize> Problem<'_, S, M> {
 
 /// t₀ + kh; t₀ where the time does not matter.
 #[inline]
-pub(super) fn time_after<S: Variational<M>, const M: usize>(start: S::Scalar, h: S::Scalar, steps: usize) -> S::Scalar {
+pub(super) fn time_after<S: Variational<M, Scalar: Real>, const M: usize>(
+    start: S::Scalar,
+    h: S::Scalar,
+    steps: usize,
+) -> S::Scalar {
     if size_of::<S::Time>() == 0 { start } else { start + S::Scalar::from_f64(steps as f64) * h }
 }

@@ -4,7 +4,7 @@ use super::end::End;
 use super::pivot::{Curvature, Feedback, Solution, solve};
 use crate::linear::rows;
 use crate::space::larger;
-use crate::{Edge, Momenta, Scalar};
+use crate::{Edge, Momenta, Real};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -41,7 +41,7 @@ pub(super) struct Pending<T, const M: usize> {
     before: SVector<T, M>,
 }
 
-impl<T: Scalar, const M: usize> Summary<T, M> {
+impl<T: Real, const M: usize> Summary<T, M> {
     /// The size of Newton's correction relative to the path, in the norm of the Hessian.
     ///
     /// It is compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
@@ -179,7 +179,7 @@ impl<T: Scalar, const M: usize> Summary<T, M> {
     }
 }
 
-impl<T: Scalar, const M: usize> Pending<T, M> {
+impl<T: Real, const M: usize> Pending<T, M> {
     /// After the elimination of the vertex where `edge` ends.
     #[inline]
     pub fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
@@ -195,7 +195,7 @@ impl<T: Scalar, const M: usize> Pending<T, M> {
 /// Adds a multiple of the stiffness of the slowest variation of a path of N edges, π²/N² of the mean of the diagonal of ∂F⁺ℓd/∂η′, to
 /// the diagonal of a pivot: a finer path of the same motion is damped as much.
 #[cold]
-fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edges: T, damping: T) {
+fn damp<T: Real, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edges: T, damping: T) {
     let slowest = T::from_f64(10.0) / (edges * edges);
     for (i, row) in pivot.iter_mut().enumerate() {
         row[i] += damping * slowest * edge.after_by_end[(i, i)].abs();
@@ -204,13 +204,13 @@ fn damp<T: Scalar, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, e
 
 /// H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ by rows
 #[inline]
-fn coupling<T: Scalar, const M: usize>(edge: &Edge<T, M>) -> [[T; M]; M] {
+fn coupling<T: Real, const M: usize>(edge: &Edge<T, M>) -> [[T; M]; M] {
     from_fn(|i| from_fn(|j| -edge.before_by_end[(j, i)]))
 }
 
 /// The lower triangle of the symmetric part of A by rows, with 0 above.
 #[inline]
-fn lower_half<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
+fn lower_half<T: Real, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
     let half = T::from_ratio(1, 2);
     let mut lower = [[T::zero(); M]; M];
     for (i, row) in lower.iter_mut().enumerate() {

@@ -12,7 +12,7 @@ use super::iterate::Iterate;
 use super::newton::Solved;
 use super::sweep::Problem;
 use super::{Stage, Target};
-use crate::{Controlled, Error, Space};
+use crate::{Controlled, Error, Real, Space};
 use nalgebra::SVector;
 use num_traits::Zero;
 
@@ -28,7 +28,7 @@ pub(super) enum Approach {
 /// Variations of the inputs from which the target is approached.
 const VARIATIONS: u32 = 3;
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// The critical plan near the guess that the stages hold; without their multipliers where those mislead, and from further away where
     /// there is none.
     ///

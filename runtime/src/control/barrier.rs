@@ -9,7 +9,7 @@
 use super::Stage;
 use super::sweep::Problem;
 use crate::space::larger;
-use crate::{Controlled, Scalar};
+use crate::{Controlled, Real, Scalar};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
@@ -24,7 +24,7 @@ const FIRST: f64 = 0.1;
 /// The last is this power of ε.
 const LAST: (i64, i64) = (3, 4);
 
-impl<T: Scalar> Barrier<T> {
+impl<T: Real> Barrier<T> {
     /// Without any.
     pub fn none() -> Self {
         Self { weight: T::zero() }
@@ -82,7 +82,7 @@ impl<T: Scalar> Barrier<T> {
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// Slacks of the plan, and by how much its bounds must be relaxed for them to be positive.
     pub fn relax(&self, plan: &mut [Stage<S, D, U, C>]) {
         let zero = S::Scalar::zero();

@@ -3,7 +3,7 @@
 use super::Target;
 use crate::eigen::Spectrum;
 use crate::space::larger;
-use crate::{Arrival, Controlled, Scalar, Space};
+use crate::{Arrival, Controlled, Real, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
@@ -32,7 +32,7 @@ pub(super) struct End<T, const D: usize> {
     pub scale: T,
 }
 
-impl<'a, X: Space<T>, T: Scalar, const D: usize> Goal<'a, X, T, D> {
+impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
     pub fn of<S, const U: usize, const C: usize>(system: &S, target: &'a Target<X>) -> Self
     where
         S: Controlled<D, U, C, Scalar = T, Place = X>,
@@ -120,7 +120,7 @@ impl<'a, X: Space<T>, T: Scalar, const D: usize> Goal<'a, X, T, D> {
     }
 }
 
-impl<T: Scalar, const D: usize> End<T, D> {
+impl<T: Real, const D: usize> End<T, D> {
     /// Whether the gap is round-off.
     pub fn is_closed(&self) -> bool {
         self.distance <= T::from_f64(256.0) * T::EPSILON * self.scale

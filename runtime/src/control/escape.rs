@@ -8,14 +8,14 @@
 use super::Stage;
 use super::search::Descent;
 use super::sweep::{Problem, Summary};
-use crate::{Controlled, Scalar};
+use crate::{Controlled, Real, Scalar};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
 /// Halvings of the first change, which would make the price smaller by a hundredth: what is looked for is the minimum next to the saddle.
 const HALVINGS: usize = 30;
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// Goes down from where a sweep with all curvature as it is found a direction to do so. Returns x_N; `None` where nothing gets smaller.
     #[cold]
     pub fn escape(

@@ -11,7 +11,7 @@ use super::newton::Solved;
 use super::sweep::Problem;
 use super::{Control, Optimum, Stage, Target};
 use crate::bracket::{Bracket, Sample};
-use crate::{Controlled, Error, Scalar};
+use crate::{Controlled, Error, Real, Scalar};
 use core::ops::RangeInclusive;
 use num_traits::Zero;
 
@@ -20,7 +20,7 @@ const TRIALS: usize = 60;
 /// Doublings of a first step size for which there is no plan.
 const DOUBLINGS: usize = 10;
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
     /// As [`solve`](Self::solve), with the step size in `steps` at which the least price is least, found from that of this control on:
     /// [`Optimum::step_size`]. At a limit the price may fall beyond it.
     ///
@@ -87,7 +87,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Con
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// dV/dh of a solution.
     fn slope(&self, plan: &[Stage<S, D, U, C>], last: &S::Place) -> Result<Sample<S::Scalar>, Error> {
         let t = self.time_after(plan.len());

@@ -1,7 +1,7 @@
 //! How far the inputs move the end: the Gramian, and the multipliers of the target that it answers for.
 
 use super::pivot::equilibrated;
-use crate::Scalar;
+use crate::Real;
 use crate::eigen::Spectrum;
 use nalgebra::{SMatrix, SVector};
 
@@ -16,7 +16,7 @@ const STIFFNESS: f64 = 4.0;
 /// Eigenvalues below so many units in the last place of the largest are those of directions that no input reaches.
 const UNITS: f64 = 256.0;
 
-impl<T: Scalar, const D: usize> Gramian<T, D> {
+impl<T: Real, const D: usize> Gramian<T, D> {
     /// Of a symmetric matrix.
     #[cold]
     pub fn of(gamma: &SMatrix<T, D, D>) -> Self {

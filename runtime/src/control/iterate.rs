@@ -6,7 +6,7 @@ use super::gramian::Gramian;
 use super::pivot::Curvature;
 use super::search::Made;
 use super::sweep::{Settings, Summary};
-use crate::Scalar;
+use crate::Real;
 use crate::space::larger;
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
@@ -76,7 +76,7 @@ pub(super) enum Verdict {
     Done,
 }
 
-impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
+impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// Before the first sweep; a barrier is chosen after it where none is given.
     pub fn new(last: X, multipliers: SVector<T, D>, barrier: Option<Barrier<T>>, distance: T) -> Self {
         let zero = T::zero();
@@ -316,7 +316,7 @@ impl<X, T: Scalar, const D: usize> Iterate<X, T, D> {
 }
 
 /// The damping after a step: eight times less after one that was taken at once, eight times more after one that was refused often.
-fn adapted<T: Scalar>(damping: T, refused: usize) -> T {
+fn adapted<T: Real>(damping: T, refused: usize) -> T {
     let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
     if refused == 0 {
         if damping > least { damping / factor } else { T::zero() }
@@ -329,6 +329,6 @@ fn adapted<T: Scalar>(damping: T, refused: usize) -> T {
 
 /// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
 /// of −Γ, less the number of conditions.
-pub(super) fn index<T: Scalar, const D: usize>(negative: usize, rank: usize, gramian: &Gramian<T, D>) -> usize {
+pub(super) fn index<T: Real, const D: usize>(negative: usize, rank: usize, gramian: &Gramian<T, D>) -> usize {
     (negative + gramian.positive()).saturating_sub(rank)
 }

@@ -10,7 +10,7 @@ use super::pivot::Curvature;
 use super::search::{Descent, Evidence};
 use super::sweep::{Problem, Settings, Summary};
 use crate::space::larger;
-use crate::{Controlled, Error, Scalar, Space};
+use crate::{Controlled, Error, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
@@ -24,7 +24,7 @@ const STIRS: u32 = 3;
 const STALLS: u32 = 8;
 
 /// A plan on which the price is critical.
-pub(super) struct Solved<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub(super) struct Solved<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub summary: Summary<S::Scalar, D, U>,
     pub last: S::Place,
     pub end: End<S::Scalar, D>,
@@ -32,7 +32,7 @@ pub(super) struct Solved<S: Controlled<D, U, C>, const D: usize, const U: usize,
     pub sweeps: u32,
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// The critical plan near the guess, a minimum where one is found, after at most [`SWEEPS`] more sweeps.
     ///
     /// # Errors
@@ -204,7 +204,7 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Pro
 }
 
 /// The size of a correction that is round-off. Slacks of active bounds have few digits.
-fn unit<T: Scalar>(steps: usize, bounds: usize) -> T {
+fn unit<T: Real>(steps: usize, bounds: usize) -> T {
     if bounds > 0 {
         T::EPSILON.powf(T::from_ratio(3, 5))
     } else {

@@ -2,13 +2,13 @@
 
 use super::Stage;
 use super::newton::Solved;
-use crate::Controlled;
+use crate::{Controlled, Real};
 use core::fmt::{self, Debug, Formatter};
 use nalgebra::SVector;
 
 /// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). The stages that it was solved
 /// in hold the plan itself.
-pub struct Optimum<'p, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     plan: &'p [Stage<S, D, U, C>],
     h: S::Scalar,
     price: S::Scalar,
@@ -20,7 +20,7 @@ pub struct Optimum<'p, S: Controlled<D, U, C>, const D: usize, const U: usize, c
     costate: SVector<S::Scalar, D>,
 }
 
-impl<'p, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Optimum<'p, S, D, U, C> {
+impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Optimum<'p, S, D, U, C> {
     pub(super) fn new(plan: &'p [Stage<S, D, U, C>], solved: Solved<S, D, U, C>, h: S::Scalar) -> Self {
         Self {
             plan,
@@ -88,7 +88,9 @@ impl<'p, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize>
 }
 
 /// Without the plan, which is long.
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Debug for Optimum<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Debug
+    for Optimum<'_, S, D, U, C>
+{
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_struct("Optimum")
             .field("price", &self.price)

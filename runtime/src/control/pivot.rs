@@ -1,6 +1,6 @@
 //! The symmetric U×U Hessian of one input, and what is done where it is not positive.
 
-use crate::Scalar;
+use crate::Real;
 use crate::eigen::Spectrum;
 use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
@@ -14,7 +14,7 @@ pub(super) enum Curvature<T> {
     Mirrored { damping: T },
 }
 
-impl<T: Scalar> Curvature<T> {
+impl<T: Real> Curvature<T> {
     /// The curvature as it is.
     pub fn kept() -> Self {
         Self::Kept { damping: T::zero() }
@@ -55,7 +55,7 @@ const UNITS: f64 = 16.0;
 /// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
 const MIRRORED: f64 = 1e-4;
 
-impl<T: Scalar, const U: usize> Pivot<T, U> {
+impl<T: Real, const U: usize> Pivot<T, U> {
     /// Of a symmetric matrix, of which only the lower triangle is read.
     #[inline]
     pub fn of(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Self {
@@ -103,7 +103,7 @@ impl<T: Scalar, const U: usize> Pivot<T, U> {
 
 /// L Δ Lᵀ where all pivots are positive.
 #[inline]
-fn triangular<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>) -> Option<Factors<T, U>> {
+fn triangular<T: Real, const U: usize>(h: &SMatrix<T, U, U>) -> Option<Factors<T, U>> {
     let mut l = *h;
     let mut reciprocals = SVector::<T, U>::from_element(T::zero());
     for k in 0..U {
@@ -129,7 +129,7 @@ fn triangular<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>) -> Option<Factors
 
 /// From the eigenvalues of the matrix with its diagonal scaled to ±1. Directions without any curvature are left alone.
 #[cold]
-fn spectral<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Pivot<T, U> {
+fn spectral<T: Real, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Pivot<T, U> {
     let (spectrum, scale) = equilibrated(h);
     let largest = spectrum.largest();
     let noise = T::from_f64(UNITS) * T::EPSILON * largest;
@@ -154,7 +154,7 @@ fn spectral<T: Scalar, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvatur
 /// The eigenvalues of S A S with S = diag |A|^(−1/2), and the diagonal of S; rows that are nothing beside the others count as 0.
 ///
 /// The choice of units of the rows changes neither.
-pub(super) fn equilibrated<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>) -> (Spectrum<T, M>, SVector<T, M>) {
+pub(super) fn equilibrated<T: Real, const M: usize>(a: &SMatrix<T, M, M>) -> (Spectrum<T, M>, SVector<T, M>) {
     let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)].abs()));
     let nothing = T::EPSILON * T::EPSILON.sqrt() * largest;
     let scale = SVector::<T, M>::from_fn(|i, _| {

@@ -1,7 +1,7 @@
 //! The quadratic model of one step in the backward sweep, and its elimination.
 
 use super::pivot::{Curvature, Fall, Pivot};
-use crate::{BoundsExpansion, EndpointExpansion, Expansion, Scalar};
+use crate::{BoundsExpansion, EndpointExpansion, Expansion, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// The price of a step and of all that follow, to second order in δ and δu: gradient and Hessian.
@@ -38,7 +38,7 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
     pub fall: Option<Fall<T, U>>,
 }
 
-impl<T: Scalar, const D: usize> Value<T, D> {
+impl<T: Real, const D: usize> Value<T, D> {
     /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e)
     pub fn of_end(
         endpoint: &EndpointExpansion<T, D>,
@@ -55,7 +55,7 @@ impl<T: Scalar, const D: usize> Value<T, D> {
     }
 }
 
-impl<T: Scalar, const D: usize> Value<T, D> {
+impl<T: Real, const D: usize> Value<T, D> {
     /// φ + ½ w d² with the squared distance d² to the target, for configurations and for momenta.
     pub fn of_priced_end(
         endpoint: &EndpointExpansion<T, D>,
@@ -72,7 +72,7 @@ impl<T: Scalar, const D: usize> Value<T, D> {
     }
 }
 
-impl<T: Scalar, const D: usize, const U: usize> Quadratic<T, D, U> {
+impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
     /// Of one step, before the value of what follows.
     #[inline]
     pub fn of_step<X>(step: &Expansion<X, T, D, U>) -> Self {

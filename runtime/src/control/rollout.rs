@@ -4,7 +4,7 @@ use super::Stage;
 use super::barrier::Barrier;
 use super::sweep::Problem;
 use crate::space::larger;
-use crate::{Controlled, Error, Scalar, Space};
+use crate::{Controlled, Error, Real, Scalar, Space};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
@@ -24,7 +24,7 @@ pub(super) struct Rolled<X, T> {
     pub allowed: Option<T>,
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// The places that the inputs lead to. Returns x_N.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use super::gramian::Gramian;
 use super::rollout::Rolled;
 use super::sweep::{Problem, Settings, Summary};
 use crate::space::larger;
-use crate::{Controlled, Scalar};
+use crate::{Controlled, Real, Scalar};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
@@ -52,7 +52,7 @@ pub(super) struct Made<X, T, const D: usize> {
     pub refused: usize,
 }
 
-impl<'a, T: Scalar, const D: usize> Descent<'a, T, D> {
+impl<'a, T: Real, const D: usize> Descent<'a, T, D> {
     /// From what a sweep told.
     pub fn of<const U: usize>(
         summary: &Summary<T, D, U>,
@@ -99,7 +99,7 @@ impl<'a, T: Scalar, const D: usize> Descent<'a, T, D> {
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// Makes a part of the correction; `None` where none that is large enough helps.
     ///
     /// Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.

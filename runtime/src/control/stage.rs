@@ -1,12 +1,12 @@
 //! What the caller keeps for each step of a plan.
 
-use crate::Controlled;
+use crate::{Controlled, Real};
 use core::fmt::{self, Debug, Formatter};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 /// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
-pub struct Stage<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(super) place: S::Place,
     pub(super) input: SVector<S::Scalar, U>,
     /// The costates p_k and p_{k+1}.
@@ -34,7 +34,7 @@ pub(super) struct Trial<X, T, const U: usize, const C: usize> {
     pub slack: SVector<T, C>,
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
     /// The step from `x` without input.
     pub(super) fn rest(x: &S::Place) -> Self {
         let zero = S::Scalar::zero();
@@ -107,16 +107,16 @@ impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Sta
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Copy for Stage<S, D, U, C> {}
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Copy for Stage<S, D, U, C> {}
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Clone for Stage<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Clone for Stage<S, D, U, C> {
     #[inline]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Debug for Stage<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Debug for Stage<S, D, U, C> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_struct("Stage")
             .field("place", &self.place)

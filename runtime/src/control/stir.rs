@@ -2,7 +2,7 @@
 
 use super::Stage;
 use super::sweep::{Problem, Summary};
-use crate::{Controlled, Scalar};
+use crate::{Controlled, Real, Scalar};
 use nalgebra::SVector;
 use num_traits::Zero;
 
@@ -17,7 +17,7 @@ struct Pattern<T, const U: usize> {
 /// Doublings of the amplitudes that are tried.
 const SIZES: usize = 6;
 
-impl<T: Scalar, const U: usize> Pattern<T, U> {
+impl<T: Real, const U: usize> Pattern<T, U> {
     /// The inputs in the middle of a step: turning one way and, half as far and twice as fast, the other.
     fn at(&self, index: usize, steps: usize) -> SVector<T, U> {
         let half = T::from_ratio(1, 2);
@@ -31,7 +31,7 @@ impl<T: Scalar, const U: usize> Pattern<T, U> {
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// Adds the pattern, of several sizes and turning either way, that ends nearest to the target. Later attempts turn more often.
     #[cold]
     pub fn stir(

@@ -18,11 +18,11 @@ use super::gramian::Gramian;
 use super::pivot::{Curvature, Fall};
 use super::quadratic::{Policy, Quadratic, Value};
 use crate::space::larger;
-use crate::{Controlled, Error, Scalar, Space};
+use crate::{Controlled, Error, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A problem of optimal control.
-pub(super) struct Problem<'a, S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub system: &'a S,
     pub constants: &'a S::Constants,
     pub h: S::Scalar,
@@ -73,7 +73,7 @@ pub(super) struct Summary<T, const D: usize, const U: usize> {
     pub costate: SVector<T, D>,
 }
 
-impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
+impl<T: Real, const D: usize, const U: usize> Summary<T, D, U> {
     fn of_end(price: T, end: &End<T, D>, costate: SVector<T, D>) -> Self {
         Self {
             price,
@@ -109,7 +109,7 @@ impl<T: Scalar, const D: usize, const U: usize> Summary<T, D, U> {
     }
 }
 
-impl<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
     /// The time t₀ + kh.
     #[inline]
     pub fn time_after(&self, steps: usize) -> S::Scalar {

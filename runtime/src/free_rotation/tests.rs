@@ -264,8 +264,8 @@ proptest! {
         let free = body(moments, 0.2);
         let m = momentum.map(|component| component * free.scale);
         let whole = free.gibbs_vector(&Vector3::from(momentum)).expect("solved");
-        let (w, x) = free.in_parts(&m).expect("solved");
-        let parts = x / w;
+        let (w, x) = free.in_parts(0, &m).expect("solved");
+        let parts = Vector3::from(x) / w;
         prop_assert!((whole - parts).norm() < 1e-15);
     }
 }

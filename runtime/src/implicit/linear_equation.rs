@@ -1,8 +1,8 @@
 //! Implicit equations that are affine in the unknowns: one elimination solves them.
 
-use super::{Equation, path};
+use super::{Equation, lane};
 use crate::linear::{Orientation, solve_dense};
-use crate::{Error, Scalar, Space};
+use crate::{Error, Mask, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// An implicit equation ρ(ξ; μ) = A(μ) ξ − b(μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
@@ -13,7 +13,7 @@ pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
     /// A and b for the target μ.
     fn system(&self, target: &SVector<T, N>) -> (SMatrix<T, M, M>, SVector<T, M>);
 
-    /// ξ with A ξ = b, and the sign of det A; `None` where it is singular. See [`Equation::correct`].
+    /// ξ with A ξ = b, and the sign of det A; `None` where it is singular in all lanes. See [`Equation::correct`].
     #[inline]
     fn correct(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
         solve_dense(a, b)
@@ -27,7 +27,7 @@ pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
     }
 }
 
-/// The solution ξ of A(μ) ξ = b(μ) that is connected to ξ = 0 for μ = 0.
+/// The solution ξ of A(μ) ξ = b(μ) that is connected to ξ = 0 for μ = 0. Lanes without a solution are NaN.
 ///
 /// Work: one elimination, and where it does not decide at most [`LINEARIZATIONS`](super::LINEARIZATIONS) more.
 ///
@@ -39,10 +39,11 @@ pub fn solve_linear_equation<T: Scalar, E: LinearEquation<T, M, N>, const M: usi
     target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
     let (a, b) = equation.system(target);
-    match (E::correct(&a, &b), equation.orientation()) {
-        (Some((xi, orientation)), Some(branch)) if orientation == branch && xi.is_finite() => Ok(xi),
-        _ => path::follow(&Iterated(equation), target),
-    }
+    let (xi, solved) = match (E::correct(&a, &b), equation.orientation()) {
+        (Some((xi, orientation)), Some(branch)) => (xi, orientation.agrees::<T>(branch) & xi.finite()),
+        _ => (b, T::Mask::nowhere()),
+    };
+    if solved.all() { Ok(xi) } else { lane::follow(&Iterated(equation), target, xi, solved) }
 }
 
 /// The same equation for the solver that follows the path from the identity.

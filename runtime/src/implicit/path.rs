@@ -11,7 +11,7 @@ mod point;
 use super::{Equation, is_much_smaller, size};
 use crate::linear::solve_dense;
 use crate::space::larger;
-use crate::{Error, Scalar, Space};
+use crate::{Error, Real, Space};
 use nalgebra::SVector;
 use point::{Homotopy, Point};
 
@@ -21,7 +21,7 @@ pub const LINEARIZATIONS: u32 = 1024;
 /// The solution for s = 1 on the branch from the identity.
 #[cold]
 #[inline(never)]
-pub(super) fn follow<T: Scalar, const M: usize, const N: usize>(
+pub(super) fn follow<T: Real, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
     target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
@@ -61,11 +61,11 @@ pub(super) fn follow<T: Scalar, const M: usize, const N: usize>(
 }
 
 /// The error for a path that ends at s.
-fn unsolvable<T: Scalar>(s: T) -> Error {
+fn unsolvable<T: Real>(s: T) -> Error {
     Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None }
 }
 
-impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {
+impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {
     /// Newton's method for s = 1 from the tangent at `here`, if that is within `reach` and contracts cleanly on the branch.
     fn land(&mut self, here: &Point<T, M>, reach: T) -> Option<SVector<T, M>> {
         let distance = T::one() - here.s;

@@ -226,7 +226,7 @@ fn singular_equations_have_no_solvable_fraction() {
 #[test]
 fn indefinite_inertia_has_a_branch_too() {
     let body = principal([1.0, -2.0, 3.0]);
-    assert_eq!(super::orientation(&body), Ok(Orientation::Negative));
+    assert_eq!(super::orientation(&body), Ok(Orientation::NEGATIVE));
     let c = solve(&body, &Vector3::new(0.0, 1.2, 0.0)).expect("sin θ = −0.6");
     assert!((c.y + 1.0 / 3.0).abs() < 1e-15);
 }

@@ -1,7 +1,7 @@
 //! The step size that a wished error asks for.
 
 use crate::space::larger;
-use crate::{Clebsch, Error, Scalar, Space, State, Stepper};
+use crate::{Clebsch, Error, Real, Scalar, Space, State, Stepper};
 use num_traits::{One, Zero};
 
 /// Steps of the stepper's own size that the probing run goes over.
@@ -17,7 +17,7 @@ const FAR: i64 = 8;
 /// A difference of the two runs of no more than so many ε √steps may be rounding.
 const ROUNDINGS: i64 = 64;
 
-impl<S: Clebsch + Clone> Stepper<S> {
+impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
     /// A step size with which the motion from `start` is wrong by about `error` after `duration`.
     ///
     /// A probing run over t = 64 h, with h this stepper's own step size, is made with steps of h and of h/2. Their difference d gives the
@@ -138,22 +138,22 @@ impl<S: Clebsch + Clone> Stepper<S> {
 }
 
 /// The larger one of |Δq| and |Δμ| over the size of momenta.
-fn apart<S: Clebsch>(a: &State<S>, b: &State<S>, size: S::Scalar) -> S::Scalar {
+fn apart<S: Clebsch<Scalar: Real>>(a: &State<S>, b: &State<S>, size: S::Scalar) -> S::Scalar {
     let turned = a.configuration.distance_squared(&b.configuration).sqrt();
     let pushed = a.momentum.distance_squared(&b.momentum).sqrt();
     larger(turned, if size > S::Scalar::zero() { pushed / size } else { pushed })
 }
 
 /// Whether the error is the same power of both step sizes.
-fn is_near<T: Scalar>(a: T, b: T) -> bool {
+fn is_near<T: Real>(a: T, b: T) -> bool {
     a <= b * number(NEAR) && b <= a * number(NEAR)
 }
 
-fn number<T: Scalar>(value: i64) -> T {
+fn number<T: Real>(value: i64) -> T {
     T::from_ratio(value, 1)
 }
 
 /// The smaller one; `b` where either is NaN.
-fn least<T: PartialOrd>(a: T, b: T) -> T {
+fn least<T: Real>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }

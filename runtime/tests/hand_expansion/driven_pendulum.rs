@@ -345,7 +345,7 @@ const _: () = {
     ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
         let a = kicked * constants.h_by_inertia;
         let sine_squared = a.norm_squared();
-        ::clebsch::__private::check_sine_squared(sine_squared)?;
+        let a = ::clebsch::__private::below_right_angle(a, sine_squared)?;
         let a = a.cross_matrix();
         Ok(a + a * a / (1.0 + ::clebsch::Scalar::sqrt(1.0 - sine_squared)))
     }

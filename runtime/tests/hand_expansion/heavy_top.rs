@@ -61,7 +61,7 @@ const _: () = {
                 twice_inertia: inertia * 2.0,
                 inertia_inverse: ::clebsch::__private::invert(&inertia)?,
                 moment: self.center * (self.weight * h / 2.0),
-                orientation: ::clebsch::__private::Orientation::Positive,
+                orientation: ::clebsch::__private::Orientation::POSITIVE,
             };
             constants.orientation = ::clebsch::__private::orientation(&Equation { constants: &constants })?;
             Ok(constants)

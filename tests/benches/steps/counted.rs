@@ -151,6 +151,8 @@ macro_rules! functions {
 }
 
 impl Scalar for Counted {
+    clebsch::one_number!();
+
     const EPSILON: Self = Self(f64::EPSILON);
     const PI: Self = Self(std::f64::consts::PI);
 

@@ -33,7 +33,7 @@ pub fn interleaved(contestants: &[Run<'_>]) -> Vec<Time> {
 
 /// The number of steps that fills a block.
 fn block(run: &Run<'_>) -> u64 {
-    let mut steps = 64;
+    let mut steps = 1;
     loop {
         let taken = seconds(run, steps);
         if taken > BLOCK / 2.0 {

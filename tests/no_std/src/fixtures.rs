@@ -1,4 +1,4 @@
-//! The exported functions: one for each accepted fixture, two for the generic one.
+//! The exported functions: one for each accepted fixture, three for the generic one.
 
 // what the fixtures import for their declarations, no code names
 #![allow(unused_imports)]
@@ -60,6 +60,7 @@ steppers! {
     step_free_particle: free_particle::FreeParticle;
     step_free_rigid_body: free_rigid_body::FreeRigidBody;
     step_generic_body_in_f32: generic_body::GenericBody<f32>;
+    step_generic_body_lanes: generic_body::GenericBody<clebsch::F64x4>;
     step_generic_body_in_f64: generic_body::GenericBody<f64>;
     step_gravity_gradient: gravity_gradient::GravityGradient;
     step_growing_shape: growing_shape::GrowingShape;

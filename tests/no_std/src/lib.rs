@@ -10,7 +10,7 @@
 #[cfg(feature = "heap")]
 extern crate alloc;
 
-use clebsch::{Clebsch, Controlled, Error, Guess, Stage, Stepper, Target, Variational};
+use clebsch::{Clebsch, Controlled, Error, Guess, Real, Stage, Stepper, Target, Variational};
 
 mod fixtures;
 
@@ -80,7 +80,7 @@ fn formulas<S: Clebsch>(stepper: &Stepper<S>, motion: &mut Motion<S>) -> Result<
 const STEPS: usize = 16;
 
 /// A problem of optimal control.
-pub struct Plan<S: Controlled<D, U, C>, const D: usize, const U: usize, const C: usize> {
+pub struct Plan<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     step_size: S::Scalar,
     start: S::Place,
     goal: S::Place,
@@ -89,7 +89,7 @@ pub struct Plan<S: Controlled<D, U, C>, const D: usize, const U: usize, const C:
 }
 
 /// Everything that plans can do.
-fn choose<S: Controlled<D, U, C> + Clone, const D: usize, const U: usize, const C: usize>(
+fn choose<S: Controlled<D, U, C, Scalar: Real> + Clone, const D: usize, const U: usize, const C: usize>(
     system: &S,
     plan: &mut Plan<S, D, U, C>,
 ) -> Result<(), Error> {
@@ -104,7 +104,7 @@ fn choose<S: Controlled<D, U, C> + Clone, const D: usize, const U: usize, const 
 /// A path between fixed endpoints.
 fn connect<S, const M: usize>(system: &S, motion: &mut Motion<S>, target: &S::Configuration) -> Result<(), Error>
 where
-    S: Variational<M> + Clone,
+    S: Variational<M, Scalar: Real> + Clone,
 {
     let stepper = system.stepper(motion.step_size)?;
     let boundary = stepper.boundary();

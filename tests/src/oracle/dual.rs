@@ -116,6 +116,8 @@ impl<const K: usize> fmt::Display for Dual<K> {
 }
 
 impl<const K: usize> Scalar for Dual<K> {
+    clebsch::one_number!();
+
     const EPSILON: Self = Dual { value: f64::EPSILON, derivatives: [0.0; K] };
     const PI: Self = Dual { value: std::f64::consts::PI, derivatives: [0.0; K] };
 

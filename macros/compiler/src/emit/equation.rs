@@ -74,8 +74,7 @@ impl<'g> Emitter<'_, 'g> {
                     #[inline]
                     fn closed_form(&self, target: &#target) -> ::core::result::Result<#vector, #krate::Error> {
                         let x = { #body };
-                        #private::check_sine_squared({ #locals #sine })?;
-                        ::core::result::Result::Ok(x)
+                        #private::below_right_angle(x, { #locals #sine })
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use super::point::{Homotopy, Parameter, Point};
 use super::unsolvable;
 use crate::implicit::Equation;
-use crate::{Error, Scalar};
+use crate::{Error, Real};
 use nalgebra::SVector;
 
 /// Narrows the bracket until the solution is found, or until s stays below 1 on all of the branch.
@@ -11,7 +11,7 @@ use nalgebra::SVector;
 /// `before` is on the branch with s < 1; `after` has s ≥ 1 or is past the end of the branch. In a small bracket s is a concave
 /// function of the parameter, and its tangent at `before` bounds it. Each evaluation is regular at the end of the branch too, so
 /// that even there s is exact to round-off.
-pub(super) fn decide<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize>(
     homotopy: &mut Homotopy<'_, T, E, M, N>,
     mut before: Point<T, M>,
     mut after: Point<T, M>,
@@ -53,7 +53,7 @@ pub(super) fn decide<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
 }
 
 /// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
-fn guess<T: Scalar, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, parameter: Parameter, width: T) -> T {
+fn guess<T: Real, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, parameter: Parameter, width: T) -> T {
     let length = if after.s >= T::one() {
         (T::one() - before.s) / before.slope_s
     } else {
@@ -65,12 +65,12 @@ fn guess<T: Scalar, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, p
 
 impl Parameter {
     /// The value of the parameter at a point.
-    fn of<T: Scalar, const M: usize>(self, point: &Point<T, M>) -> T {
+    fn of<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
         if self.0 < M { point.xi[self.0] } else { point.s }
     }
 
     /// Its change along the tangent.
-    fn slope<T: Scalar, const M: usize>(self, point: &Point<T, M>) -> T {
+    fn slope<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
         if self.0 < M { point.slope_xi[self.0] } else { point.slope_s }
     }
 }

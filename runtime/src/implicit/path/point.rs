@@ -4,12 +4,12 @@ use super::{LINEARIZATIONS, unsolvable};
 use crate::implicit::{Equation, is_much_smaller, size};
 use crate::linear::{Orientation, eliminate, rows};
 use crate::space::larger;
-use crate::{Error, Scalar, Space};
+use crate::{Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A point (ξ, s) of the path with its unit tangent, in the direction away from the identity.
 #[derive(Clone, Copy)]
-pub(super) struct Point<T: Scalar, const M: usize> {
+pub(super) struct Point<T: Real, const M: usize> {
     pub xi: SVector<T, M>,
     pub s: T,
     pub slope_xi: SVector<T, M>,
@@ -23,7 +23,7 @@ pub(super) struct Point<T: Scalar, const M: usize> {
 pub(super) struct Parameter(pub usize);
 
 /// The equation ρ(ξ; sμ) = 0 in the M + 1 unknowns (ξ, s).
-pub(super) struct Homotopy<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> {
+pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> {
     pub equation: &'a E,
     /// Terms for the target 0.
     still: E::Terms,
@@ -39,17 +39,17 @@ pub(super) struct Homotopy<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, 
 }
 
 /// ρ, Dρ and ∂ρ/∂s at a point.
-struct Linearization<T: Scalar, const M: usize> {
+struct Linearization<T: Real, const M: usize> {
     residual: SVector<T, M>,
     jacobian: SMatrix<T, M, M>,
     rate: SVector<T, M>,
 }
 
-impl<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
+impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
     pub fn new(equation: &'a E, target: &SVector<T, N>) -> Self {
         let still = equation.prepare(&SVector::from_element(T::zero()));
         let moving = equation.prepare(target);
-        Self { equation, still, moving, branch: Orientation::Positive, scale: T::zero(), weight: T::zero(), count: 0 }
+        Self { equation, still, moving, branch: Orientation::POSITIVE, scale: T::zero(), weight: T::zero(), count: 0 }
     }
 
     /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight.
@@ -170,7 +170,7 @@ impl<'a, T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Homoto
     }
 }
 
-impl<T: Scalar, const M: usize> Linearization<T, M> {
+impl<T: Real, const M: usize> Linearization<T, M> {
     /// The Newton correction of (ξ, s) with the parameter held fixed.
     fn correct(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
         self.solve(parameter, core::array::from_fn(|i| self.residual[i]), T::zero())

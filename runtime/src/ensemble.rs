@@ -1,0 +1,233 @@
+//! Many bodies, stepped side by side.
+
+mod chunk;
+#[cfg(feature = "rayon")]
+mod threads;
+
+use crate::{Body, Clebsch, Clock, Conserved, Conserves, Error, Scalar, Stepper, Time};
+use alloc::vec::Vec;
+use chunk::Chunk;
+use core::fmt::{self, Display, Formatter};
+
+/// Many bodies of one declaration, as many side by side as its scalar has lanes.
+///
+/// Each body is stepped as it would be alone, with the same bits, whatever its place and whatever happens to the others: one whose step
+/// fails stays where it is and tells [why](Self::failures), and the others go on.
+///
+/// ```
+/// use clebsch::{Clebsch, Ensemble, F64x8, Scalar};
+/// use nalgebra::{Matrix3, Vector3};
+///
+/// /// A body that turns freely, over any scalar.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action         = |F: SO<3>, R: SO<3>| R * F,
+///     lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+///     discretization = moser_veselov,
+/// )]
+/// pub struct Rock<T: Scalar> {
+///     /// Principal moments of inertia, kg·m².
+///     pub moments: Vector3<T>,
+/// }
+///
+/// let rock = Rock { moments: Vector3::new(1.0, 2.0, 2.5).map(F64x8::splat) };
+/// let spins = (0..1000).map(|i| (Matrix3::identity(), Vector3::new(0.1, 2.0, 1e-3 * f64::from(i))));
+/// let mut rocks = Ensemble::new(rock.stepper(F64x8::splat(0.01))?, spins)?;
+/// rocks.advance(100);
+/// assert_eq!(rocks.failures().count(), 0);
+/// for (attitude, momentum) in rocks.bodies() {
+///     assert!((attitude * momentum).x - 0.1 < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Needs the feature `alloc`; the lanes need `lanes`. With the scalar `f64` bodies are stepped one by one.
+#[derive(Debug)]
+pub struct Ensemble<S: Clebsch> {
+    /// One for all chunks, or one for each.
+    steppers: Vec<Stepper<S>>,
+    chunks: Vec<Chunk<S>>,
+    bodies: usize,
+    steps: u64,
+}
+
+/// A body that cannot be taken, or be stepped further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// The body, counted from 0.
+    pub body: usize,
+    /// The number of steps that it has made.
+    pub step: u64,
+    /// Why.
+    pub error: Error,
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "body {} after step {}: {}", self.body, self.step, self.error)
+    }
+}
+
+impl core::error::Error for Failure {}
+
+impl<S: Clebsch> Ensemble<S> {
+    /// Bodies at (q, N), all with the parameters and the step size of `stepper`, which may differ between lanes: body i is in lane
+    /// i mod [`LANES`](Scalar::LANES).
+    ///
+    /// # Errors
+    /// The first body that [`Stepper::state`] refuses, and why.
+    pub fn new(stepper: Stepper<S>, bodies: impl IntoIterator<Item = Body<S>>) -> Result<Self, Failure> {
+        Self::gathered(Vec::from([stepper]), &bodies.into_iter().collect::<Vec<_>>())
+    }
+
+    /// Bodies at (q, N) with parameters of their own: `stepper` makes that of the bodies whose numbers it is given, one for each lane.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Ensemble, F64x8, Scalar};
+    /// # use nalgebra::Vector3;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action    = |a: Translation<3>, x: Vector3| x + a,
+    /// #     cost      = |h, a| self.mass * a.norm_squared() / (2 * h),
+    /// #     potential = |x| x.norm_squared() / 2,
+    /// # )]
+    /// # pub struct Bob<T: Scalar> { pub mass: T }
+    /// let masses = [1.0, 2.0, 3.0];
+    /// let starts = masses.map(|_| (Vector3::x(), Vector3::y()));
+    /// let bobs = Ensemble::with_parameters(starts, |bodies| {
+    ///     Bob { mass: F64x8::from_lanes(|lane| masses[bodies[lane]]) }.stepper(F64x8::splat(0.1))
+    /// })?;
+    /// assert_eq!(bobs.energy(2), Some(1.0 / 6.0 + 0.5));
+    /// # Ok::<(), clebsch::Failure>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and those of `stepper`, with the first body of the lanes.
+    pub fn with_parameters(
+        bodies: impl IntoIterator<Item = Body<S>>,
+        mut stepper: impl FnMut(&[usize]) -> Result<Stepper<S>, Error>,
+    ) -> Result<Self, Failure> {
+        let bodies: Vec<_> = bodies.into_iter().collect();
+        let mut steppers = Vec::new();
+        for first in (0..bodies.len()).step_by(S::Scalar::LANES) {
+            let numbers: Vec<usize> = (0..S::Scalar::LANES).map(|lane| (first + lane).min(bodies.len() - 1)).collect();
+            steppers.push(stepper(&numbers).map_err(|error| Failure { body: first, step: 0, error })?);
+        }
+        Self::gathered(steppers, &bodies)
+    }
+
+    fn gathered(steppers: Vec<Stepper<S>>, bodies: &[Body<S>]) -> Result<Self, Failure> {
+        let mut chunks = Vec::new();
+        for (number, chunk) in bodies.chunks(S::Scalar::LANES).enumerate() {
+            let Some(stepper) = from(&steppers, number).first() else { break };
+            let refused = |(lane, error)| Failure { body: number * S::Scalar::LANES + lane, step: 0, error };
+            chunks.push(Chunk::new(stepper, chunk).map_err(refused)?);
+        }
+        Ok(Self { steppers, chunks, bodies: bodies.len(), steps: 0 })
+    }
+
+    /// One step of every body.
+    pub fn step(&mut self) {
+        self.advance(1);
+    }
+
+    /// So many steps of every body, a few after the other: those whose numbers are near are near in memory.
+    pub fn advance(&mut self, steps: u64) {
+        for (group, chunks) in self.chunks.chunks_mut(chunk::TOGETHER).enumerate() {
+            chunk::advance(chunks, from(&self.steppers, group * chunk::TOGETHER), self.steps, steps);
+        }
+        self.steps += steps;
+    }
+
+    /// The number of bodies.
+    pub fn len(&self) -> usize {
+        self.bodies
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.bodies == 0
+    }
+
+    /// The number of steps that have been made.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// (q, N) of a body, the last that it reached; `None` where there is no such body.
+    pub fn body(&self, body: usize) -> Option<Body<S>> {
+        self.at(body).map(|(_, chunk, lane)| chunk.state_of(lane).lane(lane))
+    }
+
+    /// (q, N) of all bodies.
+    pub fn bodies(&self) -> impl Iterator<Item = Body<S>> + '_ {
+        (0..self.bodies).filter_map(|body| self.body(body))
+    }
+
+    /// Puts a body somewhere else, at the present time; one that had failed goes on from there.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::state`], and [`Error::NoBody`]. The body stays as it was.
+    pub fn set_body(&mut self, body: usize, (q, mu): Body<S>) -> Result<(), Error> {
+        let error = Error::NoBody { body, bodies: self.bodies };
+        let stepper = self.at(body).ok_or(error)?.0;
+        let state = chunk::alone(stepper, &(q, mu))?;
+        let (number, lane) = (body / S::Scalar::LANES, body % S::Scalar::LANES);
+        self.chunks.get_mut(number).ok_or(error)?.put(lane, state);
+        Ok(())
+    }
+
+    /// Kinetic energy plus potential of a body, as [`Stepper::energy`].
+    pub fn energy(&self, body: usize) -> Option<<S::Scalar as Scalar>::Lane> {
+        let (stepper, chunk, lane) = self.at(body)?;
+        Some(Scalar::lane(stepper.energy(chunk.state_of(lane)), lane))
+    }
+
+    /// The bodies that have failed, and why.
+    pub fn failures(&self) -> impl Iterator<Item = Failure> + '_ {
+        self.chunks.iter().enumerate().flat_map(|(number, chunk)| {
+            chunk.failures().map(move |(lane, step, error)| Failure {
+                body: number * S::Scalar::LANES + lane,
+                step,
+                error,
+            })
+        })
+    }
+
+    /// Why a body has failed; `None` where it has not.
+    pub fn failure(&self, body: usize) -> Option<Failure> {
+        let (_, chunk, lane) = self.at(body)?;
+        chunk.failures().find(|failure| failure.0 == lane).map(|(_, step, error)| Failure { body, step, error })
+    }
+
+    /// Where a body is.
+    fn at(&self, body: usize) -> Option<(&Stepper<S>, &Chunk<S>, usize)> {
+        let number = body / S::Scalar::LANES;
+        let chunk = self.chunks.get(number).filter(|_| body < self.bodies)?;
+        Some((from(&self.steppers, number).first()?, chunk, body % S::Scalar::LANES))
+    }
+}
+
+impl<S, const K: usize> Ensemble<S>
+where
+    S: Conserves<Conserved = Conserved<<S as Clebsch>::Scalar, K>>,
+{
+    /// The momenta of a body that no step changes, as [`Stepper::conserved`].
+    pub fn conserved(&self, body: usize) -> Option<Conserved<<S::Scalar as Scalar>::Lane, K>> {
+        let (stepper, chunk, lane) = self.at(body)?;
+        Some(stepper.conserved(chunk.state_of(lane)).lane(lane))
+    }
+}
+
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Ensemble<S> {
+    /// The time of a body, of the last state that it reached.
+    pub fn time(&self, body: usize) -> Option<<S::Scalar as Scalar>::Lane> {
+        let (_, chunk, lane) = self.at(body)?;
+        Some(Scalar::lane(Time::now(&chunk.state_of(lane).time), lane))
+    }
+}
+
+/// The steppers from that of chunk `number` on, or the one that all have.
+fn from<S: Clebsch>(steppers: &[Stepper<S>], number: usize) -> &[Stepper<S>] {
+    if steppers.len() == 1 { steppers } else { steppers.get(number..).unwrap_or_default() }
+}

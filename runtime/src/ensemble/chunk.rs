@@ -1,0 +1,128 @@
+//! The bodies that share the lanes of one state.
+
+use crate::{Body, Clebsch, Error, Mask, Scalar, Space, State, Stepper, Time};
+use alloc::vec::Vec;
+use num_traits::Zero;
+
+/// Chunks that take turns: what one waits for, another one has the time to do.
+pub const TOGETHER: usize = 4;
+
+/// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.
+#[derive(Debug)]
+pub struct Chunk<S: Clebsch> {
+    state: State<S>,
+    /// The lanes of bodies that are stepped, one bit for each. The momenta of the others are NaN, which ends their solve at once.
+    live: u16,
+    failed: Vec<Failed<S>>,
+}
+
+/// A body that stays where it is.
+#[derive(Debug)]
+struct Failed<S: Clebsch> {
+    lane: usize,
+    /// The number of steps that it has made.
+    step: u64,
+    error: Error,
+    /// The last state that it reached, in its lane.
+    state: State<S>,
+}
+
+impl<S: Clebsch> Chunk<S> {
+    /// From at least one body, and at most one for each lane.
+    ///
+    /// # Errors
+    /// The first body that [`Stepper::state`] refuses.
+    pub fn new(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Result<Self, (usize, Error)> {
+        let body = |lane: usize| bodies[lane.min(bodies.len() - 1)];
+        let q = S::Configuration::side_by_side(|lane| body(lane).0);
+        let mu = S::Momentum::side_by_side(|lane| body(lane).1);
+        match stepper.state(q, mu) {
+            Ok(state) => Ok(Self { state, live: u16::MAX >> (16 - bodies.len()), failed: Vec::new() }),
+            Err(error) => Err(refused(stepper, bodies).unwrap_or((0, error))),
+        }
+    }
+
+    /// One step of each body; `step` have been made.
+    #[inline(always)]
+    pub fn step(&mut self, stepper: &Stepper<S>, step: u64) {
+        // the impulse has been made by this stepper
+        if let Ok(next) = stepper.attempt_with(&self.state, &self.state.impulse, &S::Input::origin()) {
+            // quicker than to look at each number; where the sum overflows, `part` looks at each
+            let finite = (next.configuration.sum() + next.momentum.sum()).finite();
+            if finite.bits() & self.live == self.live {
+                let State { time, configuration, momentum, impulse, h: _ } = next;
+                self.state = State { time, configuration, momentum, impulse, h: self.state.h };
+                return;
+            }
+        }
+        self.part(stepper, step);
+    }
+
+    /// The step in which some bodies fail.
+    #[cold]
+    #[inline(never)]
+    fn part(&mut self, stepper: &Stepper<S>, step: u64) {
+        let (mut next, stepped) = stepper.step_each(&self.state);
+        for lane in (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)) {
+            if self.live >> lane & 1 == 1 {
+                // by construction: the step has failed in this lane
+                let error = stepper.failure(&self.state, lane).unwrap_or(Error::InLane { lane });
+                self.failed.push(Failed { lane, step, error, state: self.state });
+                self.live &= !(1 << lane);
+            }
+            next.momentum.set_lane(lane, &undefined::<S>().lane(lane));
+        }
+        next.time = self.state.time.after_step(stepper.h);
+        self.state = next;
+    }
+
+    /// The state that has, in this lane, the last that the body reached.
+    pub fn state_of(&self, lane: usize) -> &State<S> {
+        self.failed.iter().find(|failed| failed.lane == lane).map_or(&self.state, |failed| &failed.state)
+    }
+
+    /// Puts a body into a lane, at the present time.
+    pub fn put(&mut self, lane: usize, mut state: State<S>) {
+        state.time = self.state.time;
+        self.failed.retain(|failed| failed.lane != lane);
+        self.live |= 1 << lane;
+        self.state.take_lane(lane, &state);
+    }
+
+    /// Lane, number of steps made, and error of the bodies that stay.
+    pub fn failures(&self) -> impl Iterator<Item = (usize, u64, Error)> + '_ {
+        self.failed.iter().map(|failed| (failed.lane, failed.step, failed.error))
+    }
+}
+
+/// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
+#[inline]
+pub fn advance<S: Clebsch>(chunks: &mut [Chunk<S>], steppers: &[Stepper<S>], first: u64, steps: u64) {
+    let numbers = first..first + steps;
+    match steppers {
+        [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
+        each => {
+            let mut together = |step| chunks.iter_mut().zip(each).for_each(|(chunk, own)| chunk.step(own, step));
+            numbers.for_each(&mut together);
+        }
+    }
+}
+
+/// A state with the same body in all lanes, checked.
+///
+/// # Errors
+/// Those of [`Stepper::state`].
+pub fn alone<S: Clebsch>(stepper: &Stepper<S>, (q, mu): &Body<S>) -> Result<State<S>, Error> {
+    stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
+}
+
+/// The first body that is refused.
+fn refused<S: Clebsch>(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Option<(usize, Error)> {
+    let refusal = |(lane, body)| alone(stepper, body).err().map(|error| (lane, error));
+    bodies.iter().enumerate().find_map(refusal)
+}
+
+/// Momenta that are no numbers.
+fn undefined<S: Clebsch>() -> S::Momentum {
+    S::Momentum::filled(S::Scalar::zero() / S::Scalar::zero())
+}

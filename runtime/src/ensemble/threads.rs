@@ -1,0 +1,27 @@
+//! Steps on all cores.
+
+use super::Ensemble;
+use super::chunk::{self, Chunk};
+use crate::{Clebsch, State, Stepper};
+use rayon::prelude::*;
+
+/// The least number of groups of chunks that a thread takes at a time.
+const SHARE: usize = 4;
+
+impl<S: Clebsch> Ensemble<S>
+where
+    State<S>: Send,
+    Stepper<S>: Sync,
+    Chunk<S>: Send,
+{
+    /// [`advance`](Self::advance) on all threads of the present pool, with the same bits.
+    ///
+    /// Needs the feature `rayon`.
+    pub fn par_advance(&mut self, steps: u64) {
+        let (first, steppers) = (self.steps, &self.steppers);
+        self.chunks.par_chunks_mut(chunk::TOGETHER).enumerate().with_min_len(SHARE).for_each(|(group, chunks)| {
+            chunk::advance(chunks, super::from(steppers, group * chunk::TOGETHER), first, steps);
+        });
+        self.steps += steps;
+    }
+}

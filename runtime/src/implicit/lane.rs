@@ -1,0 +1,78 @@
+//! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
+
+use super::{Equation, path, with_derivatives};
+use crate::space::{lane_of, set_lane};
+use crate::{Error, Mask, Scalar, Space};
+use core::marker::PhantomData;
+use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
+
+/// The solutions `xi` with those of the lanes that are not `solved`: the path from the identity is followed in each of them.
+///
+/// A lane that has none becomes NaN.
+///
+/// # Errors
+/// Where no lane has a solution: the error of the first whose target is finite, as the others have none of their own.
+#[cold]
+#[inline(never)]
+pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    equation: &E,
+    target: &SVector<T, N>,
+    mut xi: SVector<T, M>,
+    solved: T::Mask,
+) -> Result<SVector<T, M>, Error> {
+    let mut failure = None;
+    let mut is_solved = solved.any();
+    for lane in (0..T::LANES).filter(|&lane| !solved.lane(lane)) {
+        let own = lane_of(target, lane);
+        let equation = InLane { equation, lane, scalar: PhantomData };
+        match path::follow(&equation, &own) {
+            Ok(found) => {
+                let found = if T::DERIVATIVES == 0 { found } else { with_derivatives(&equation, &own, found) };
+                set_lane(&mut xi, lane, &found);
+                is_solved = true;
+            }
+            Err(error) => {
+                set_lane(&mut xi, lane, &SVector::from_element(T::Lane::zero() / T::Lane::zero()));
+                failure = match failure {
+                    Some((known, true)) => Some((known, true)),
+                    Some((known, false)) if !own.is_finite() => Some((known, false)),
+                    _ => Some((error, own.is_finite())),
+                };
+            }
+        }
+    }
+    match failure {
+        Some((error, _)) if !is_solved => Err(error),
+        _ => Ok(xi),
+    }
+}
+
+/// The equation in one lane.
+struct InLane<'a, T, E> {
+    equation: &'a E,
+    lane: usize,
+    scalar: PhantomData<T>,
+}
+
+impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T::Lane, M, N> for InLane<'_, T, E> {
+    type Terms = E::Terms;
+
+    fn prepare(&self, target: &SVector<T::Lane, N>) -> Self::Terms {
+        self.equation.prepare(&everywhere(target))
+    }
+
+    fn linearize(
+        &self,
+        terms: &Self::Terms,
+        xi: &SVector<T::Lane, M>,
+    ) -> (SVector<T::Lane, M>, SMatrix<T::Lane, M, M>) {
+        let (residual, jacobian) = self.equation.linearize(terms, &everywhere(xi));
+        (lane_of(&residual, self.lane), lane_of(&jacobian, self.lane))
+    }
+}
+
+/// The same vector in all lanes.
+fn everywhere<T: Scalar, const M: usize>(vector: &SVector<T::Lane, M>) -> SVector<T, M> {
+    vector.map(|x| T::from_lanes(|_| x))
+}

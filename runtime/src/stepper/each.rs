@@ -1,0 +1,42 @@
+//! Steps of several bodies side by side, where the scalar has lanes: one that fails does not keep the others.
+
+use super::Stepper;
+use crate::{Clebsch, Error, Mask, Scalar, Space, State};
+use num_traits::Zero;
+
+impl<S: Clebsch> Stepper<S> {
+    /// One step in each lane by itself, and the lanes in which it succeeded; in the others the state stays as it is.
+    ///
+    /// [`step`](Self::step) is this where all lanes succeed.
+    #[inline]
+    pub fn step_each(&self, state: &State<S>) -> (State<S>, <S::Scalar as Scalar>::Mask) {
+        let Ok(next) = self.attempt(state, &S::Input::origin()) else {
+            return (*state, <S::Scalar as Scalar>::Mask::nowhere());
+        };
+        let stepped = next.configuration.finite() & next.momentum.finite();
+        if stepped.all() { (next, stepped) } else { (merged(&next, state, stepped), stepped) }
+    }
+
+    /// Why the step of a lane fails; `None` where it does not.
+    ///
+    /// The step is made once more, with the momenta of all other lanes NaN: what is left to fail is this lane.
+    #[cold]
+    pub fn failure(&self, state: &State<S>, lane: usize) -> Option<Error> {
+        let mut alone = *state;
+        alone.momentum = S::Momentum::filled(S::Scalar::zero() / S::Scalar::zero());
+        alone.momentum.set_lane(lane, &state.momentum.lane(lane));
+        match self.attempt(&alone, &S::Input::origin()) {
+            Err(error) => Some(error.with_step_size(self.h.lane(lane).to_f64())),
+            Ok(next) if (next.configuration.finite() & next.momentum.finite()).lane(lane) => None,
+            Ok(_) => Some(Error::NotFinite { name: "the state after the step" }),
+        }
+    }
+}
+
+/// `next` in the lanes of `stepped`, `before` in the others.
+#[cold]
+fn merged<S: Clebsch>(next: &State<S>, before: &State<S>, stepped: <S::Scalar as Scalar>::Mask) -> State<S> {
+    let mut merged = *next;
+    (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)).for_each(|lane| merged.take_lane(lane, before));
+    merged
+}

@@ -1,0 +1,177 @@
+//! Simulations over dual numbers: their derivatives are those of the tangent maps and of differences.
+//!
+//! Newton's method stops when values no longer change, and derivatives are right one correction later: each test would see a derivative
+//! that is left behind.
+
+#[allow(dead_code, reason = "some of the systems are enough")]
+#[path = "../tangent/systems.rs"]
+mod systems;
+
+use clebsch::num_dual::{Dual2_64, Dual64, DualSVec64, HyperDual64};
+use clebsch::{Clebsch, Scalar, State, Stepper};
+use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::oracle::random::Random;
+use clebsch_tests::oracle::rotation::vee;
+use nalgebra::{Matrix3, Vector3};
+use systems::{Composed, Satellite, Sixth, Top};
+
+const H: f64 = 0.1;
+
+fn mass_matrix<T: Scalar>() -> Matrix3<T> {
+    Matrix3::new(1.2, 0.1, -0.2, 0.1, 0.8, 0.05, -0.2, 0.05, 0.5).map(T::from_f64)
+}
+
+fn center<T: Scalar>() -> Vector3<T> {
+    Vector3::new(0.1, -0.2, 0.7).map(T::from_f64)
+}
+
+fn top<T: Scalar>(weight: T) -> Stepper<Top<T>> {
+    let top = Top { mass_matrix: mass_matrix(), weight, center: center() };
+    top.into_stepper(T::from_f64(H)).expect("parameters")
+}
+
+/// The momentum whose entry i has the derivative 1 in direction i.
+fn varied(mu: Vector3<f64>) -> Vector3<DualSVec64<3>> {
+    Vector3::from_fn(|i, _| DualSVec64::<3>::from_re(mu[i]).derivative(i))
+}
+
+/// Columns: the derivatives of the entries of a vector.
+fn gradients(vector: &Vector3<DualSVec64<3>>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| vector[i].eps.0.map_or(0.0, |eps| eps[j]))
+}
+
+/// Asserts that one step differentiates like the tangent map of the same stepper over `f64`, by momenta.
+macro_rules! assert_tangent {
+    ($plain:expr, $dual:expr, $q:expr, $mu:expr) => {{
+        let (plain, dual) = ($plain.expect("parameters"), $dual.expect("parameters"));
+        let start = plain.state($q, $mu).expect("a state");
+        let (next, tangent) = plain.step_tangent(&start).expect("a step");
+        let start = dual.state($q.map(DualSVec64::<3>::from_f64), varied($mu)).expect("a state");
+        let end = dual.step(&start).expect("a step");
+        assert_near(&end.momentum().map(|x| x.re), next.momentum(), 1e-14, "values");
+        assert_near(&gradients(end.momentum()), &tangent.momentum_by_momentum, 1e-12, "momenta");
+        for j in 0..3 {
+            let slope = end.configuration().map(|x| x.eps.0.map_or(0.0, |eps| eps[j]));
+            let motion = vee(&(next.configuration().transpose() * slope));
+            assert_near(&motion, &tangent.motion_by_momentum.column(j).into_owned(), 1e-12, "motions");
+        }
+    }};
+}
+
+#[test]
+fn steps_differentiate_like_their_tangent_maps() {
+    let mut random = Random::new(2);
+    type D = DualSVec64<3>;
+    let (h, dual_h) = (H, D::from_f64(H));
+    for size in [1e-6, 0.01, 0.3, 2.0, 6.0] {
+        let (q, mu) = (random.attitude::<3>(), random.unit::<3>() * size);
+        let weight = 3.0;
+        assert_tangent!(
+            Top { mass_matrix: mass_matrix(), weight, center: center() }.into_stepper(h),
+            Top { mass_matrix: mass_matrix(), weight: D::from_f64(weight), center: center() }.into_stepper(dual_h),
+            q,
+            mu
+        );
+        assert_tangent!(
+            Composed { mass_matrix: mass_matrix(), weight, center: center(), skew: 0.05 }.into_stepper(h),
+            Composed {
+                mass_matrix: mass_matrix(),
+                weight: D::from_f64(weight),
+                center: center(),
+                skew: D::from_f64(0.05)
+            }
+            .into_stepper(dual_h),
+            q,
+            mu
+        );
+        let inertia = Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.4, -0.1, 0.0, -0.1, 0.9);
+        let (dual_inertia, rate) = (inertia.map(D::from_f64), D::from_f64(0.6));
+        assert_tangent!(
+            Sixth { inertia, rate: 0.6 }.into_stepper(h),
+            Sixth { inertia: dual_inertia, rate }.into_stepper(dual_h),
+            q,
+            mu
+        );
+        assert_tangent!(
+            Satellite { inertia, orbital_rate: 0.6 }.into_stepper(h),
+            Satellite { inertia: dual_inertia, orbital_rate: rate }.into_stepper(dual_h),
+            q,
+            mu
+        );
+    }
+}
+
+/// The path that is followed where Newton's method does not decide: just below the longest step that there is.
+#[test]
+fn derivatives_are_right_up_to_the_longest_step() {
+    let stepper = top(0.0);
+    let direction = Vector3::new(0.3, -0.5, 0.8);
+    let momentum = |size: f64| {
+        let state = stepper.state(Matrix3::identity(), direction * size).expect("a state");
+        stepper.step(&state).map(|state| state.into_parts().1)
+    };
+    let longest =
+        (0..2000).map(|i| f64::from(i) * 0.02).take_while(|&size| momentum(size).is_ok()).last().expect("some");
+    let dual = top(Dual64::from_f64(0.0));
+    for fraction in [0.0, 0.5, 0.9, 0.99, 0.999, 1.0] {
+        let size = longest * fraction;
+        let mu = direction.map(|x| Dual64::new(x * size, x));
+        let start = dual.state(Matrix3::identity().map(Dual64::from_f64), mu).expect("a state");
+        let slope = dual.step(&start).expect("a step").momentum().map(|x| x.eps);
+        let delta = 1e-5 * (1.001 - fraction);
+        let difference =
+            (momentum(size + delta).expect("a step") - momentum(size - delta).expect("a step")) / (2.0 * delta);
+        assert!((slope - difference).norm() < 1e-5 * (1.0 + difference.norm()), "{fraction}: {slope} {difference}");
+    }
+}
+
+/// The height of a top after some steps, as a function of its weight and its spin.
+fn height<T: Scalar>(weight: T, spin: T) -> T {
+    let stepper = top(weight);
+    let mut state: State<Top<T>> =
+        stepper.state(Matrix3::identity(), Vector3::new(T::from_f64(0.1), spin, T::from_f64(2.0))).expect("a state");
+    for _ in 0..50 {
+        state = stepper.step(&state).expect("a step");
+    }
+    (state.configuration() * center::<T>()).z
+}
+
+/// First derivatives against differences of values, second ones against differences of first ones.
+#[test]
+fn simulations_differentiate_by_parameters_and_initial_data() {
+    let (weight, spin, delta) = (3.0, -0.7, 1e-5);
+    let by_weight = height(Dual64::new(weight, 1.0), Dual64::from_f64(spin));
+    let by_spin = |spin: f64| height(Dual64::from_f64(weight), Dual64::new(spin, 1.0)).eps;
+    assert!((by_weight.re - height(weight, spin)).abs() < 1e-13);
+    let central = |f: &dyn Fn(f64) -> f64| (f(delta) - f(-delta)) / (2.0 * delta);
+    let near = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-8 * (1.0 + expected.abs()), "{found} {expected}")
+    };
+    near(by_weight.eps, central(&|d| height(weight + d, spin)));
+    near(by_spin(spin), central(&|d| height(weight, spin + d)));
+    let second = height(Dual2_64::from_f64(weight), Dual2_64::new(spin, 1.0, 0.0));
+    near(second.v1, by_spin(spin));
+    near(second.v2, central(&|d| by_spin(spin + d)));
+    let mixed = height(HyperDual64::new(weight, 1.0, 0.0, 0.0), HyperDual64::new(spin, 0.0, 1.0, 0.0));
+    near(mixed.eps1, by_weight.eps);
+    near(mixed.eps2, by_spin(spin));
+    near(mixed.eps1eps2, central(&|d| height(Dual64::new(weight + d, 0.0), Dual64::new(spin, 1.0)).eps));
+}
+
+/// The step of a body at rest starts from a correction that is zero, but whose derivative is not; the series at angle zero end at once.
+#[test]
+fn bodies_at_rest_have_derivatives() {
+    type D = DualSVec64<3>;
+    let inertia = Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.4, -0.1, 0.0, -0.1, 0.9);
+    let satellite = Satellite { inertia, orbital_rate: 0.0 }.into_stepper(H);
+    let dual =
+        Satellite { inertia: inertia.map(D::from_f64), orbital_rate: D::from_f64(0.0) }.into_stepper(D::from_f64(H));
+    assert_tangent!(satellite, dual, Matrix3::<f64>::identity(), Vector3::<f64>::zeros());
+    let (plain, dual) = (top(0.0), top(D::from_f64(0.0)));
+    assert_tangent!(
+        Ok::<_, clebsch::Error>(plain),
+        Ok::<_, clebsch::Error>(dual),
+        Matrix3::<f64>::identity(),
+        Vector3::<f64>::zeros()
+    );
+}
