@@ -278,7 +278,7 @@ impl<T: Scalar> FreeRotation<T> {
         }
         let [.., reach] = of_lane(&self.reach, lane);
         let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
-        let fraction = T::Lane::from_f64(f64::from(PARTS)) * (reach / square).sqrt();
+        let fraction = T::Lane::from_f64(0.999 * f64::from(PARTS)) * (reach / square).sqrt();
         Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
     }
 
