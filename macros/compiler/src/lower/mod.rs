@@ -6,6 +6,7 @@
 mod control;
 mod cost;
 mod displacement;
+mod factors;
 mod grid;
 mod kernel;
 mod names;
