@@ -4,6 +4,7 @@
 //! overflows long before its factors do.
 
 use crate::Scalar;
+use crate::cofactors;
 use crate::space::larger;
 use core::array::from_fn;
 use core::ops::Mul;
@@ -92,9 +93,30 @@ pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector
     solve_dense(a, b).map(|(x, _)| x)
 }
 
-/// x of A x = b and the sign of det A, by elimination with pivoting; `None` where A is singular or not finite.
-#[inline]
+/// x of A x = b and the sign of det A, by cofactors or by elimination with pivoting; `None` where A is singular or not finite.
+#[inline(always)]
 pub fn solve_dense<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    match cofactors::are_for(M) {
+        true => cofactors::solve(a, b).or_else(|| eliminated_at_last(a, b)),
+        false => eliminated(a, b),
+    }
+}
+
+/// Where cofactors do not serve.
+#[cold]
+#[inline(never)]
+fn eliminated_at_last<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    eliminated(a, b)
+}
+
+#[inline]
+fn eliminated<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> Option<(SVector<T, M>, Orientation)> {

@@ -1,0 +1,187 @@
+//! Linear systems of three and six unknowns by cofactors: one division for every three unknowns, and nothing that waits for pivots.
+//!
+//! A x = b has x = adj A b/det A. Of six unknowns the first three are eliminated together. Where digits cancel, or numbers are near the
+//! ends of the exponent range, there is no answer, and elimination with pivoting takes over.
+
+use crate::Scalar;
+use crate::linear::Orientation;
+use nalgebra::{SMatrix, SVector};
+
+type Columns<T> = [[T; 3]; 3];
+
+/// Whether [`solve`] knows systems of so many unknowns.
+pub(crate) const fn are_for(unknowns: usize) -> bool {
+    unknowns == 3 || unknowns == 6
+}
+
+/// x of A x = b and the sign of det A; `None` where A is singular, not finite, or not safely solved like this.
+///
+/// Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
+#[inline(always)]
+pub(crate) fn solve<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    let block = |i: usize, j: usize| -> Columns<T> { [0, 1, 2].map(|c| [0, 1, 2].map(|r| a[(i + r, j + c)])) };
+    let part = |i: usize| [0, 1, 2].map(|r| b[i + r]);
+    match M {
+        3 => {
+            let inverse = Inverse::of(&block(0, 0))?;
+            let x = inverse.times(&part(0));
+            Some((SVector::from_fn(|i, _| x[i]), inverse.orientation()))
+        }
+        6 => {
+            // (A B; C D)(x; y) = (r; s): (D − C A⁻¹B) y = s − C A⁻¹r
+            let [upper, lower] = [block(0, 0), block(3, 0)];
+            let [right, corner] = [block(0, 3), block(3, 3)];
+            let first = Inverse::of(&upper)?;
+            let [ab, ar] = [right.map(|column| first.times(&column)), [first.times(&part(0)); 3]];
+            let carried = ab.map(|column| times(&lower, &column));
+            let schur = [0, 1, 2].map(|j| minus(&corner[j], &carried[j]));
+            let keeps_digits = |j: usize| norm(&schur[j]) >= cancelled::<T>() * (norm(&corner[j]) + norm(&carried[j]));
+            if !(0..3).all(keeps_digits) {
+                return None;
+            }
+            let second = Inverse::of(&schur)?;
+            let y = second.times(&minus(&part(3), &times(&lower, &ar[0])));
+            let x = minus(&ar[0], &times(&ab, &y));
+            let orientation = first.orientation() * second.orientation();
+            Some((SVector::from_fn(|i, _| if i < 3 { x[i] } else { y[i - 3] }), orientation))
+        }
+        _ => None,
+    }
+}
+
+/// The digits of a sum that may cancel: a factor of 2¹².
+#[inline]
+fn cancelled<T: Scalar>() -> T {
+    T::from_ratio(1, 1 << 12)
+}
+
+/// An inverse matrix.
+struct Inverse<T> {
+    /// The rows of adj A.
+    adjugate: [[T; 3]; 3],
+    /// 1/det A
+    reciprocal: T,
+}
+
+impl<T: Scalar> Inverse<T> {
+    #[inline(always)]
+    fn of([a, b, c]: &Columns<T>) -> Option<Self> {
+        let adjugate = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant = dot(a, &adjugate[0]);
+        let reciprocal = T::one() / determinant;
+        let [la, lb, lc] = [norm(a), norm(b), norm(c)];
+        let least = T::EPSILON * T::EPSILON * T::EPSILON * T::EPSILON;
+        // comparisons with NaN are false
+        let is_safe = |product: T| product >= least && product * least <= T::one();
+        let is_regular = determinant.abs() >= cancelled::<T>() * (la * (lb * lc));
+        let is_known = is_regular && is_safe(la * lb) && is_safe(lb * lc) && is_safe(lc * la) && reciprocal.is_finite();
+        is_known.then_some(Self { adjugate, reciprocal })
+    }
+
+    #[inline]
+    fn times(&self, x: &[T; 3]) -> [T; 3] {
+        [0, 1, 2].map(|i| dot(&self.adjugate[i], x) * self.reciprocal)
+    }
+
+    #[inline]
+    fn orientation(&self) -> Orientation {
+        if self.reciprocal < T::zero() { Orientation::Negative } else { Orientation::Positive }
+    }
+}
+
+/// A x of a matrix by columns.
+#[inline]
+fn times<T: Scalar>([a, b, c]: &Columns<T>, x: &[T; 3]) -> [T; 3] {
+    [0, 1, 2].map(|i| a[i] * x[0] + b[i] * x[1] + c[i] * x[2])
+}
+
+#[inline]
+fn minus<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+#[inline]
+fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline]
+fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The sum of all |x_i|.
+#[inline]
+fn norm<T: Scalar>(x: &[T; 3]) -> T {
+    x[0].abs() + x[1].abs() + x[2].abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solve;
+    use crate::linear::{Orientation, solve_dense};
+    use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
+    use proptest::prelude::*;
+
+    #[test]
+    fn six_unknowns_in_two_halves() {
+        let a = Matrix6::from_fn(|i, j| if i == j { -4.0 } else { 1.0 / (1 + i + 2 * j) as f64 });
+        let x = Vector6::new(1.0, -2.0, 3.0, -4.0, 5.0, -6.0);
+        let (solution, orientation) = solve(&a, &(a * x)).expect("a regular matrix");
+        assert!((solution - x).amax() < 1e-14 && orientation == Orientation::Positive);
+        let (_, mirrored) = solve(&Matrix6::from_rows(&[5, 1, 2, 3, 4, 0].map(|i| a.row(i))), &x).unzip();
+        assert!(mirrored.is_none_or(|orientation| orientation == Orientation::Negative));
+    }
+
+    /// Singular, nearly so, not finite, and near the ends of the exponent range.
+    #[test]
+    fn what_is_not_safe_is_left_to_elimination() {
+        let regular = Matrix3::new(2.0, 1.0, 0.0, 1.0, 3.0, 1.0, 0.0, 1.0, 4.0);
+        let b = Vector3::new(1.0, 2.0, 3.0);
+        assert!(solve(&regular, &b).is_some());
+        let nearly = Matrix3::from_columns(&[b, b * 2.0, b]) + Matrix3::identity() * 1e-6;
+        for unsafe_one in [Matrix3::zeros(), nearly, regular * f64::NAN, regular * f64::INFINITY] {
+            assert_eq!(solve(&unsafe_one, &b), None);
+        }
+        for scale in [2.0_f64.powi(-1000), 2.0_f64.powi(-350), 2.0_f64.powi(350), 2.0_f64.powi(1000)] {
+            assert_eq!(solve(&(regular * scale), &b), None);
+            let (x, orientation) = solve_dense(&(regular * scale), &(b * scale)).expect("a regular matrix");
+            assert!((regular * x - b).amax() < 1e-14 && orientation == Orientation::Positive);
+        }
+    }
+
+    fn agrees<const M: usize>(a: SMatrix<f64, M, M>, b: SVector<f64, M>) -> Result<(), TestCaseError> {
+        let Some((x, orientation)) = solve(&a, &b) else { return Ok(()) };
+        let rows: [[f64; M]; M] = core::array::from_fn(|i| core::array::from_fn(|j| a[(i, j)]));
+        prop_assert_eq!(Some(orientation), Orientation::of(rows));
+        let size: f64 = (0..M).map(|j| a.column(j).amax() * x[j].abs()).sum();
+        prop_assert!((a * x - b).amax() <= 65536.0 * f64::EPSILON * (size + b.amax()));
+        Ok(())
+    }
+
+    proptest! {
+        /// Of any matrix, with columns of very different size too.
+        #[test]
+        fn three_unknowns_as_by_elimination(
+            a in prop::array::uniform9(-1.0_f64..1.0),
+            b in prop::array::uniform3(-1.0_f64..1.0),
+            sizes in prop::array::uniform3(-9..9_i32),
+        ) {
+            let columns = Matrix3::from_diagonal(&Vector3::from(sizes.map(|size| 10.0_f64.powi(size))));
+            agrees(Matrix3::from_iterator(a) * columns, b.into())?;
+        }
+
+        #[test]
+        fn six_unknowns_as_by_elimination(
+            a in prop::array::uniform32(-1.0_f64..1.0),
+            b in prop::array::uniform6(-1.0_f64..1.0),
+            shift in -4.0_f64..4.0,
+        ) {
+            let a = Matrix6::from_fn(|i, j| a[(7 * i + j) % 32]) + Matrix6::identity() * shift;
+            agrees(a, b.into())?;
+        }
+    }
+}
