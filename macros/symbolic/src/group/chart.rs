@@ -93,8 +93,8 @@ impl Chart {
     }
 
     /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
-    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
-    /// n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
+    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², p the Pfaffian of Z and Z̃ its
+    /// dual for n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
         let graph = x[0].graph();
         let one = graph.integer(1);
@@ -277,14 +277,27 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
             (scale * z + scale * (z * z), one)
         }
         4 => {
-            let pfaffian = [(0, 5, 1), (1, 4, -1), (2, 3, 1)]
-                .iter()
-                .fold(graph.integer(0), |sum, &(i, j, sign)| sum + sign * (x.entry(i, 0) * x.entry(j, 0)));
-            let shifted = (one + square) * graph.identity(4) + z * z;
-            (2 * ((z + z * z) * shifted), one + square + pfaffian * pfaffian)
+            // Z³ + sZ = pZ̃, as Z Z̃ = −pI
+            let dual = dual(z);
+            let pfaffian = -(z * dual).entry(0, 0);
+            let scale = one / ((one + square + pfaffian * pfaffian) / 2);
+            let [first, last] = [pfaffian * dual, pfaffian * pfaffian * graph.identity(4)];
+            (scale * (z + first + z * z - last), one)
         }
         _ => (2 * (resolvent(z) * z), one),
     }
+}
+
+/// Z̃ with Z̃₁₂ = Z₃₄, and so for all even permutations: the dual of an antisymmetric 4×4 matrix, ZZ̃ = −pI with its Pfaffian p.
+fn dual(z: Expr<'_>) -> Expr<'_> {
+    let entry = |(i, j): (usize, usize)| match (i, j) {
+        _ if i == j => z.graph().integer(0),
+        (0, 2) | (2, 0) | (1, 3) | (3, 1) => z.entry(3 - i, 3 - j),
+        (0, 1) | (1, 0) | (2, 3) | (3, 2) => z.entry((i + 2) % 4, (j + 2) % 4),
+        _ => z.entry((j + 2) % 4, (i + 2) % 4),
+    };
+    let shape = Shape::square(4);
+    z.graph().stack(shape, shape.positions().map(entry).collect())
 }
 
 impl Group {
