@@ -7,7 +7,7 @@ pub use crate::composition::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17, comp
 pub use crate::element::{check_sine_squared, from_increment, inverse, quaternion, quaternion_from_increment};
 pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
 pub use crate::exponential::{exponential, phi};
-pub use crate::implicit::{Equation, LinearEquation, orientation, solve, solve_linear_equation};
+pub use crate::implicit::{Equation, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation};
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::opaque::check_slope;

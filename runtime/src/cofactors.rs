@@ -2,6 +2,8 @@
 //!
 //! A x = b has x = adj A b/det A. Of six unknowns the first three are eliminated together. Where digits cancel, or numbers are near the
 //! ends of the exponent range, there is no answer, and elimination with pivoting takes over.
+//!
+//! All of it is inlined where it is called: a Jacobian that goes through memory costs more than the solution.
 
 use crate::Scalar;
 use crate::linear::Orientation;
@@ -22,29 +24,29 @@ pub(crate) fn solve<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> Option<(SVector<T, M>, Orientation)> {
-    let block = |i: usize, j: usize| -> Columns<T> { [0, 1, 2].map(|c| [0, 1, 2].map(|r| a[(i + r, j + c)])) };
-    let part = |i: usize| [0, 1, 2].map(|r| b[i + r]);
     match M {
         3 => {
-            let inverse = Inverse::of(&block(0, 0))?;
-            let x = inverse.times(&part(0));
+            let inverse = Inverse::of(&block(a, 0, 0))?;
+            let x = inverse.times(&part(b, 0));
             Some((SVector::from_fn(|i, _| x[i]), inverse.orientation()))
         }
         6 => {
             // (A B; C D)(x; y) = (r; s): (D − C A⁻¹B) y = s − C A⁻¹r
-            let [upper, lower] = [block(0, 0), block(3, 0)];
-            let [right, corner] = [block(0, 3), block(3, 3)];
-            let first = Inverse::of(&upper)?;
-            let [ab, ar] = [right.map(|column| first.times(&column)), [first.times(&part(0)); 3]];
-            let carried = ab.map(|column| times(&lower, &column));
-            let schur = [0, 1, 2].map(|j| minus(&corner[j], &carried[j]));
-            let keeps_digits = |j: usize| norm(&schur[j]) >= cancelled::<T>() * (norm(&corner[j]) + norm(&carried[j]));
-            if !(0..3).all(keeps_digits) {
+            let ([lower, right], corner) = ([block(a, 3, 0), block(a, 0, 3)], block(a, 3, 3));
+            let first = Inverse::of(&block(a, 0, 0))?;
+            let (ab, ar) = (first.times_columns(&right), first.times(&part(b, 0)));
+            let carried = columns_times(&lower, &ab);
+            let schur =
+                [minus(&corner[0], &carried[0]), minus(&corner[1], &carried[1]), minus(&corner[2], &carried[2])];
+            if !(keeps_digits(&schur[0], &corner[0], &carried[0])
+                && keeps_digits(&schur[1], &corner[1], &carried[1])
+                && keeps_digits(&schur[2], &corner[2], &carried[2]))
+            {
                 return None;
             }
             let second = Inverse::of(&schur)?;
-            let y = second.times(&minus(&part(3), &times(&lower, &ar[0])));
-            let x = minus(&ar[0], &times(&ab, &y));
+            let y = second.times(&minus(&part(b, 3), &times(&lower, &ar)));
+            let x = minus(&ar, &times(&ab, &y));
             let orientation = first.orientation() * second.orientation();
             Some((SVector::from_fn(|i, _| if i < 3 { x[i] } else { y[i - 3] }), orientation))
         }
@@ -52,8 +54,30 @@ pub(crate) fn solve<T: Scalar, const M: usize>(
     }
 }
 
+/// Three columns of a matrix, from an entry on.
+#[inline(always)]
+fn block<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, i: usize, j: usize) -> Columns<T> {
+    [
+        [a[(i, j)], a[(i + 1, j)], a[(i + 2, j)]],
+        [a[(i, j + 1)], a[(i + 1, j + 1)], a[(i + 2, j + 1)]],
+        [a[(i, j + 2)], a[(i + 1, j + 2)], a[(i + 2, j + 2)]],
+    ]
+}
+
+/// Three entries of a vector.
+#[inline(always)]
+fn part<T: Scalar, const M: usize>(b: &SVector<T, M>, i: usize) -> [T; 3] {
+    [b[i], b[i + 1], b[i + 2]]
+}
+
+/// Whether a difference has more than a few digits of what it was made of.
+#[inline(always)]
+fn keeps_digits<T: Scalar>(difference: &[T; 3], a: &[T; 3], b: &[T; 3]) -> bool {
+    norm(difference) >= cancelled::<T>() * (norm(a) + norm(b))
+}
+
 /// The digits of a sum that may cancel: a factor of 2¹².
-#[inline]
+#[inline(always)]
 fn cancelled<T: Scalar>() -> T {
     T::from_ratio(1, 1 << 12)
 }
@@ -81,40 +105,52 @@ impl<T: Scalar> Inverse<T> {
         is_known.then_some(Self { adjugate, reciprocal })
     }
 
-    #[inline]
+    #[inline(always)]
     fn times(&self, x: &[T; 3]) -> [T; 3] {
-        [0, 1, 2].map(|i| dot(&self.adjugate[i], x) * self.reciprocal)
+        let ([a, b, c], reciprocal) = (&self.adjugate, self.reciprocal);
+        [dot(a, x) * reciprocal, dot(b, x) * reciprocal, dot(c, x) * reciprocal]
     }
 
-    #[inline]
+    #[inline(always)]
+    fn times_columns(&self, [a, b, c]: &Columns<T>) -> Columns<T> {
+        [self.times(a), self.times(b), self.times(c)]
+    }
+
+    #[inline(always)]
     fn orientation(&self) -> Orientation {
         if self.reciprocal < T::zero() { Orientation::Negative } else { Orientation::Positive }
     }
 }
 
 /// A x of a matrix by columns.
-#[inline]
-fn times<T: Scalar>([a, b, c]: &Columns<T>, x: &[T; 3]) -> [T; 3] {
-    [0, 1, 2].map(|i| a[i] * x[0] + b[i] * x[1] + c[i] * x[2])
+#[inline(always)]
+fn times<T: Scalar>([a, b, c]: &Columns<T>, [x, y, z]: &[T; 3]) -> [T; 3] {
+    let [x, y, z] = [*x, *y, *z];
+    [a[0] * x + b[0] * y + c[0] * z, a[1] * x + b[1] * y + c[1] * z, a[2] * x + b[2] * y + c[2] * z]
 }
 
-#[inline]
+#[inline(always)]
+fn columns_times<T: Scalar>(a: &Columns<T>, [x, y, z]: &Columns<T>) -> Columns<T> {
+    [times(a, x), times(a, y), times(a, z)]
+}
+
+#[inline(always)]
 fn minus<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
-    [0, 1, 2].map(|i| a[i] - b[i])
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-#[inline]
+#[inline(always)]
 fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-#[inline]
+#[inline(always)]
 fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The sum of all |x_i|.
-#[inline]
+#[inline(always)]
 fn norm<T: Scalar>(x: &[T; 3]) -> T {
     x[0].abs() + x[1].abs() + x[2].abs()
 }

@@ -7,6 +7,7 @@ mod control;
 mod cost;
 mod displacement;
 mod factors;
+mod fixed_point;
 mod grid;
 mod kernel;
 mod names;
