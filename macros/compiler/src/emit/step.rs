@@ -154,7 +154,8 @@ impl Emitter<'_, '_> {
                 Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
                 Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
                 Solution::Newton => {
-                    let solver = format_ident!("{}", if solve.residual.is_some() { "solve_fixed_point" } else { "solve" });
+                    let solver =
+                        format_ident!("{}", if solve.residual.is_some() { "solve_fixed_point" } else { "solve" });
                     quote!(let #solution = #private::#solver(&#equation, &#target)?;)
                 }
             }

@@ -15,7 +15,10 @@ struct Factored {
 }
 
 /// Takes common factors out of all sums that the outputs are made of.
-pub(super) fn factored(operations: &mut Operations, outputs: impl Iterator<Item = Id>) -> Table<Id, Vec<(Rational, Id)>> {
+pub(super) fn factored(
+    operations: &mut Operations,
+    outputs: impl Iterator<Item = Id>,
+) -> Table<Id, Vec<(Rational, Id)>> {
     let mut factored = Factored { uses: vec![0; operations.len()], ..Factored::default() };
     outputs.for_each(|output| factored.take(operations, output));
     while let Some(sum) = factored.waiting.pop() {

@@ -510,7 +510,8 @@ impl Builder<'_, '_> {
             Operation::Leaf(_) | Operation::Output(..) => false,
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);
-                !(terms.is_empty() || constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
+                !(terms.is_empty()
+                    || constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
             }
             _ => true,
         }

@@ -6,8 +6,8 @@ use clebsch_symbolic::Expr;
 
 use super::scalar::spell_scalar;
 use super::{
-    ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter, Solver,
-    Promise, Side, Space,
+    ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter,
+    Promise, Side, Solver, Space,
 };
 
 impl fmt::Display for Model<'_> {
