@@ -212,7 +212,26 @@ fn exponential(z: Expr<'_>) -> Expr<'_> {
     if identity::vanishes(square * square + s * square) {
         return identity + z + stumpff(2) * square + stumpff(3) * (square * z);
     }
-    z.exponential()
+    match z.shape().rows == 4 && identity::vanishes(z + z.transpose()) {
+        true => double_turn(z),
+        false => z.exponential(),
+    }
+}
+
+/// exp Z = exp Z₊ exp Z₋ of an antisymmetric 4×4 matrix, Z± = (Z ± Z̃)/2, whose squares are −s±I and which commute.
+fn double_turn(z: Expr<'_>) -> Expr<'_> {
+    let identity = z.graph().identity(4);
+    let halves = [1, -1].map(|sign| {
+        let half = (z + sign * dual(z)) / 2;
+        let s =
+            [(0, 1), (0, 2), (0, 3)].into_iter().fold(z.graph().integer(0), |s, (i, j)| s + half.entry(i, j).powi(2));
+        let sine = s.function(Function::Stumpff(1)) * half;
+        // cos − 1
+        (sine, -s * s.function(Function::Stumpff(2)))
+    });
+    let [(a, alpha), (b, beta)] = halves;
+    // (I + αI + A)(I + βI + B)
+    identity + (alpha + beta + alpha * beta) * identity + a + b + beta * a + alpha * b + a * b
 }
 
 /// (I − Z)⁻¹, whose powers and transposes carry all of the Cayley chart.
@@ -300,6 +319,12 @@ fn dual(z: Expr<'_>) -> Expr<'_> {
     z.graph().stack(shape, shape.positions().map(entry).collect())
 }
 
+/// The coordinates of Z̃.
+fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
+    let entries = [(5, 1), (4, -1), (3, 1), (2, 1), (1, -1), (0, 1)];
+    x.graph().stack(x.shape(), entries.into_iter().map(|(k, sign)| sign * x.entry(k, 0)).collect())
+}
+
 impl Group {
     /// The coordinates of log F, the principal logarithm.
     pub fn logarithm(self, f: Expr<'_>) -> Expr<'_> {
@@ -340,6 +365,18 @@ impl Group {
     }
 
     fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
+        match self {
+            // so(4) = so(3) + so(3): ad of either half vanishes on the other
+            Group::SpecialOrthogonal(4) => {
+                let [plus, minus] = [1, -1].map(|sign| self.slope_in_space((xi + sign * dual_coordinates(xi)) / 2));
+                plus + minus - xi.graph().identity(6)
+            }
+            _ => self.slope_in_space(xi),
+        }
+    }
+
+    /// φ(ad_ξ), by Stumpff functions of s where ad³ = −s ad.
+    fn slope_in_space(self, xi: Expr<'_>) -> Expr<'_> {
         let (graph, ad) = (xi.graph(), self.ad(xi));
         let square = ad * ad;
         let s = -square.trace() / 2;
