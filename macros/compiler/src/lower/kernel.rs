@@ -397,7 +397,7 @@ impl Builder<'_, '_> {
         if sums.is_empty() {
             return;
         }
-        let products = std::mem::replace(&mut self.products, Pairs::default());
+        let products = std::mem::take(&mut self.products);
         self.sums = sums;
         self.share_pairs(outputs);
         if self.count_operations(outputs) >= before {
