@@ -59,7 +59,8 @@ fn contract<T: Scalar, E: Equation<T, M>, const M: usize>(
             return Some(xi);
         }
         let ratio = now / before;
-        if !(ratio <= quarter) {
+        let contracts = ratio <= quarter;
+        if !contracts {
             return None;
         }
         if now * ratio <= negligible * scale {
