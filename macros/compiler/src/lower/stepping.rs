@@ -238,8 +238,7 @@ fn solve<'g>(
             let outputs = linearized(scalars, equation.residual, &equation.columns(&formulas.symbols));
             let mut terms = Hoisted::default();
             let linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
-            let newton =
-                fixed_point::Newton { linearize: &linearize, predict: predict.as_ref(), residual: &outputs[0] };
+            let newton = fixed_point::Newton { linearize: &linearize, predict: predict.as_ref() };
             residual = fixed_point::residual(formulas, equation, &newton, scalars, (hoisted, &mut terms));
             let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
             (kernel(scalars, &outputs, Hoisting::Constants(hoisted)), linearize)

@@ -364,19 +364,16 @@ impl Group {
         xi.remembered(&known, || self.make_exponential_slope(xi))
     }
 
-    fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
-        match self {
-            // so(4) = so(3) + so(3): ad of either half vanishes on the other
-            Group::SpecialOrthogonal(4) => {
-                let [plus, minus] = [1, -1].map(|sign| self.slope_in_space((xi + sign * dual_coordinates(xi)) / 2));
-                plus + minus - xi.graph().identity(6)
-            }
-            _ => self.slope_in_space(xi),
-        }
+    /// dexp_ξ on so(4) = so(3) + so(3), where ad of either half vanishes on the other, by four Stumpff functions: many times as long as φ(ad_ξ),
+    /// and as many times faster. `None` for other groups.
+    pub fn exponential_slope_by_halves(self, xi: Expr<'_>) -> Option<Expr<'_>> {
+        (self == Group::SpecialOrthogonal(4)).then(|| {
+            let half = |sign: i64| self.exponential_slope((xi + sign * dual_coordinates(xi)) / 2);
+            half(1) + half(-1) - xi.graph().identity(6)
+        })
     }
 
-    /// φ(ad_ξ), by Stumpff functions of s where ad³ = −s ad.
-    fn slope_in_space(self, xi: Expr<'_>) -> Expr<'_> {
+    fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
         let (graph, ad) = (xi.graph(), self.ad(xi));
         let square = ad * ad;
         let s = -square.trace() / 2;
