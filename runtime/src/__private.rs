@@ -10,7 +10,7 @@ pub use crate::exponential::{exponential, phi};
 pub use crate::free_rotation::{
     FreeMotion, FreeRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
 };
-pub use crate::implicit::{Equation, LinearEquation, orientation, solve, solve_linear_equation};
+pub use crate::implicit::{Equation, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation};
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::opaque::check_slope;

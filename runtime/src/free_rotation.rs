@@ -70,7 +70,8 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where a principal moment is 0, [`Error::NotFinite`].
     pub fn new(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
-        let of_lane = |lane: usize| FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane));
+        let of_lane =
+            |lane: usize| FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane));
         let first = of_lane(0)?;
         let everywhere = |number: T::Lane| T::from_lanes(|_| number);
         let mut all = Self {
@@ -462,10 +463,7 @@ fn in_lanes<T: Scalar>(
     }
     match first {
         Some(error) if !some => Err(error),
-        _ => Ok((
-            T::from_lanes(|lane| all[lane].0),
-            core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i])),
-        )),
+        _ => Ok((T::from_lanes(|lane| all[lane].0), core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i])))),
     }
 }
 

@@ -5,10 +5,12 @@
 //! until it arrives or is found to turn back: then no solution is connected to the identity. [`solve_linear_equation`] does
 //! without iteration where ρ is affine in ξ.
 
+mod fixed_point;
 mod lane;
 mod linear_equation;
 mod path;
 
+pub use fixed_point::solve_fixed_point;
 pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
@@ -41,6 +43,12 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
+
+    /// The residual ρ(ξ) alone, for [`solve_fixed_point`].
+    #[inline]
+    fn residual(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> SVector<T, M> {
+        self.linearize(terms, xi).0
+    }
 
     /// Δ with Dρ Δ = ρ, and the sign of det Dρ; `None` where it is singular in all lanes.
     ///

@@ -94,6 +94,7 @@ extern crate std;
 pub mod __private;
 mod boundary;
 mod bracket;
+mod cofactors;
 mod composition;
 mod conserved;
 mod control;

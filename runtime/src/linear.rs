@@ -3,6 +3,7 @@
 //! For M = 3 the loops unroll and the matrix stays in registers. Only signs of pivots are used, never the determinant, which
 //! overflows long before its factors do.
 
+use crate::cofactors;
 use crate::space::larger;
 use crate::{Mask, Scalar};
 use core::array::from_fn;
@@ -51,7 +52,7 @@ impl Orientation {
 
     /// From the lanes in which the matrix is regular, and those in which an odd number of signs was negative.
     #[inline]
-    fn new<M: Mask>(regular: M, negative: M) -> Self {
+    pub(crate) fn new<M: Mask>(regular: M, negative: M) -> Self {
         Self { positive: (regular & !negative).bits(), negative: (regular & negative).bits() }
     }
 
@@ -166,9 +167,37 @@ pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector
     orientation.lanes::<T>().all().then_some(x)
 }
 
-/// x of A x = b and the sign of det A, by elimination with pivoting; `None` where A is singular or not finite in all lanes.
-#[inline]
+/// x of A x = b and the sign of det A, by cofactors or by elimination with pivoting; `None` where A is singular or not finite in all lanes.
+#[inline(always)]
 pub fn solve_dense<T: Scalar, const M: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SVector<T, M>,
+) -> Option<(SVector<T, M>, Orientation)> {
+    if !cofactors::are_for(M) {
+        return eliminated(a, b);
+    }
+    let (x, orientation, safe) = cofactors::solve(a, b);
+    if safe.all() { Some((x, orientation)) } else { eliminated_at_last((a, b), (x, orientation, safe)) }
+}
+
+/// The same where cofactors do not serve in all lanes.
+#[cold]
+#[inline(never)]
+fn eliminated_at_last<T: Scalar, const M: usize>(
+    (a, b): (&SMatrix<T, M, M>, &SVector<T, M>),
+    (x, orientation, safe): (SVector<T, M>, Orientation, T::Mask),
+) -> Option<(SVector<T, M>, Orientation)> {
+    match eliminated(a, b) {
+        Some((other, turned)) => {
+            let x = x.zip_map(&other, |own, other| T::select(safe, own, other));
+            Some((x, orientation.or(safe.bits(), Some(turned))))
+        }
+        None => safe.any().then(|| (x, orientation.or(safe.bits(), None))),
+    }
+}
+
+#[inline]
+fn eliminated<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> Option<(SVector<T, M>, Orientation)> {

@@ -5,12 +5,13 @@ use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::neumann::Neumann;
+use clebsch_tests::fixtures::principal_body4::PrincipalBody4;
 use clebsch_tests::fixtures::rigid_body4::RigidBody4;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::two_bodies::TwoBodies;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
 
 fn top() -> HeavyTop {
     HeavyTop { mass_matrix: Random::new(91).inertia(), weight: 1.3, center: Vector3::new(0.1, -0.2, 0.7) }
@@ -180,4 +181,36 @@ fn zero_and_tiny_momenta() {
         let omega = Vector3::new(f[(2, 1)], f[(0, 2)], f[(1, 0)]);
         assert!((omega - expected).amax() <= 1e-7 * expected.amax(), "{size}: {omega} and not {expected}");
     }
+}
+
+/// From steps that hardly turn to such that have no solution, which both refuse.
+#[test]
+fn both_solvers_step_alike() {
+    let mut random = Random::new(97);
+    let [mut stepped, mut refused] = [0, 0];
+    for size in [1e-300, 1e-9, 1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e9] {
+        for _ in 0..40 {
+            let j_d = Vector4::from_fn(|_, _| random.between(0.2, 2.0));
+            let (r, mu) = (random.attitude::<4>(), random.vector::<6>() * size);
+            let fixed = PrincipalBody4 { j_d }.into_stepper(1.0).expect("a body");
+            let newton = RigidBody4 { j_d: Matrix4::from_diagonal(&j_d) }.into_stepper(1.0).expect("a body");
+            let steps = [
+                fixed.step(&fixed.state(r, mu).expect("a state")).map(|next| (*next.configuration(), *next.momentum())),
+                newton
+                    .step(&newton.state(r, mu).expect("a state"))
+                    .map(|next| (*next.configuration(), *next.momentum())),
+            ];
+            match steps {
+                [Ok((q, m)), Ok((p, n))] => {
+                    // near the end of the branch the data determine the step to √ε
+                    let near = if size < 0.5 { 1e-14 } else { 1e-6 };
+                    assert!((q - p).amax() <= near && (m - n).amax() <= near * mu.amax(), "{size}: {j_d} {mu}");
+                    stepped += 1;
+                }
+                [Err(_), Err(_)] => refused += 1,
+                steps => panic!("{size}: {steps:?}"),
+            }
+        }
+    }
+    assert!(stepped > 100 && refused > 40, "{stepped} steps, {refused} refused");
 }

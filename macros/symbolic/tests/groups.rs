@@ -220,8 +220,13 @@ fn the_chart_of_the_sine_is_half_the_skew_part() {
 #[test]
 fn slopes_of_exponentials_are_their_differences() {
     let graph = Graph::new();
-    let groups =
-        [Group::SpecialOrthogonal(3), Group::SpecialEuclidean(3), Group::SpecialLinear(3), Group::Heisenberg(1)];
+    let groups = [
+        Group::SpecialOrthogonal(3),
+        Group::SpecialOrthogonal(4),
+        Group::SpecialEuclidean(3),
+        Group::SpecialLinear(3),
+        Group::Heisenberg(1),
+    ];
     for group in groups {
         let m = group.dimension();
         let at = |sign: i64, index: usize| {
@@ -231,7 +236,8 @@ fn slopes_of_exponentials_are_their_differences() {
             graph.stack(Shape::vector(m), (0..m).map(entry).collect())
         };
         let xi = at(0, 0);
-        let slope = graph.constant_value(group.exponential_slope(xi));
+        let slope = group.exponential_slope_by_halves(xi).unwrap_or_else(|| group.exponential_slope(xi));
+        let slope = graph.constant_value(slope);
         for column in 0..m {
             let difference = group.wedge(at(1, column)).exponential() - group.wedge(at(-1, column)).exponential();
             let moved = 50_000 * (difference * (-group.wedge(xi)).exponential());
@@ -240,6 +246,28 @@ fn slopes_of_exponentials_are_their_differences() {
                 let (a, b) = (slope.at(row, column), expected.at(row, 0));
                 assert!((a - b).abs() < 1e-8, "{}: ({row}, {column}): {a} and {b}", group.name(&graph));
             }
+        }
+    }
+}
+
+/// exp Z₊ exp Z₋ by four Stumpff functions against the power series of exp Z, and the increment beside it; simple rotations and such in
+/// which one half is at rest too.
+#[test]
+fn rotations_in_four_dimensions_are_two_in_three() {
+    let graph = Graph::new();
+    let group = Group::SpecialOrthogonal(4);
+    for entries in [[1, 2, -3, 4, -1, 2], [1, 0, 0, 0, 0, 0], [1, 2, 3, 3, -2, 1], [0; 6]] {
+        let x = graph.stack(Shape::vector(6), entries.map(|entry| graph.rational(entry, 5)).to_vec());
+        let series = graph.constant_value(group.wedge(x).exponential() - graph.identity(4));
+        let (increment, one) = Chart::Exponential.increment(group, &[x]);
+        let increment = graph.constant_value(increment / one);
+        let element = graph.constant_value(Chart::Exponential.element(group, &[x]) - graph.identity(4));
+        for (k, expected) in series.entries.iter().enumerate() {
+            let found = [increment.entries[k], element.entries[k]];
+            assert!(
+                found.iter().all(|found| (found - expected).abs() < 1e-14),
+                "{entries:?}: {found:?} and {expected}"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The solver on Moser–Veselov equations 2Jc = a − c×a + (a·c)c, a = hπ, and on equations made to mislead it.
 
 use super::path::LINEARIZATIONS;
-use super::{Equation, Orientation, solve};
+use super::{Equation, Orientation, solve, solve_fixed_point};
 use crate::{Error, Scalar};
 use core::cell::Cell;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector1, Vector3};
@@ -179,6 +179,35 @@ fn without_a_predictor_the_first_correction_is_one() {
         let c = solve(&body, &target).expect("solvable");
         assert!(body.0.linearizations.get() <= most, "{angle}: {}", body.0.linearizations.get());
         assert!((c - solve(&body.0, &target).expect("solvable")).amax() <= 1e-15 * c.amax());
+    }
+}
+
+/// An error without its numbers.
+fn kind(error: Error) -> core::mem::Discriminant<Error> {
+    core::mem::discriminant(&error)
+}
+
+/// Where the iteration contracts and beyond, to the end of the branch and past it.
+#[test]
+fn fixed_points_are_the_solutions_of_newtons_method() {
+    let body = principal([1.0, 1.4, 0.9]);
+    let direction = Vector3::new(0.6, 0.64, 0.48);
+    for angle in [0.0, 1e-300, 1e-9, 1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 0.99, 1.4, 30.0, 1e40, f64::NAN, f64::INFINITY] {
+        let target = body.inertia * direction * angle;
+        match (solve_fixed_point(&body, &target), solve(&body, &target)) {
+            (Ok(c), Ok(expected)) => assert!((c - expected).amax() <= 1e-15 * expected.amax(), "{angle}: {c}"),
+            (fixed, newton) => assert_eq!(fixed.map_err(kind), newton.map_err(kind), "{angle}"),
+        }
+    }
+}
+
+/// An iteration contracts like h|ω|; where it does not by a factor of four, it is given up at once.
+#[test]
+fn iterations_of_fixed_points() {
+    for (angle, most) in [(0.0, 1), (1e-9, 2), (1e-6, 3), (1e-3, 6), (1e-2, 8), (0.1, 16)] {
+        let body = principal([1.0, 1.4, 0.9]);
+        solve_fixed_point(&body, &(body.inertia * Vector3::new(0.6, 0.64, 0.48) * angle)).expect("solvable");
+        assert!(body.linearizations.get() <= most, "{angle}: {}", body.linearizations.get());
     }
 }
 

@@ -65,7 +65,7 @@ pub struct Work {
 }
 
 /// The work of `steps` steps. `rest` is a state in equilibrium, from where a step makes one linearisation and so checks one
-/// pivot for each unknown; no unknowns stand for an explicit step.
+/// determinant for every three unknowns; no unknowns stand for an explicit step.
 pub fn work<S: Clebsch<Scalar = Counted>>(
     stepper: &Stepper<S>,
     start: State<S>,
@@ -82,13 +82,13 @@ pub fn work<S: Clebsch<Scalar = Counted>>(
         (OPERATIONS.get() as f64 / steps as f64, CHECKS.get() as f64 / steps as f64)
     };
     let ((operations, checks), (_, checks_at_rest)) = (count(start, steps), count(rest, 1));
-    let linearizations = if unknowns == 0 { 0.0 } else { 1.0 + (checks - checks_at_rest) / unknowns as f64 };
+    let linearizations = if unknowns == 0 { 0.0 } else { 1.0 + 3.0 * (checks - checks_at_rest) / unknowns as f64 };
     Work { operations, linearizations }
 }
 
 thread_local! {
     static OPERATIONS: Cell<u64> = const { Cell::new(0) };
-    /// Of finiteness: each elimination checks its pivots, each step its result.
+    /// Of finiteness: each linear system checks its determinants, each step its result.
     static CHECKS: Cell<u64> = const { Cell::new(0) };
 }
 

@@ -1,6 +1,7 @@
 //! The scenes at fixed parameters: free body (P1), heavy top (P2), spherical pendulum (P3, P3g), free body in four dimensions (P4).
 
 use crate::counted::{self, Counted, Work, work};
+use crate::engine::{self, Gyroscopic};
 use crate::hand::{Body, Pendulum};
 use crate::hand4::Body4;
 use crate::runge_kutta::{RungeKutta, Swinging, Turning, Turning4};
@@ -41,8 +42,17 @@ pub fn all() -> Vec<Result> {
     results
 }
 
+/// The free body of P1 after a million steps.
+pub fn ends() -> [engine::End; 2] {
+    engine::ends(INERTIA, MOMENTUM)
+}
+
+/// The free body of P1: it turns about its middle axis, nearly.
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
+const MOMENTUM: [f64; 3] = [0.3, 2.0, 0.6];
+
 fn free_body(h: f64) -> Vec<Result> {
-    let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.3, 2.0, 0.6]);
+    let (inertia, momentum) = (INERTIA, MOMENTUM);
     let stepper = PrincipalBody { moments: inertia.into() }.into_stepper(h).expect("a body");
     let start = stepper.state(Matrix3::identity(), momentum.into()).expect("a state");
     let unit = [1.0, 0.0, 0.0, 0.0];
@@ -55,7 +65,13 @@ fn free_body(h: f64) -> Vec<Result> {
         let state = |m| stepper.state(Matrix3::identity().map(Counted), three(m)).expect("a state");
         work(&stepper, state(momentum), state([0.0; 3]), 3, 1000)
     };
-    let trials = [derived(&stepper, start, 1.0), by_hand("rust_hand_newton", hand), by_hand("rust_rk4", rk4)];
+    let engine = Gyroscopic::new(h, inertia, momentum);
+    let trials = vec![
+        derived(&stepper, start, 1.0),
+        by_hand("rust_hand_newton", hand),
+        by_hand("rust_rk4", rk4),
+        by_hand("rust_gyroscopic", engine),
+    ];
     results("P1", h, 100, trials, work)
 }
 
@@ -77,7 +93,7 @@ fn heavy_top(h: f64) -> Vec<Result> {
         let state = |r: Matrix3<f64>, m| stepper.state(r.map(Counted), three(m)).expect("a state");
         work(&stepper, state(attitude, momentum), state(Matrix3::identity(), [0.0; 3]), 3, 1000)
     };
-    let trials = [derived(&stepper, start, 1.0), by_hand("rust_hand_newton", hand), by_hand("rust_rk4", rk4)];
+    let trials = vec![derived(&stepper, start, 1.0), by_hand("rust_hand_newton", hand), by_hand("rust_rk4", rk4)];
     results("P2", h, 50, trials, work)
 }
 
@@ -94,7 +110,7 @@ fn pendulum(name: &'static str, gravity: f64, h: f64) -> Vec<Result> {
         let state = |q, m| stepper.state(three(q), three(m)).expect("a state");
         work(&stepper, state(position, momentum), state([0.0, 0.0, 1.0], [0.0; 3]), 0, 1000)
     };
-    let trials = [derived(&stepper, start, 1.0), by_hand("rust_hand_map", hand), by_hand("rust_rk4", rk4)];
+    let trials = vec![derived(&stepper, start, 1.0), by_hand("rust_hand_map", hand), by_hand("rust_rk4", rk4)];
     results(name, h, 100, trials, work)
 }
 
@@ -117,7 +133,7 @@ fn four_dimensions(h: f64) -> Vec<Result> {
         work(&stepper, state(components), state(SVector::zeros()), 6, 1000)
     };
     // The pairing tr(MᵀΩ) counts each plane twice.
-    let trials = [derived(&stepper, start, 0.5), by_hand("rust_hand_fixed_point", hand), by_hand("rust_rk4", rk4)];
+    let trials = vec![derived(&stepper, start, 0.5), by_hand("rust_hand_fixed_point", hand), by_hand("rust_rk4", rk4)];
     results("P4", h, 100, trials, work)
 }
 
@@ -126,7 +142,7 @@ fn three(entries: [f64; 3]) -> Vector3<Counted> {
 }
 
 /// The first trial is the derived step, the second the same scheme by hand.
-fn results(problem: &'static str, h: f64, duration: u64, trials: [Trial<'_>; 3], work: Work) -> Vec<Result> {
+fn results(problem: &'static str, h: f64, duration: u64, trials: Vec<Trial<'_>>, work: Work) -> Vec<Result> {
     let steps = (1.0 / h).round() as u64; // in a unit of time
     let ends: Vec<_> = trials.iter().map(|trial| (trial.drift)(steps, duration)).collect();
     let apart = ends[0].1.iter().zip(&ends[1].1).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);

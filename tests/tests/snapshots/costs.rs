@@ -37,7 +37,7 @@ fn is_computed_once(kernel: &str) -> bool {
 }
 
 fn is_iterated(kernel: &str) -> bool {
-    kernel.starts_with("linearize")
+    kernel.starts_with("linearize") || kernel.starts_with("residual")
 }
 
 fn is_formula(kernel: &str) -> bool {

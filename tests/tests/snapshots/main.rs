@@ -9,3 +9,4 @@ mod determinism;
 mod fixture;
 mod place;
 mod rejected;
+mod specialised;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clebsch_symbolic::Chart;
 
 use crate::derive::{Equation, Solution, Structure, Substep};
-use crate::lower::Program;
+use crate::lower::{Program, Solve};
 use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side};
 
 /// The text of `DERIVATION`.
@@ -236,12 +236,12 @@ fn scheme(program: &Program<'_>) -> String {
     }
     let mut told: Vec<String> = Vec::new();
     for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps).take(program.formulas.parts) {
-        for equation in &substep.equations {
+        for (equation, solve) in substep.equations.iter().zip(&kernels.solves) {
             let names: Vec<&str> = equation.factors.iter().map(|&k| model.factors[k].name.as_str()).collect();
             told.push(format!(
                 "The momentum equation for {} {}.\n",
                 part(program, equation, &names),
-                how(program, equation)
+                how(program, equation, solve)
             ));
         }
         if kernels.update.is_none() {
@@ -279,7 +279,7 @@ fn part(program: &Program<'_>, equation: &Equation<'_>, names: &[&str]) -> Strin
 }
 
 /// How an equation is solved, and in which chart.
-fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
+fn how(program: &Program<'_>, equation: &Equation<'_>, solve: &Solve) -> String {
     let formulas = &program.formulas;
     let cleared = equation.cleared;
     let chart = match formulas.symbols.charts[equation.factors[0]] {
@@ -326,6 +326,11 @@ fn how(program: &Program<'_>, equation: &Equation<'_>) -> String {
         Solution::FreeRotation => {
             "is solved by the free motion itself: d x − m × x = m for the Gibbs vector x, m = h μ/2, with d = diag(d_i) in principal axes, power series in h² |μ|² and h² μ·Σ⁻¹μ that are made once for the body; no iteration, and no error in h".to_string()
         }
+        Solution::Newton if solve.residual.is_some() => format!(
+            "is solved by the fixed-point iteration x ← x − s h Σ⁻¹ρ(x) in {chart}, s = dx/dξ, which contracts like h|ω|; by Newton's method \
+             where it leaves more than a quarter of a correction{}",
+            structure(&equation.structure)
+        ),
         Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&equation.structure)),
     }
 }

@@ -203,6 +203,17 @@ impl<'g> Emitter<'_, 'g> {
             [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
         let structure = self.equation_structure(&name, derived, Some(solve));
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
+        let alone = solve.residual.as_ref().map(|kernel| {
+            let documentation = docs::formulas("The residual alone.", &formulas[..1], Some(kernel));
+            let body = code::body(&scope, kernel, None);
+            quote! {
+                #documentation
+                #[inline]
+                fn residual(&self, terms: &Self::Terms, x: &#vector) -> #vector {
+                    #body
+                }
+            }
+        });
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
@@ -219,6 +230,8 @@ impl<'g> Emitter<'_, 'g> {
                 }
 
                 #predict
+
+                #alone
 
                 #linearized
                 #[inline]

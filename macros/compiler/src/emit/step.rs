@@ -176,7 +176,11 @@ impl Emitter<'_, '_> {
                     }
                 }
                 Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
-                Solution::Newton => quote!(let #solution = #private::solve(&#equation, &#target)?;),
+                Solution::Newton => {
+                    let solver =
+                        format_ident!("{}", if solve.residual.is_some() { "solve_fixed_point" } else { "solve" });
+                    quote!(let #solution = #private::#solver(&#equation, &#target)?;)
+                }
             }
         });
         let components: Vec<usize> = (0..self.dimension()).collect();

@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
 
+use super::factors;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
 use super::sums;
@@ -121,11 +122,16 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting:
         .iter()
         .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
         .collect();
-    builder.share_pairs();
+    builder.share_pairs(&outputs);
     if !builder.scalars.keeps_sums {
-        builder.share_sums();
+        builder.factor_sums(&outputs);
+        builder.share_sums(&outputs);
     }
     builder.code(&outputs)
+}
+
+fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
+    outputs.iter().flat_map(|(_, entries)| entries.iter().copied())
 }
 
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
@@ -134,11 +140,14 @@ const LONGEST_EXPRESSION: usize = 256;
 const LONGEST_SUM: usize = 96;
 
 /// The index of an operation of a kernel.
-type Id = usize;
+pub(super) type Id = usize;
+
+/// The operations of a kernel, each of them once.
+pub(super) type Operations = Interner<Operation>;
 
 /// An operation of a kernel on its own operations.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-enum Operation {
+pub(super) enum Operation {
     /// A scalar that is read or has been taken out.
     Leaf(Scalar),
     Sum(Rational, Vec<(Rational, Id)>),
@@ -150,10 +159,26 @@ enum Operation {
     Output(Id, Callee, Output),
 }
 
+impl Operation {
+    /// The operations that it is made of.
+    pub(super) fn operands(&self) -> Vec<Id> {
+        match self {
+            Operation::Leaf(_) => Vec::new(),
+            Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Operation::Product(factors) => factors.clone(),
+            Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
+            Operation::Call(_, arguments) => {
+                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
+            }
+            Operation::Output(call, ..) => vec![*call],
+        }
+    }
+}
+
 struct Builder<'a, 'b> {
     scalars: &'a mut Scalars,
     hoisting: Hoisting<'b>,
-    operations: Interner<Operation>,
+    operations: Operations,
     /// The factors of products once pairs are shared.
     products: Pairs,
     /// The terms of sums once sums within them are shared, where there are such.
@@ -349,29 +374,76 @@ impl Builder<'_, '_> {
     }
 
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
-    fn share_pairs(&mut self) {
-        let products = self.operations.values().iter().enumerate().filter_map(|(id, operation)| match operation {
+    fn share_pairs(&mut self, outputs: &[(Shape, Vec<Id>)]) {
+        let used = self.used(outputs);
+        let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
             Operation::Product(factors) => Some((id, factors.clone())),
             _ => None,
         });
         self.products = Pairs::new(products);
         while let Some((a, b)) = self.products.most_common() {
-            let (product, is_new) = self.operations.intern(Operation::Product(vec![a, b]));
-            if is_new {
+            let (product, _) = self.operations.intern(Operation::Product(vec![a, b]));
+            if self.products.get(product).is_none() {
                 self.products.insert(product, vec![a, b]);
             }
             self.products.replace((a, b), product);
         }
     }
 
+    /// Takes common factors out of sums, where that leaves fewer operations once pairs are shared again.
+    fn factor_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
+        let before = self.count_operations(outputs);
+        let sums = factors::factored(&mut self.operations, entries(outputs));
+        if sums.is_empty() {
+            return;
+        }
+        let products = std::mem::take(&mut self.products);
+        self.sums = sums;
+        self.share_pairs(outputs);
+        if self.count_operations(outputs) >= before {
+            (self.sums, self.products) = (Table::default(), products);
+        }
+    }
+
+    /// The additions and multiplications of the outputs, shared ones once.
+    fn count_operations(&self, outputs: &[(Shape, Vec<Id>)]) -> usize {
+        let is_unit = |weight: &Rational| *weight == integer(1) || *weight == integer(-1);
+        let count = |id: Id| match self.operations.value(id) {
+            Operation::Sum(constant, terms) => {
+                let terms = self.terms(id, terms);
+                let scaled = terms.iter().filter(|(weight, _)| !is_unit(weight)).count();
+                (terms.len() + usize::from(!constant.is_zero())).saturating_sub(1) + scaled
+            }
+            Operation::Product(_) => self.operands(id).len() - 1,
+            _ => 0,
+        };
+        self.used(outputs).into_iter().map(count).sum()
+    }
+
     /// Puts a sum that stands within others, as a + b in 1 − a − b, into them by its name.
-    fn share_sums(&mut self) {
-        let operations = self.operations.values().iter().enumerate();
-        let found = operations.filter_map(|(id, operation)| match operation {
-            Operation::Sum(constant, terms) if terms.len() > 1 => Some((id, constant.is_zero(), terms.clone())),
+    fn share_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
+        let used = self.used(outputs);
+        let found = used.into_iter().filter_map(|id| match self.operations.value(id) {
+            Operation::Sum(constant, terms) if terms.len() > 1 => {
+                Some((id, constant.is_zero(), self.terms(id, terms).to_vec()))
+            }
             _ => None,
         });
-        self.sums = sums::shared(found.collect());
+        for (sum, terms) in sums::shared(found.collect()).iter() {
+            self.sums.insert(*sum, terms.clone());
+        }
+    }
+
+    /// What the outputs are made of, in the order in which it was met.
+    fn used(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<Id> {
+        let mut is_used = vec![false; self.operations.len()];
+        let mut waiting: Vec<Id> = entries(outputs).collect();
+        while let Some(id) = waiting.pop() {
+            if !std::mem::replace(&mut is_used[id], true) {
+                waiting.extend(self.operands(id));
+            }
+        }
+        (0..is_used.len()).filter(|&id| is_used[id]).collect()
     }
 
     fn terms<'t>(&'t self, id: Id, terms: &'t [(Rational, Id)]) -> &'t [(Rational, Id)] {
@@ -380,21 +452,16 @@ impl Builder<'_, '_> {
 
     fn operands(&self, id: Id) -> Vec<Id> {
         match self.operations.value(id) {
-            Operation::Leaf(_) => Vec::new(),
             Operation::Sum(_, terms) => self.terms(id, terms).iter().map(|(_, term)| *term).collect(),
-            Operation::Product(_) => self.products.factors(id).to_vec(),
-            Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
-            Operation::Call(_, arguments) => {
-                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
-            }
-            Operation::Output(call, ..) => vec![*call],
+            Operation::Product(factors) => self.products.get(id).unwrap_or(factors).to_vec(),
+            operation => operation.operands(),
         }
     }
 
     fn code(mut self, outputs: &[(Shape, Vec<Id>)]) -> Kernel {
         let mut uses = vec![0; self.operations.len()];
         let mut order = Vec::new();
-        for &entry in outputs.iter().flat_map(|(_, entries)| entries) {
+        for entry in entries(outputs) {
             self.count(entry, &mut uses, &mut order);
         }
         let mut locals = Vec::new();
@@ -443,7 +510,8 @@ impl Builder<'_, '_> {
             Operation::Leaf(_) | Operation::Output(..) => false,
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);
-                !(constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
+                !(terms.is_empty()
+                    || constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
             }
             _ => true,
         }
@@ -461,12 +529,15 @@ impl Builder<'_, '_> {
             Operation::Leaf(scalar) => self.leaf(scalar),
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, &terms).to_vec();
+                if terms.is_empty() {
+                    return Code::Number(constant);
+                }
                 let terms =
                     terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
                 Code::Sum(constant, terms)
             }
             Operation::Product(_) => {
-                let factors = self.products.factors(id).to_vec();
+                let factors = self.operands(id);
                 Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
             }
             Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),

@@ -6,6 +6,8 @@
 mod control;
 mod cost;
 mod displacement;
+mod factors;
+mod fixed_point;
 mod grid;
 mod kernel;
 mod names;

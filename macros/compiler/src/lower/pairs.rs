@@ -38,9 +38,9 @@ impl Uses {
 }
 
 impl Pairs {
-    /// The factors of a product.
-    pub fn factors(&self, product: Id) -> &[Id] {
-        &self.products[&product]
+    /// The factors of a product; `None` of one that is not among these.
+    pub fn get(&self, product: Id) -> Option<&[Id]> {
+        self.products.get(&product).map(Vec::as_slice)
     }
 
     /// Products with their factors, sorted.
@@ -160,9 +160,9 @@ mod tests {
         assert_eq!(pairs.most_common(), Some((2, 3)));
         pairs.insert(20, vec![2, 3]);
         pairs.replace((2, 3), 20);
-        assert_eq!(pairs.factors(10), [1, 20]);
-        assert_eq!(pairs.factors(12), [4, 20]);
-        assert_eq!(pairs.factors(13), [20, 20]);
+        assert_eq!(pairs.get(10).unwrap(), [1, 20]);
+        assert_eq!(pairs.get(12).unwrap(), [4, 20]);
+        assert_eq!(pairs.get(13).unwrap(), [20, 20]);
         assert_eq!(pairs.most_common(), None);
     }
 }

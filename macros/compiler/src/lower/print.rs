@@ -91,6 +91,7 @@ impl Program<'_> {
                 }
                 kernels.push((of("prepare"), &solve.prepare));
                 kernels.extend(solve.predict.iter().map(|kernel| (of("predict"), kernel)));
+                kernels.extend(solve.residual.iter().map(|kernel| (of("residual"), kernel)));
                 kernels.push((of("linearize"), &solve.linearize));
             }
             kernels.extend(step.start_force.iter().map(|kernel| (named("start_force"), kernel)));

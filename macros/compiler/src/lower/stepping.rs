@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape, Zero, identity};
 
 use super::displacement;
+use super::fixed_point;
 use super::kernel::kernel;
 use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
 use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, is_diagonal};
@@ -76,6 +77,8 @@ pub struct Solve {
     pub predict: Option<Kernel>,
     /// |a|² of the closed form, which has to be below one.
     pub sine_squared: Option<Kernel>,
+    /// ρ(x) alone, where x ← x − s·h·Σ⁻¹ρ(x) is tried before Newton's method.
+    pub residual: Option<Kernel>,
     /// ρ(x) and Dρ(x); of a linear equation −ρ(0) and Dρ.
     pub linearize: Kernel,
     /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in.
@@ -241,6 +244,7 @@ fn solve<'g>(
     };
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
+    let mut residual = None;
     let (prepare, linearize) = match equation.solution {
         Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
@@ -258,6 +262,8 @@ fn solve<'g>(
             let outputs = linearized(scalars, equation.residual, &equation.columns(&formulas.symbols));
             let mut terms = Hoisted::default();
             let linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
+            let newton = fixed_point::Newton { linearize: &linearize, predict: predict.as_ref() };
+            residual = fixed_point::residual(formulas, equation, &newton, scalars, (hoisted, &mut terms));
             let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
             (kernel(scalars, &outputs, Hoisting::Constants(hoisted)), linearize)
         }
@@ -273,6 +279,7 @@ fn solve<'g>(
         prepare,
         predict,
         sine_squared,
+        residual,
         linearize,
         is_inertial: equation.is_inertial,
         moves: equation.moves,
@@ -281,6 +288,8 @@ fn solve<'g>(
     let (momenta, coordinates) = solve.read(formulas);
     solve.momenta.extend(momenta.into_iter().filter(|component| !equation.components.contains(component)));
     solve.given.extend(coordinates.into_iter().filter(|component| !equation.components.contains(component)));
+    // Σ⁻¹ρ takes the components of its own unknowns alone
+    solve.residual = solve.residual.filter(|_| solve.momenta.len() == solve.dimension && solve.given.is_empty());
     solve
 }
 

@@ -31,7 +31,7 @@ mod value;
 mod vectors;
 mod velocity;
 
-pub use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise};
+pub use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise, Solver};
 pub use outline::{Outline, outline};
 pub use structure::Structure;
 pub use types::*;
@@ -104,6 +104,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         control: formulas.control,
         endpoint: formulas.endpoint,
         symmetries: formulas.symmetries,
+        solver: dials.solver.as_ref().map(|solver| solver.value),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),

@@ -7,7 +7,7 @@ use clebsch_symbolic::Expr;
 use super::scalar::spell_scalar;
 use super::{
     ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter,
-    Promise, Side, Space,
+    Promise, Side, Solver, Space,
 };
 
 impl fmt::Display for Model<'_> {
@@ -50,6 +50,9 @@ impl fmt::Display for Model<'_> {
         self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;
+        }
+        if let Some(solver) = self.solver {
+            writeln!(f, "  solver     {solver}")?;
         }
         if let Some(chart) = self.chart {
             writeln!(f, "  chart      {chart}")?;
@@ -144,6 +147,15 @@ impl fmt::Display for ChartChoice {
         f.write_str(match self {
             ChartChoice::Cayley => "cayley",
             ChartChoice::Exponential => "exponential",
+        })
+    }
+}
+
+impl fmt::Display for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Solver::Newton => "newton",
+            Solver::FixedPoint => "fixed_point",
         })
     }
 }

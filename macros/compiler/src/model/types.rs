@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::Structure;
-use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise};
+use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise, Solver};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -52,6 +52,8 @@ pub struct Model<'g> {
     pub isotropy: Isotropy,
     /// The chart that the user chooses.
     pub chart: Option<ChartChoice>,
+    /// The solver that the user chooses.
+    pub solver: Option<Solver>,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.

@@ -35,6 +35,15 @@ pub enum ChartChoice {
     Exponential,
 }
 
+/// How an implicit momentum equation is solved first.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Solver {
+    /// By Newton's method.
+    Newton,
+    /// By x ← x − s·h·Σ⁻¹ρ(x), and by Newton's method where that does not contract.
+    FixedPoint,
+}
+
 /// What becomes of motions of the group that move no configuration.
 #[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
 pub enum Isotropy {

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span};
 
-use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order};
+use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Solver};
 use super::{Closure, DeclaredGroup, Potential};
 
 /// A value and where it was written.
@@ -26,6 +26,7 @@ pub(super) enum Kind {
     Order,
     Discretization,
     Chart,
+    Solver,
     Isotropy,
     Emit,
     Scalar,
@@ -35,7 +36,7 @@ pub(super) enum Kind {
 }
 
 /// All keys.
-pub(super) const KEYS: [(&str, Kind); 23] = [
+pub(super) const KEYS: [(&str, Kind); 24] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
@@ -52,6 +53,7 @@ pub(super) const KEYS: [(&str, Kind); 23] = [
     ("order", Kind::Order),
     ("discretization", Kind::Discretization),
     ("chart", Kind::Chart),
+    ("solver", Kind::Solver),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
     ("crate", Kind::Crate),
@@ -73,6 +75,10 @@ pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 5] = [
 /// Charts by name.
 pub(super) const CHARTS: [(&str, Option<ChartChoice>); 2] =
     [("cayley", Some(ChartChoice::Cayley)), ("exponential", Some(ChartChoice::Exponential))];
+
+/// Solvers by name.
+pub(super) const SOLVERS: [(&str, Option<Solver>); 2] =
+    [("newton", Some(Solver::Newton)), ("fixed_point", Some(Solver::FixedPoint))];
 
 /// What becomes of motions that move nothing, by name.
 pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
@@ -98,6 +104,8 @@ pub struct Dials {
     pub discretization: Option<Located<Discretization>>,
     /// `chart = exponential`.
     pub chart: Option<Located<ChartChoice>>,
+    /// `solver = newton`.
+    pub solver: Option<Located<Solver>>,
     /// `isotropy = fixed`.
     pub isotropy: Option<Located<Isotropy>>,
     /// `emit = [generated]`.

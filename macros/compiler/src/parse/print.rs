@@ -53,6 +53,9 @@ impl fmt::Display for Declaration {
         if let Some(chart) = &dials.chart {
             writeln!(f, "  chart      = {}", chart.value)?;
         }
+        if let Some(solver) = &dials.solver {
+            writeln!(f, "  solver     = {}", solver.value)?;
+        }
         if let Some(isotropy) = &dials.isotropy {
             writeln!(f, "  isotropy   = {}", isotropy.value)?;
         }

@@ -8,7 +8,7 @@ use syn::punctuated::Punctuated;
 use syn::{Expr, ExprClosure, LitInt, Path, Token, bracketed, parenthesized};
 
 use super::dials::{Emit, Order};
-use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS};
+use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS};
 use super::{Closure, Potential, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
 
@@ -21,6 +21,7 @@ pub(super) fn example(kind: Kind) -> &'static str {
         Kind::Order => "2",
         Kind::Discretization => "cayley",
         Kind::Chart => "exponential",
+        Kind::Solver => "fixed_point",
         Kind::Isotropy => "free",
         Kind::Emit => "[generated]",
         Kind::Scalar => "f64",
@@ -71,6 +72,7 @@ pub(super) fn read(
             keys.dials.discretization = read_name(key, kind, stream, &DISCRETIZATIONS, diagnostics)?
         }
         Kind::Chart => keys.dials.chart = read_name(key, kind, stream, &CHARTS, diagnostics)?,
+        Kind::Solver => keys.dials.solver = read_name(key, kind, stream, &SOLVERS, diagnostics)?,
         Kind::Isotropy => keys.dials.isotropy = read_name(key, kind, stream, &ISOTROPIES, diagnostics)?,
         Kind::Emit => {
             if !stream.peek(syn::token::Bracket) {

@@ -93,8 +93,8 @@ impl Chart {
     }
 
     /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
-    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z²)((1 + s)I + Z²)/(1 + s + p²) with s = |x|² and p the Pfaffian of Z for
-    /// n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
+    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², p the Pfaffian of Z and Z̃ its
+    /// dual for n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
         let graph = x[0].graph();
         let one = graph.integer(1);
@@ -212,7 +212,26 @@ fn exponential(z: Expr<'_>) -> Expr<'_> {
     if identity::vanishes(square * square + s * square) {
         return identity + z + stumpff(2) * square + stumpff(3) * (square * z);
     }
-    z.exponential()
+    match z.shape().rows == 4 && identity::vanishes(z + z.transpose()) {
+        true => double_turn(z),
+        false => z.exponential(),
+    }
+}
+
+/// exp Z = exp Z₊ exp Z₋ of an antisymmetric 4×4 matrix, Z± = (Z ± Z̃)/2, whose squares are −s±I and which commute.
+fn double_turn(z: Expr<'_>) -> Expr<'_> {
+    let identity = z.graph().identity(4);
+    let halves = [1, -1].map(|sign| {
+        let half = (z + sign * dual(z)) / 2;
+        let s =
+            [(0, 1), (0, 2), (0, 3)].into_iter().fold(z.graph().integer(0), |s, (i, j)| s + half.entry(i, j).powi(2));
+        let sine = s.function(Function::Stumpff(1)) * half;
+        // cos − 1
+        (sine, -s * s.function(Function::Stumpff(2)))
+    });
+    let [(a, alpha), (b, beta)] = halves;
+    // (I + αI + A)(I + βI + B)
+    identity + (alpha + beta + alpha * beta) * identity + a + b + beta * a + alpha * b + a * b
 }
 
 /// (I − Z)⁻¹, whose powers and transposes carry all of the Cayley chart.
@@ -277,14 +296,33 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
             (scale * z + scale * (z * z), one)
         }
         4 => {
-            let pfaffian = [(0, 5, 1), (1, 4, -1), (2, 3, 1)]
-                .iter()
-                .fold(graph.integer(0), |sum, &(i, j, sign)| sum + sign * (x.entry(i, 0) * x.entry(j, 0)));
-            let shifted = (one + square) * graph.identity(4) + z * z;
-            (2 * ((z + z * z) * shifted), one + square + pfaffian * pfaffian)
+            // Z³ + sZ = pZ̃, as Z Z̃ = −pI
+            let dual = dual(z);
+            let pfaffian = -(z * dual).entry(0, 0);
+            let scale = one / ((one + square + pfaffian * pfaffian) / 2);
+            let [first, last] = [pfaffian * dual, pfaffian * pfaffian * graph.identity(4)];
+            (scale * (z + first + z * z - last), one)
         }
         _ => (2 * (resolvent(z) * z), one),
     }
+}
+
+/// Z̃ with Z̃₁₂ = Z₃₄, and so for all even permutations: the dual of an antisymmetric 4×4 matrix, ZZ̃ = −pI with its Pfaffian p.
+fn dual(z: Expr<'_>) -> Expr<'_> {
+    let entry = |(i, j): (usize, usize)| match (i, j) {
+        _ if i == j => z.graph().integer(0),
+        (0, 2) | (2, 0) | (1, 3) | (3, 1) => z.entry(3 - i, 3 - j),
+        (0, 1) | (1, 0) | (2, 3) | (3, 2) => z.entry((i + 2) % 4, (j + 2) % 4),
+        _ => z.entry((j + 2) % 4, (i + 2) % 4),
+    };
+    let shape = Shape::square(4);
+    z.graph().stack(shape, shape.positions().map(entry).collect())
+}
+
+/// The coordinates of Z̃.
+fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
+    let entries = [(5, 1), (4, -1), (3, 1), (2, 1), (1, -1), (0, 1)];
+    x.graph().stack(x.shape(), entries.into_iter().map(|(k, sign)| sign * x.entry(k, 0)).collect())
 }
 
 impl Group {
@@ -324,6 +362,15 @@ impl Group {
     pub fn exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
         let known = xi.graph().images(Map::ExponentialSlope(self));
         xi.remembered(&known, || self.make_exponential_slope(xi))
+    }
+
+    /// dexp_ξ on so(4) = so(3) + so(3), where ad of either half vanishes on the other, by four Stumpff functions: many times as long as φ(ad_ξ),
+    /// and as many times faster. `None` for other groups.
+    pub fn exponential_slope_by_halves(self, xi: Expr<'_>) -> Option<Expr<'_>> {
+        (self == Group::SpecialOrthogonal(4)).then(|| {
+            let half = |sign: i64| self.exponential_slope((xi + sign * dual_coordinates(xi)) / 2);
+            half(1) + half(-1) - xi.graph().identity(6)
+        })
     }
 
     fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {

@@ -1,0 +1,278 @@
+//! Common factors of the terms of a sum: a x + a y is a (x + y), where that saves multiplications.
+
+use clebsch_symbolic::{Rational, Table, Zero, integer};
+
+use super::kernel::{Id, Operation, Operations};
+
+#[derive(Default)]
+struct Factored {
+    /// The terms of each sum that has changed.
+    sums: Table<Id, Vec<(Rational, Id)>>,
+    /// How often each operation stands in what the outputs are made of.
+    uses: Vec<usize>,
+    /// Sums that are still to be looked at.
+    waiting: Vec<Id>,
+}
+
+/// Takes common factors out of all sums that the outputs are made of.
+pub(super) fn factored(
+    operations: &mut Operations,
+    outputs: impl Iterator<Item = Id>,
+) -> Table<Id, Vec<(Rational, Id)>> {
+    let mut factored = Factored { uses: vec![0; operations.len()], ..Factored::default() };
+    outputs.for_each(|output| factored.take(operations, output));
+    while let Some(sum) = factored.waiting.pop() {
+        factored.sum(operations, sum);
+    }
+    factored.sums
+}
+
+/// A factor that is taken out of the terms at these positions.
+struct Choice {
+    factor: Id,
+    positions: Vec<usize>,
+    /// The multiplications that this saves.
+    saved: isize,
+}
+
+impl Factored {
+    /// One use more.
+    fn take(&mut self, operations: &Operations, id: Id) {
+        self.uses[id] += 1;
+        if self.uses[id] > 1 {
+            return;
+        }
+        if matches!(operations.value(id), Operation::Sum(_, terms) if terms.len() > 1) {
+            self.waiting.push(id);
+        }
+        self.operands(operations, id).into_iter().for_each(|operand| self.take(operations, operand));
+    }
+
+    /// One use less.
+    fn release(&mut self, operations: &Operations, id: Id) {
+        self.uses[id] -= 1;
+        if self.uses[id] == 0 {
+            self.operands(operations, id).into_iter().for_each(|operand| self.release(operations, operand));
+        }
+    }
+
+    fn operands(&self, operations: &Operations, id: Id) -> Vec<Id> {
+        match self.sums.get(&id) {
+            Some(terms) => terms.iter().map(|(_, term)| *term).collect(),
+            None => operations.value(id).operands(),
+        }
+    }
+
+    /// Takes out one factor after the other, the one that saves most first.
+    fn sum(&mut self, operations: &mut Operations, sum: Id) {
+        if self.uses[sum] == 0 {
+            return;
+        }
+        while let Some(terms) = self.terms(operations, sum)
+            && let Some(choice) = self.choose(operations, &terms)
+        {
+            let terms = self.taken_out(operations, terms, &choice);
+            self.sums.insert(sum, terms);
+        }
+    }
+
+    fn terms(&self, operations: &Operations, sum: Id) -> Option<Vec<(Rational, Id)>> {
+        match operations.value(sum) {
+            Operation::Sum(_, terms) => Some(self.sums.get(&sum).unwrap_or(terms).clone()),
+            _ => None,
+        }
+    }
+
+    fn choose(&self, operations: &Operations, terms: &[(Rational, Id)]) -> Option<Choice> {
+        let mut positions: Table<Id, Vec<usize>> = Table::default();
+        for (position, (_, term)) in terms.iter().enumerate() {
+            let Operation::Product(factors) = operations.value(*term) else { continue };
+            for (i, factor) in factors.iter().enumerate() {
+                if i == 0 || factors[i - 1] != *factor {
+                    positions.entry(*factor).push(position);
+                }
+            }
+        }
+        let candidates = positions.iter().filter(|(_, positions)| positions.len() > 1);
+        let choices = candidates.map(|(&factor, positions)| {
+            let saved: isize =
+                positions.iter().map(|&position| self.saved(operations, terms[position].1, factor)).sum();
+            Choice { factor, positions: positions.clone(), saved: saved - 1 }
+        });
+        // the first of equals
+        choices.filter(|choice| choice.saved > 0).reduce(|best, next| if next.saved > best.saved { next } else { best })
+    }
+
+    /// The multiplications that a product of which a factor is taken out needs no more.
+    fn saved(&self, operations: &Operations, product: Id, factor: Id) -> isize {
+        let Operation::Product(factors) = operations.value(product) else { return 0 };
+        let rest = without(factors, factor);
+        let is_at_hand = match rest.as_slice() {
+            [_] => true,
+            _ => operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
+        };
+        let before = if self.uses[product] > 1 { 0 } else { factors.len() as isize - 1 };
+        let after = if is_at_hand { 0 } else { rest.len() as isize - 1 };
+        before - after
+    }
+
+    fn is_used(&self, id: Id) -> bool {
+        self.uses.get(id).is_some_and(|&uses| uses > 0)
+    }
+
+    /// The terms with those of a choice replaced by one product.
+    fn taken_out(
+        &mut self,
+        operations: &mut Operations,
+        terms: Vec<(Rational, Id)>,
+        choice: &Choice,
+    ) -> Vec<(Rational, Id)> {
+        let (taken, mut rest): (Vec<_>, Vec<_>) =
+            terms.into_iter().enumerate().partition(|(position, _)| choice.positions.contains(position));
+        let (first, sign) = (taken[0].0, integer(if taken[0].1.0.is_negative() { -1 } else { 1 }));
+        taken.iter().for_each(|(_, (_, product))| self.release(operations, *product));
+        let mut inner = Vec::with_capacity(taken.len());
+        for (_, (coefficient, product)) in taken {
+            let remaining = self.divided(operations, product, choice.factor);
+            // sums that differ in sign are one
+            self.append(operations, &mut inner, (coefficient * &sign, remaining));
+        }
+        inner.retain(|(coefficient, _)| !coefficient.is_zero());
+        let sum = match inner.as_slice() {
+            // what is left of them cancels
+            [] => return rest.into_iter().map(|(_, term)| term).collect(),
+            [(coefficient, only)] if *coefficient == integer(1) => *only,
+            _ => self.made(operations, Operation::Sum(integer(0), inner)),
+        };
+        let product = self.product(operations, choice.factor, sum);
+        self.take(operations, product);
+        let place = rest.iter().position(|(position, _)| *position > first).unwrap_or(rest.len());
+        rest.insert(place, (first, (sign, product)));
+        rest.into_iter().map(|(_, term)| term).collect()
+    }
+
+    fn product(&mut self, operations: &mut Operations, factor: Id, other: Id) -> Id {
+        let mut factors = match operations.value(other) {
+            Operation::Product(factors) => factors.clone(),
+            _ => vec![other],
+        };
+        factors.push(factor);
+        factors.sort_unstable();
+        self.made(operations, Operation::Product(factors))
+    }
+
+    /// A product without one of its factors.
+    fn divided(&mut self, operations: &mut Operations, product: Id, factor: Id) -> Id {
+        match without(&operations.value(product).operands(), factor).as_slice() {
+            [only] => *only,
+            rest => self.made(operations, Operation::Product(rest.to_vec())),
+        }
+    }
+
+    /// Adds a term to a sum; of a sum that stands nowhere else, its terms.
+    fn append(&self, operations: &Operations, sum: &mut Vec<(Rational, Id)>, (coefficient, term): (Rational, Id)) {
+        let is_unit = coefficient == integer(1) || coefficient == integer(-1);
+        match operations.value(term) {
+            Operation::Sum(constant, inner) if constant.is_zero() && is_unit && self.uses[term] == 0 => {
+                let inner = self.sums.get(&term).unwrap_or(inner);
+                inner.iter().for_each(|(weight, term)| add(sum, weight * &coefficient, *term));
+            }
+            _ => add(sum, coefficient, term),
+        }
+    }
+
+    fn made(&mut self, operations: &mut Operations, operation: Operation) -> Id {
+        let (id, _) = operations.intern(operation);
+        self.uses.resize(operations.len(), 0);
+        id
+    }
+}
+
+/// Adds a term to a sum.
+fn add(terms: &mut Vec<(Rational, Id)>, coefficient: Rational, term: Id) {
+    match terms.iter_mut().find(|(_, other)| *other == term) {
+        Some((weight, _)) => *weight += coefficient,
+        None => terms.push((coefficient, term)),
+    }
+}
+
+/// Factors with one of them taken out once.
+fn without(factors: &[Id], factor: Id) -> Vec<Id> {
+    let mut rest = factors.to_vec();
+    if let Some(position) = rest.iter().position(|other| *other == factor) {
+        rest.remove(position);
+    }
+    rest
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::lower::kernel::kernel;
+    use crate::lower::{Hoisting, Input, Scalar, Scalars};
+    use clebsch_symbolic::{Role, Shape, integer};
+
+    /// Entries of an input.
+    fn inputs<const N: usize>(scalars: &mut Scalars) -> [Scalar; N] {
+        let entry = |row| Input {
+            role: Role::Momentum(0),
+            name: "x".to_string(),
+            row,
+            column: 0,
+            is_vector: true,
+            is_scalar: false,
+        };
+        std::array::from_fn(|row| scalars.input(entry(row)))
+    }
+
+    /// Σ ± the products of some factors.
+    fn sum(scalars: &mut Scalars, terms: &[(i64, &[Scalar])]) -> Scalar {
+        let terms: Vec<_> =
+            terms.iter().map(|(sign, factors)| (scalars.product(factors.iter().copied()), integer(*sign))).collect();
+        scalars.sum(integer(0), terms)
+    }
+
+    /// Additions and multiplications of outputs.
+    fn operations(scalars: &mut Scalars, outputs: Vec<Scalar>) -> (usize, usize) {
+        let cost = kernel(scalars, &[(Shape::vector(outputs.len()), outputs)], Hoisting::Nothing).cost();
+        (cost.additions, cost.multiplications)
+    }
+
+    #[test]
+    fn a_common_factor_is_taken_out() {
+        let mut scalars = Scalars::default();
+        let [a, b, c] = inputs(&mut scalars);
+        let whole = sum(&mut scalars, &[(1, &[a, b]), (-1, &[a, c])]);
+        assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
+    }
+
+    #[test]
+    fn what_is_at_hand_is_not_made_again() {
+        let mut scalars = Scalars::default();
+        let [a, b, c] = inputs(&mut scalars);
+        let [left, right] = [[a, b], [a, c]].map(|factors| scalars.product(factors));
+        let whole = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
+        assert_eq!(operations(&mut scalars, vec![left, right, whole]), (1, 2));
+    }
+
+    /// k (a b − c d) + k (a e + c f) = k (a (b + e) + c (f − d)).
+    #[test]
+    fn sums_that_stand_alone_are_opened() {
+        let mut scalars = Scalars::default();
+        let [k, a, b, c, d, e, f] = inputs(&mut scalars);
+        let first = sum(&mut scalars, &[(1, &[a, b]), (-1, &[c, d])]);
+        let second = sum(&mut scalars, &[(1, &[a, e]), (1, &[c, f])]);
+        let whole = sum(&mut scalars, &[(1, &[k, first]), (1, &[k, second])]);
+        assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
+    }
+
+    /// k (a b − a b) + k c: what cancels once the factor is out leaves nothing.
+    #[test]
+    fn what_cancels_leaves_nothing() {
+        let mut scalars = Scalars::default();
+        let [k, a, b, c] = inputs(&mut scalars);
+        let [first, second] =
+            [(1, c), (-1, a)].map(|(sign, other)| sum(&mut scalars, &[(1, &[a, b]), (sign, &[other])]));
+        let whole = sum(&mut scalars, &[(1, &[k, first]), (-1, &[k, second])]);
+        assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
+    }
+}
