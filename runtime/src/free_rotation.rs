@@ -41,6 +41,12 @@ const fn place(i: usize, j: usize) -> usize {
     j * (2 * DEGREE + 3 - j) / 2 + i
 }
 
+/// The coefficients of α^i ε^j; there are some for all that are asked for, without a panic where the optimiser cannot see that.
+#[inline(always)]
+fn coefficient<T: Scalar>(series: &[[T; 4]; MONOMIALS], i: usize, j: usize) -> [T; 4] {
+    series.get(place(i, j)).copied().unwrap_or([T::zero(); 4])
+}
+
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
 
@@ -214,7 +220,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
     #[inline(always)]
     fn polynomial<const K: usize>(&self, lane: usize, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
-        let coefficients = |i: usize, j: usize| of_lane(&self.series[place(i, j)], lane);
+        let coefficients = |i: usize, j: usize| of_lane(&coefficient(&self.series, i, j), lane);
         let mut sum = [<T::Lane as Zero>::zero(); 4];
         for j in (0..=K).rev() {
             let mut inner = coefficients(K - j, j);
@@ -402,7 +408,7 @@ fn reach<T: Real>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
         let epsilon = low + (high - low) * T::from_ratio(sample, SAMPLES);
         for (n, size) in sizes.iter_mut().enumerate() {
             let terms = (0..=n).rev().fold([T::zero(); 4], |sum, j| {
-                let coefficients = &series[place(n - j, j)];
+                let coefficients = coefficient(series, n - j, j);
                 core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
             });
             *size = crate::space::larger(*size, terms[0].abs() + terms[1].abs() + terms[2].abs());
@@ -412,14 +418,15 @@ fn reach<T: Real>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
         true => (negligible::<T>() / size).powf(T::from_ratio(1, n as i64)),
         false => T::one(),
     };
+    let size = |n: usize| sizes.get(n).copied().unwrap_or(T::one());
     DEGREES.map(|degree| {
         // beyond the last degree, terms go on to shrink as they did
         let reach = match degree == DEGREE {
-            true => root(sizes[degree], degree + 1),
-            false => root(sizes[degree + 1], degree + 1),
+            true => root(size(degree), degree + 1),
+            false => root(size(degree + 1), degree + 1),
         };
         let next = degree + 2;
-        let other = if next <= DEGREE { root(sizes[next], next) } else { reach };
+        let other = if next <= DEGREE { root(size(next), next) } else { reach };
         let reach = if other < reach { other } else { reach };
         if reach.is_finite() { reach } else { T::zero() }
     })
@@ -559,15 +566,17 @@ fn series<T: Scalar>(x: &[T; 3]) -> [[T; 4]; MONOMIALS] {
         let mut rate: Series<T> = [[zero; DEGREE + 1]; DEGREE + 1];
         rate[0][0] = x[i];
         for n in 1..=DEGREE {
-            for part in 0..n {
-                rate[n][part + 1] += differences * inverse[n - 1][part];
-                rate[n][part] += -differences * x[i] * inverse[n - 1][part];
-            }
+            // (ε − x_i α) times the polynomial of one degree less
+            let mut factor = [zero; DEGREE + 1];
+            (factor[0], factor[1]) = (-differences * x[i], differences);
+            add_product(&mut rate[n], (&factor, 1), (&inverse[n - 1], n - 1));
         }
         let solution = riccati(x[i], &rate);
-        for n in 0..=DEGREE {
-            for part in 0..=n {
-                all[place(n - part, part)][i] = x[i] * solution[n][part];
+        for (n, row) in solution.iter().enumerate() {
+            for (part, value) in row.iter().enumerate().take(n + 1) {
+                if let Some(entry) = all.get_mut(place(n - part, part)) {
+                    entry[i] = x[i] * *value;
+                }
             }
         }
     }
@@ -648,9 +657,9 @@ fn riccati<T: Scalar>(x: T, rate: &Series<T>) -> Series<T> {
 
 /// Adds the product of two homogeneous polynomials, given with their degrees.
 fn add_product<T: Scalar>(sum: &mut [T; DEGREE + 1], one: (&[T; DEGREE + 1], usize), other: (&[T; DEGREE + 1], usize)) {
-    for (i, a) in one.0[..=one.1].iter().enumerate() {
-        for (j, b) in other.0[..=other.1].iter().enumerate() {
-            sum[i + j] += *a * *b;
+    for (i, a) in one.0.iter().enumerate().take(one.1 + 1) {
+        for (entry, b) in sum.iter_mut().skip(i).zip(other.0.iter().take(other.1 + 1)) {
+            *entry += *a * *b;
         }
     }
 }

@@ -44,10 +44,10 @@ pub extern "C" fn step_between(
 }
 
 modules! {
-    annotated_body centred_body damped_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    annotated_body centred_body damped_body exact_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
-    lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body promised_top quaternion_top regulator
-    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair steered_bob steered_body two_bodies two_pendulums
+    lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body principal_body4 promised_top quaternion_top regulator
+    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body two_bodies two_pendulums
     underwater_vehicle unicycle watched_top weighted_sl2
 }
 
@@ -55,6 +55,7 @@ steppers! {
     step_annotated_body: annotated_body::AnnotatedBody<'static, (), 4>;
     step_centred_body: centred_body::CentredBody;
     step_first_order_top: first_order_top::FirstOrderTop;
+    step_exact_body: exact_body::ExactBody;
     step_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid;
     step_flying_body: flying_body::FlyingBody;
     step_free_particle: free_particle::FreeParticle;
@@ -76,6 +77,7 @@ steppers! {
     step_paper_pendulum: paper_pendulum::PaperPendulum;
     step_planar_pendulum: planar_pendulum::PlanarPendulum;
     step_principal_body: principal_body::PrincipalBody;
+    step_principal_body4: principal_body4::PrincipalBody4;
     step_promised_top: promised_top::PromisedTop;
     step_quaternion_top: quaternion_top::QuaternionTop;
     step_relativistic_particle: relativistic_particle::RelativisticParticle;
@@ -86,6 +88,7 @@ steppers! {
     step_sphere_geodesic: sphere_geodesic::SphereGeodesic;
     step_spherical_pendulum: spherical_pendulum::SphericalPendulum;
     step_spin_pair: spin_pair::SpinPair;
+    step_split_top: split_top::SplitTop;
     step_two_bodies: two_bodies::TwoBodies;
     step_two_pendulums: two_pendulums::TwoPendulums;
     step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;

@@ -25,6 +25,10 @@ fn jacobians_of_all_implicit_equations() {
         let symbols = &program.formulas.symbols;
         for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps) {
             for (equation, solve) in substep.equations.iter().zip(&kernels.solves) {
+                // the runtime's, against power series in its own tests
+                if equation.solution == Solution::FreeRotation {
+                    continue;
+                }
                 let mut values = Values::random(&program, random);
                 let constants: Vec<f64> = values.run(&program.constants, &[], &[]).concat();
                 let terms: Vec<f64> = values.run(&solve.prepare, &constants, &[]).concat();

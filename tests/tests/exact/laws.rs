@@ -150,6 +150,45 @@ fn legendre_transforms_belong_to_the_step() {
     assert!((mirrored.legendre(h, 0.0, &r, &f) - pi).norm() < 1e-13);
 }
 
+/// Powers of two in the units of mass change no bit, near the ends of the exponent range too.
+#[test]
+fn units_do_not_matter() {
+    let (r, pi) = start();
+    let stepped = |scale: f64| {
+        let stepper = ExactBody { moments: MOMENTS * scale }.stepper(0.7).expect("regular");
+        let end = stepper.advance(&stepper.state(r, pi * scale).expect("a state"), 20).expect("steps");
+        (*end.configuration(), end.momentum() / scale)
+    };
+    let plain = stepped(1.0);
+    for exponent in [-900, -400, -1, 400, 900] {
+        assert_eq!(stepped(2.0_f64.powi(exponent)), plain, "2^{exponent}");
+    }
+}
+
+/// Moments that differ by the last place, or by a factor of a million, and steps from nothing to two hundred turns.
+#[test]
+fn any_body_and_any_step() {
+    let pi = Vector3::new(1.0, -1.5, 2.0);
+    for moments in [[1.0, 1.0 + f64::EPSILON, 1.0], [1.0, 1.0, 2.0], [1.0, 2.0, 3.0], [1e-3, 1.0, 1.0], [1e6, 1.0, 1e6]]
+    {
+        let moments = Vector3::from(moments);
+        let velocity = pi.component_div(&moments).norm();
+        for turn in [1e-15, 1e-8, 1e-3, 1.0, 3.141_592_653_589_793, 6.3, 100.0] {
+            let stepper = ExactBody { moments }.stepper(turn / velocity).expect("regular");
+            let begin = stepper.state(Matrix3::identity(), pi).expect("a state");
+            match stepper.step(&begin) {
+                Ok(end) => {
+                    let spatial = (end.configuration() * end.momentum() - pi).norm();
+                    let energy = stepper.energy(&end) / stepper.energy(&begin) - 1.0;
+                    assert!(spatial < 1e-12 && energy.abs() < 1e-12, "{moments:?}, {turn}: {spatial:e}, {energy:e}");
+                }
+                Err(Error::Unsolvable { solvable_fraction, .. }) => assert!(turn == 100.0 && solvable_fraction < 1.0),
+                Err(other) => panic!("{moments:?}, {turn}: {other}"),
+            }
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_stepped_is_said() {
     let stepper = ExactBody { moments: MOMENTS }.stepper(1.0).expect("regular");
