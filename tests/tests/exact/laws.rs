@@ -173,7 +173,7 @@ fn any_body_and_any_step() {
     {
         let moments = Vector3::from(moments);
         let velocity = pi.component_div(&moments).norm();
-        for turn in [1e-15, 1e-8, 1e-3, 1.0, 3.141_592_653_589_793, 6.3, 100.0] {
+        for turn in [1e-15, 1e-8, 1e-3, 1.0, std::f64::consts::PI, 6.3, 100.0] {
             let stepper = ExactBody { moments }.stepper(turn / velocity).expect("regular");
             let begin = stepper.state(Matrix3::identity(), pi).expect("a state");
             match stepper.step(&begin) {
