@@ -84,32 +84,48 @@ pub struct Declared<S: Clebsch, const N: usize> {
     system: S,
     start: (S::Configuration, S::Momentum),
     flat: Flat<S, N>,
+    /// Whether momenta are read half a kick earlier, at the time of their configuration: steps of order 1 are of second order then.
+    is_synchronized: bool,
 }
 
 /// A declared system as a setting.
-pub fn declared<S, const N: usize>(
+pub fn declared<S: Clebsch, const N: usize>(
     method: &'static str,
     system: S,
     start: (S::Configuration, S::Momentum),
     flat: Flat<S, N>,
-) -> Box<dyn Setting<N>>
-where
-    S: Clebsch<Scalar = f64> + Clone + 'static,
-{
-    Box::new(Declared { method, system, start, flat })
+) -> Box<Declared<S, N>> {
+    Box::new(Declared { method, system, start, flat, is_synchronized: false })
 }
 
 impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
+    /// The same, read as [`Stepper::synchronized`] says.
+    pub fn synchronized(self) -> Box<Self> {
+        Box::new(Self { is_synchronized: true, ..self })
+    }
+
     fn prepare(&self, h: f64) -> Result<(Stepper<S>, State<S>), Error> {
         let stepper = self.system.clone().into_stepper(h)?;
-        let start = stepper.state(self.start.0, self.start.1)?;
+        let start = match self.is_synchronized {
+            true => stepper.staggered_state(self.start.0, self.start.1)?,
+            false => stepper.state(self.start.0, self.start.1)?,
+        };
         Ok((stepper, start))
+    }
+
+    /// The numbers of a state, as it is read.
+    fn read(&self, stepper: &Stepper<S>, state: &State<S>) -> SVector<f64, N> {
+        match self.is_synchronized {
+            true => (self.flat)(state.configuration(), &stepper.synchronized(state)),
+            false => (self.flat)(state.configuration(), state.momentum()),
+        }
     }
 }
 
 impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S, N> {
     fn name(&self) -> Name {
-        Name { method: self.method, order: S::ORDER, family: Family::Geometric }
+        let order = if self.is_synchronized { 2 } else { S::ORDER };
+        Name { method: self.method, order, family: Family::Geometric }
     }
 
     fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error> {
@@ -117,7 +133,7 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S
         let (stepper, mut state) = self.prepare(h)?;
         for step in 0..=steps {
             if is_observed(step, steps) {
-                observe(step as f64 * h, &(self.flat)(state.configuration(), state.momentum()));
+                observe(step as f64 * h, &self.read(&stepper, &state));
             }
             if step < steps {
                 state = stepper.step(&state)?;

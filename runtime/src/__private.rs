@@ -8,9 +8,12 @@ pub use crate::element::{below_right_angle, from_increment, inverse, quaternion,
 pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
 pub use crate::exponential::{exponential, phi};
 pub use crate::free_rotation::{
-    FreeMotion, FreeRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
+    FreeRotation, KeptRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
 };
-pub use crate::implicit::{Equation, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation};
+pub use crate::free_rotation_4d::{FreeRotation4, KeptRotation4, free_momentum_4d};
+pub use crate::implicit::{
+    Equation, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
+};
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::opaque::check_slope;

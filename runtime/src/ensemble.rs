@@ -36,7 +36,7 @@ use core::fmt::{self, Display, Formatter};
 /// rocks.advance(100);
 /// assert_eq!(rocks.failures().count(), 0);
 /// for (attitude, momentum) in rocks.bodies() {
-///     assert!((attitude * momentum).x - 0.1 < 1e-12);
+///     assert!(((attitude * momentum).x - 0.1).abs() < 1e-12);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -67,7 +67,8 @@ pub enum Error {
         /// The largest violation that is accepted.
         tolerance: f64,
     },
-    /// The implicit equation of the step has no solution that is connected to the identity: the step is too long.
+    /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact drifts: the motion is longer
+    /// than the most parts that it is made of, some thousand radians.
     Unsolvable {
         /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
         solvable_fraction: f64,
@@ -149,7 +150,7 @@ pub enum Error {
         /// How many bodies there are.
         bodies: usize,
     },
-    /// A step on T*Q was asked of a system with forces: they act on momenta in 𝔤*, which determine no covector.
+    /// A step on T*Q was asked of a system with forces, which act on momenta in 𝔤* and determine no covector, or of momenta alone.
     NoCovector,
     /// The step has no derivative: it is at the very edge of what is solvable.
     SingularTangent {
@@ -226,12 +227,12 @@ impl Display for Error {
             ),
             Self::Unsolvable { solvable_fraction, step_size: None } => write!(
                 f,
-                "the step is too long for this momentum: the implicit equation is solvable up to {solvable_fraction:.3} of it; \
+                "the step is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} of it; \
                  reduce the step size by at least that factor"
             ),
             Self::Unsolvable { solvable_fraction, step_size: Some(h) } => write!(
                 f,
-                "the step of {h:.3e} is too long for this momentum: the implicit equation is solvable up to {solvable_fraction:.3} \
+                "the step of {h:.3e} is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} \
                  of it; reduce the step size below about {:.3e}",
                 solvable_fraction * h
             ),
@@ -287,7 +288,7 @@ impl Display for Error {
                 write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0")
             }
             Self::NoCovector => f.write_str(
-                "a system with forces has no step in (q, p), as forces in 𝔤* are no covectors of the configuration: step in (q, N), by `Stepper::step`",
+                "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the configuration to step: step in (q, N), by `Stepper::step`",
             ),
             Self::SingularTangent { step_size } => write!(
                 f,

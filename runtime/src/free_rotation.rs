@@ -21,34 +21,22 @@
 //! equation follows from d_i = ½τ|M| cot Ψ_i, where tan(Ψ_i − Ψ_j) = |M| (x_i − x_j) σσ_k/(σ_iσ_j) in Weierstrass' functions of τ/2.
 
 use crate::eigen::Spectrum;
-use crate::linear::solve_dense;
+use crate::root::root;
+use crate::space::{each_lane, lane_of, set_lane};
 use crate::{Error, Real, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
+use series::{Coefficients, coefficient};
+use turn::{ratio, turn, turn_in_parts, turn_of_tensor};
 
-/// The degree up to which the series are known.
-const DEGREE: usize = 14;
-
-/// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
-const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
-
-/// The degrees of polynomials that are evaluated: as many terms as α asks for.
-const DEGREES: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 14];
-
-/// The place of the coefficient of α^i ε^j, those of one j after the other.
-const fn place(i: usize, j: usize) -> usize {
-    // Σ_{k<j} (DEGREE + 1 − k)
-    j * (2 * DEGREE + 3 - j) / 2 + i
-}
-
-/// The coefficients of α^i ε^j; there are some for all that are asked for, without a panic where the optimiser cannot see that.
-#[inline(always)]
-fn coefficient<T: Scalar>(series: &[[T; 4]; MONOMIALS], i: usize, j: usize) -> [T; 4] {
-    series.get(place(i, j)).copied().unwrap_or([T::zero(); 4])
-}
+mod series;
+mod turn;
 
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
+
+/// What a motion keeps: d_i x of a part of the time, and the number of equal parts.
+pub type KeptRotation<T> = SVector<T, 4>;
 
 /// What no free motion of a body over a given time changes.
 #[derive(Clone, Copy, Debug)]
@@ -59,16 +47,22 @@ pub struct FreeRotation<T> {
     inertia: [T; 3],
     /// x_i/x
     reciprocals: [T; 3],
-    /// The columns are the principal axes, where they are not those of the coordinates.
-    axes: Option<SMatrix<T, 3, 3>>,
-    /// The coefficients of α^i ε^j in x_i d_i, at [`place`]; the fourth of each is 0, as registers hold two or four.
-    series: [[T; 4]; MONOMIALS],
-    /// Up to which α each of [`DEGREES`] is enough.
+    axes: Axes<T>,
+    series: Coefficients<T>,
+    /// Up to which α a polynomial of each degree is enough.
     reach: [T; 8],
 }
 
-/// A homogeneous polynomial of each degree n in α and ε: entry (n, j) belongs to α^{n−j} ε^j.
-type Series<T> = [[T; DEGREE + 1]; DEGREE + 1];
+/// The axes in which vectors are written.
+#[derive(Clone, Copy, Debug)]
+enum Axes<T> {
+    /// Those of the coordinates, which are principal axes.
+    Coordinates,
+    /// The columns of this rotation, which are principal axes.
+    Principal(SMatrix<T, 3, 3>),
+    /// Those of the coordinates, with J/x and X = xJ⁻¹: numbers with derivatives know no principal axes.
+    Tensor { inertia: SMatrix<T, 3, 3>, reciprocal: SMatrix<T, 3, 3> },
+}
 
 impl<T: Scalar> FreeRotation<T> {
     /// The free motions over the time `h` of a body with the inertia tensor `inertia`, of which the lower triangle is read.
@@ -84,7 +78,13 @@ impl<T: Scalar> FreeRotation<T> {
             scale: everywhere(first.scale),
             inertia: first.inertia.map(everywhere),
             reciprocals: first.reciprocals.map(everywhere),
-            axes: first.axes.map(|axes| axes.map(everywhere)),
+            axes: match first.axes {
+                Axes::Coordinates => Axes::Coordinates,
+                Axes::Principal(axes) => Axes::Principal(axes.map(everywhere)),
+                Axes::Tensor { inertia, reciprocal } => {
+                    Axes::Tensor { inertia: inertia.map(everywhere), reciprocal: reciprocal.map(everywhere) }
+                }
+            },
             series: first.series.map(|coefficients| coefficients.map(everywhere)),
             reach: first.reach.map(everywhere),
         };
@@ -110,10 +110,17 @@ impl<T: Scalar> FreeRotation<T> {
         put_all(&mut self.reach, &other.reach);
         self.series.iter_mut().zip(&other.series).for_each(|(numbers, others)| put_all(numbers, others));
         // the axes of the coordinates are those of the identity, by which nothing is rounded
-        if self.axes.is_some() || other.axes.is_some() {
-            let mut axes = self.axes.unwrap_or_else(identity);
-            put_all(axes.as_mut_slice(), other.axes.unwrap_or_else(identity).as_slice());
-            self.axes = Some(axes);
+        match (&mut self.axes, &other.axes) {
+            (Axes::Coordinates, Axes::Coordinates) => {}
+            (Axes::Tensor { inertia, reciprocal }, Axes::Tensor { inertia: other, reciprocal: inverse }) => {
+                put_all(inertia.as_mut_slice(), other.as_slice());
+                put_all(reciprocal.as_mut_slice(), inverse.as_slice());
+            }
+            (before, other) => {
+                let mut axes = before.rotation();
+                put_all(axes.as_mut_slice(), other.rotation().as_slice());
+                *before = Axes::Principal(axes);
+            }
         }
     }
 
@@ -137,7 +144,7 @@ impl<T: Scalar> FreeRotation<T> {
     pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         let (w, x) = in_lanes(|lane| match self.modified_inertia(lane, &of_lane(&m, lane)) {
-            Some(d) => Ok(turn(&d, &of_lane(&m, lane))),
+            Some(d) => Ok(self.turned(lane, &d, &of_lane(&m, lane))),
             None => self.in_parts(lane, &of_lane(&m, lane)),
         })?;
         Ok((w, self.in_coordinates(x)))
@@ -145,7 +152,7 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
     ///
-    /// The inverse of [`gibbs_vector`](Self::gibbs_vector), by Newton's method with differences for slopes.
+    /// The inverse of [`gibbs_vector`](Self::gibbs_vector).
     #[cold]
     pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
         let c = self.in_principal_axes(gibbs_vector);
@@ -163,49 +170,38 @@ impl<T: Scalar> FreeRotation<T> {
         let reached = |m: &SVector<T::Lane, 3>| {
             let m = [m[0], m[1], m[2]];
             match self.modified_inertia(lane, &m) {
-                Some(d) => Some(turn(&d, &m)),
+                Some(d) => Some(self.turned(lane, &d, &m)),
                 None => self.in_parts(lane, &m).ok(),
             }
             .map(|(w, x)| ratio((w, SVector::from(x))))
         };
         // the equation of Moser and Veselov, which is right to second order
-        let moments = of_lane(&self.inertia, lane);
-        let [a, b, g] = [0, 1, 2].map(|i| moments[i] * c[i]);
-        let cross = SVector::from([c[1] * g - c[2] * b, c[2] * a - c[0] * g, c[0] * b - c[1] * a]);
-        let square = one + c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-        let mut m = (SVector::from([a, b, g]) + cross) * square.recip();
         let c = SVector::from(*c);
-        let mut before = T::Lane::from_f64(f64::INFINITY);
-        for _ in 0..50 {
-            let Some(now) = reached(&m) else { break };
-            let defect = now - c;
-            let size = largest(&defect);
-            // written so that NaN ends it
-            if !(size > <T::Lane as Zero>::zero() && size < before) {
-                return m.into();
-            }
-            before = size;
-            let step = T::Lane::EPSILON.sqrt() * (largest(&m) + T::Lane::EPSILON);
-            let mut slope = SMatrix::<T::Lane, 3, 3>::from_element(<T::Lane as Zero>::zero());
-            for j in 0..3 {
-                let mut beside = m;
-                beside[j] += step;
-                let Some(other) = reached(&beside) else { break };
-                slope.set_column(j, &((other - now) * step.recip()));
-            }
-            let Some((correction, _)) = solve_dense(&slope, &defect) else { break };
-            m -= correction;
-        }
-        nothing
+        let image = match &self.axes {
+            Axes::Tensor { inertia, .. } => lane_of(inertia, lane) * c,
+            _ => SVector::from(of_lane(&self.inertia, lane)).component_mul(&c),
+        };
+        let start = (image + c.cross(&image)) * (one + c.dot(&c)).recip();
+        // of the angle rather than of its tangent, which grows beyond all bounds towards half a turn
+        let scale = (one + c.dot(&c)).recip();
+        root(start, |m| Some((reached(m)? - c) * scale)).map_or(nothing, SVector::into)
     }
 
-    /// d_i x of the whole time in a lane; `None` where that is beyond the reach of the series.
+    /// d_i x of the whole time in a lane, or the coefficients of d; `None` where that is beyond the reach of the series.
     #[inline]
     fn modified_inertia(&self, lane: usize, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
         let squares = m.map(|component| component * component);
         let alpha = squares[0] + squares[1] + squares[2];
-        let [a, b, c] = of_lane(&self.reciprocals, lane);
-        let epsilon = a * squares[0] + b * squares[1] + c * squares[2];
+        let epsilon = match &self.axes {
+            Axes::Tensor { reciprocal, .. } if T::DERIVATIVES > 0 => {
+                let m = SVector::from(*m);
+                m.dot(&(lane_of(reciprocal, lane) * m))
+            }
+            _ => {
+                let [a, b, c] = of_lane(&self.reciprocals, lane);
+                a * squares[0] + b * squares[1] + c * squares[2]
+            }
+        };
         macro_rules! degrees {
             ($($number:literal $degree:literal),*) => {$(
                 if alpha <= self.reach[$number].lane(lane) {
@@ -235,30 +231,86 @@ impl<T: Scalar> FreeRotation<T> {
 
     #[inline]
     fn scaled(&self, lane: usize, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
-        let [x, y, z] = of_lane(&self.inertia, lane);
-        [a * x, b * y, c * z]
+        match &self.axes {
+            Axes::Tensor { .. } if T::DERIVATIVES > 0 => [a, b, c],
+            _ => {
+                let [x, y, z] = of_lane(&self.inertia, lane);
+                [a * x, b * y, c * z]
+            }
+        }
     }
 
-    /// The free motions with the invariants of one of them, here those of `momentum`: for many steps of one.
+    /// A multiple of the quaternion with d ρ − m × ρ = ρ₀ m.
+    #[inline]
+    fn turned(&self, lane: usize, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> (T::Lane, [T::Lane; 3]) {
+        match &self.axes {
+            Axes::Tensor { inertia, reciprocal } if T::DERIVATIVES > 0 => {
+                // X d = c₀ + c₁X + c₂X²
+                let (inertia, reciprocal) = (lane_of(inertia, lane), lane_of(reciprocal, lane));
+                let tensor = inertia * d[0] + SMatrix::identity() * d[1] + reciprocal * d[2];
+                turn_of_tensor(&tensor, m)
+            }
+            _ => turn(d, m),
+        }
+    }
+
+    /// What the motion with the momentum `momentum` keeps, for many steps of it; where it is too long there are 0 parts.
+    pub fn motion(&self, momentum: &SVector<T, 3>) -> KeptRotation<T> {
+        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
+        let mut kept = KeptRotation::<T>::from_element(T::zero());
+        for lane in 0..T::LANES {
+            let m = of_lane(&m, lane);
+            let found = match self.modified_inertia(lane, &m) {
+                Some(inertia) => Ok((inertia, 1)),
+                None => self.parts(lane, &m),
+            };
+            if let Ok(([a, b, c], parts)) = found {
+                set_lane(&mut kept, lane, &SVector::from([a, b, c, T::Lane::from_f64(f64::from(parts))]));
+            }
+        }
+        kept
+    }
+
+    /// As [`gibbs_vector`](Self::gibbs_vector), of a motion that is known.
     ///
     /// # Errors
     /// As [`turn`](Self::turn).
-    pub fn motion(&self, momentum: &SVector<T, 3>) -> Result<FreeMotion<'_, T>, Error> {
+    #[inline]
+    pub fn gibbs_vector_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+        self.turn_of(kept, momentum).map(ratio)
+    }
+
+    /// As [`turn`](Self::turn), of a motion that is known.
+    ///
+    /// # Errors
+    /// As [`turn`](Self::turn).
+    #[inline]
+    pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let mut parts = [1; LANES];
-        let (_, inertia) = in_lanes(|lane| {
-            let m = of_lane(&m, lane);
-            let inertia = match self.modified_inertia(lane, &m) {
-                Some(inertia) => inertia,
-                None => {
-                    let (inertia, count) = self.parts(lane, &m)?;
-                    parts[lane] = count;
-                    inertia
-                }
-            };
-            Ok((<T::Lane as One>::one(), inertia))
+        let (w, x) = in_lanes(|lane| {
+            let ([[a, b, c, parts]], m) = (lane_of(kept, lane).data.0, of_lane(&m, lane));
+            match parts == <T::Lane as One>::one() {
+                true => Ok(self.turned(lane, &[a, b, c], &m)),
+                false => self.turned_in_parts(lane, &[a, b, c], parts.to_f64() as u32, &m),
+            }
         })?;
-        Ok(FreeMotion { rotation: self, inertia, parts })
+        Ok((w, self.in_coordinates(x)))
+    }
+
+    /// The same for a lane whose motion has several parts, or none as it is too long.
+    #[cold]
+    #[inline(never)]
+    fn turned_in_parts(
+        &self,
+        lane: usize,
+        d: &[T::Lane; 3],
+        parts: u32,
+        m: &[T::Lane; 3],
+    ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
+        match parts {
+            0 => self.in_parts(lane, m),
+            _ => Ok(turn_in_parts(|part| self.turned(lane, d, part), m, parts)),
+        }
     }
 
     /// The same rotation as that of equal parts of the time, one after the other.
@@ -266,7 +318,7 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline(never)]
     fn in_parts(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
         let (d, parts) = self.parts(lane, m)?;
-        Ok(turn_in_parts(&d, m, parts))
+        Ok(turn_in_parts(|part| self.turned(lane, &d, part), m, parts))
     }
 
     /// d_i x of a part of the time that is in reach of the series, and how many parts there are.
@@ -292,16 +344,16 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline]
     fn in_principal_axes(&self, vector: &SVector<T, 3>) -> [T; 3] {
         match &self.axes {
-            Some(axes) => axes.tr_mul(vector).into(),
-            None => [vector[0], vector[1], vector[2]],
+            Axes::Principal(axes) => axes.tr_mul(vector).into(),
+            _ => [vector[0], vector[1], vector[2]],
         }
     }
 
     #[inline]
     fn in_coordinates(&self, vector: [T; 3]) -> SVector<T, 3> {
         match &self.axes {
-            Some(axes) => axes * SVector::from(vector),
-            None => SVector::from(vector),
+            Axes::Principal(axes) => axes * SVector::from(vector),
+            _ => SVector::from(vector),
         }
     }
 }
@@ -310,11 +362,11 @@ impl<T: Real> FreeRotation<T> {
     /// The constants of one body.
     fn of_number(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
         let is_diagonal = [(1, 0), (2, 0), (2, 1)].iter().all(|&place| inertia[place] == T::zero());
-        let (moments, axes) = match is_diagonal {
-            true => ([0, 1, 2].map(|i| inertia[(i, i)]), None),
+        let (moments, axes): ([T; 3], _) = match is_diagonal {
+            true => ([0, 1, 2].map(|i| inertia[(i, i)]), Axes::Coordinates),
             false => {
                 let spectrum = Spectrum::of(inertia);
-                (spectrum.values.into(), Some(spectrum.vectors))
+                (spectrum.values.into(), Axes::Principal(spectrum.vectors))
             }
         };
         if moments.iter().any(|moment| !moment.is_finite()) {
@@ -322,46 +374,49 @@ impl<T: Real> FreeRotation<T> {
         }
         let least =
             moments.iter().fold(moments[0], |least, &moment| if moment.abs() < least.abs() { moment } else { least });
+        let singular = Error::SingularKineticEnergy { condition: f64::INFINITY };
+        if T::DERIVATIVES > 0 {
+            return Self::of_tensor(inertia, h, moments.map(T::to_f64), least.to_f64()).ok_or(singular);
+        }
         let relative = moments.map(|moment| moment / least);
         if !relative.iter().all(|moment| moment.is_finite()) {
-            return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
+            return Err(singular);
         }
         let x = relative.map(T::recip);
-        let series = series(&x);
-        let reach = reach(&x, &series);
+        let series = series::on_axes(&x);
+        let reach = series::reach(&x, &series);
         Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series, reach })
     }
-}
 
-/// The free motions of a body with the same energy and the same length of the momentum.
-#[derive(Clone, Copy, Debug)]
-pub struct FreeMotion<'a, T> {
-    rotation: &'a FreeRotation<T>,
-    /// d_i x of a part of the time.
-    inertia: [T; 3],
-    /// How many parts there are in each lane, a power of two.
-    parts: [u32; LANES],
-}
-
-impl<T: Scalar> FreeMotion<'_, T> {
-    /// The Gibbs vector of the rotation that starts with the momentum `momentum`, one of the motion.
-    #[inline]
-    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> SVector<T, 3> {
-        ratio(self.turn(momentum))
+    /// Those with derivatives: by the values of the moments alone it is decided how far series reach.
+    #[cold]
+    fn of_tensor(inertia: &SMatrix<T, 3, 3>, h: T, moments: [f64; 3], least: f64) -> Option<Self> {
+        let values = moments.map(|moment| T::from_f64(moment / least));
+        if !values.iter().all(|moment| moment.is_finite()) {
+            return None;
+        }
+        let x = values.map(T::recip);
+        let reach = series::reach(&x, &series::on_axes(&x));
+        let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| inertia[(i.max(j), i.min(j))]);
+        let relative = symmetric * T::from_f64(least).recip();
+        let columns: [SVector<T, 3>; 3] = core::array::from_fn(|i| relative.column(i).into_owned());
+        let minors =
+            SMatrix::<T, 3, 3>::from_columns(&[0, 1, 2].map(|i| columns[(i + 1) % 3].cross(&columns[(i + 2) % 3])));
+        // the symmetric functions of X are those of J over its determinant
+        let inverse = columns[0].dot(&minors.column(0)).recip();
+        let invariants = [minors.trace() * inverse, relative.trace() * inverse, inverse];
+        let axes = Axes::Tensor { inertia: relative, reciprocal: minors * inverse };
+        let series = series::in_powers(&invariants);
+        Some(Self { scale: half(h) * T::from_f64(least).recip(), inertia: values, reciprocals: x, axes, series, reach })
     }
+}
 
-    /// A multiple (w, x) of its quaternion.
-    #[inline]
-    pub fn turn(&self, momentum: &SVector<T, 3>) -> (T, SVector<T, 3>) {
-        let rotation = self.rotation;
-        let m = rotation.in_principal_axes(momentum).map(|component| component * rotation.scale);
-        let turned = in_lanes(|lane| {
-            let (d, m) = (of_lane(&self.inertia, lane), of_lane(&m, lane));
-            Ok(if self.parts[lane] == 1 { turn(&d, &m) } else { turn_in_parts(&d, &m, self.parts[lane]) })
-        });
-        // by construction: none of them fails
-        let Ok((w, x)) = turned else { return (T::zero(), SVector::from_element(T::zero())) };
-        (w, rotation.in_coordinates(x))
+impl<T: Scalar> Axes<T> {
+    fn rotation(&self) -> SMatrix<T, 3, 3> {
+        match self {
+            Axes::Principal(axes) => *axes,
+            _ => SMatrix::identity(),
+        }
     }
 }
 
@@ -385,64 +440,10 @@ pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3>
     SVector::from_fn(|i, _| f.coords[i] / f.coords[3])
 }
 
-/// What cannot be seen beside 1.
-#[inline]
-fn negligible<T: Real>() -> T {
-    T::from_ratio(1, 8) * T::EPSILON
-}
-
-/// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α.
-///
-/// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
-#[cold]
-fn reach<T: Real>(x: &[T; 3], series: &[[T; 4]; MONOMIALS]) -> [T; 8] {
-    const SAMPLES: i64 = 16;
-    let (mut low, mut high) = (x[0], x[0]);
-    for &other in x {
-        low = if other < low { other } else { low };
-        high = if other > high { other } else { high };
-    }
-    // the largest sum of terms of each degree where α = 1
-    let mut sizes = [T::zero(); DEGREE + 1];
-    for sample in 0..=SAMPLES {
-        let epsilon = low + (high - low) * T::from_ratio(sample, SAMPLES);
-        for (n, size) in sizes.iter_mut().enumerate() {
-            let terms = (0..=n).rev().fold([T::zero(); 4], |sum, j| {
-                let coefficients = coefficient(series, n - j, j);
-                core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
-            });
-            *size = crate::space::larger(*size, terms[0].abs() + terms[1].abs() + terms[2].abs());
-        }
-    }
-    let root = |size: T, n: usize| match size > T::zero() {
-        true => (negligible::<T>() / size).powf(T::from_ratio(1, n as i64)),
-        false => T::one(),
-    };
-    let size = |n: usize| sizes.get(n).copied().unwrap_or(T::one());
-    DEGREES.map(|degree| {
-        // beyond the last degree, terms go on to shrink as they did
-        let reach = match degree == DEGREE {
-            true => root(size(degree), degree + 1),
-            false => root(size(degree + 1), degree + 1),
-        };
-        let next = degree + 2;
-        let other = if next <= DEGREE { root(size(next), next) } else { reach };
-        let reach = if other < reach { other } else { reach };
-        if reach.is_finite() { reach } else { T::zero() }
-    })
-}
-
-/// Lanes, at most.
-const LANES: usize = 16;
-
 /// The numbers of one lane.
 #[inline]
 fn of_lane<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane; N] {
     numbers.map(|number| number.lane(lane))
-}
-
-fn identity<T: Scalar>() -> SMatrix<T, 3, 3> {
-    SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() })
 }
 
 /// What a function of the lane gives, side by side; NaN in the lanes that fail.
@@ -458,210 +459,13 @@ fn in_lanes<T: Scalar>(
         return Ok((T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry))));
     }
     let nothing = T::Lane::from_f64(f64::NAN);
-    let (mut all, mut first, mut some) = ([(nothing, [nothing; 3]); LANES], None, false);
-    for (lane, place) in all.iter_mut().enumerate().take(T::LANES) {
-        match value(lane) {
-            Ok(found) => (*place, some) = (found, true),
-            // lanes that have failed before are NaN, and say nothing new
-            Err(Error::NotFinite { .. }) if first.is_some() => {}
-            Err(error) if matches!(first, None | Some(Error::NotFinite { .. })) => first = Some(error),
-            Err(_) => {}
-        }
-    }
-    match first {
-        Some(error) if !some => Err(error),
-        _ => Ok((T::from_lanes(|lane| all[lane].0), core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i])))),
-    }
+    let all = each_lane::<T, _>((nothing, [nothing; 3]), value)?;
+    Ok((T::from_lanes(|lane| all[lane].0), core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i]))))
 }
 
 #[inline]
 fn half<T: Scalar>(x: T) -> T {
     T::from_ratio(1, 2) * x
-}
-
-fn largest<T: Real>(vector: &SVector<T, 3>) -> T {
-    vector.iter().fold(T::zero(), |most, component| crate::space::larger(most, component.abs()))
-}
-
-/// (p, r), a multiple of the quaternion with d r − m × r = p m.
-#[inline]
-fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
-    let ([a, b, c], [x, y, z]) = (*d, *m);
-    let (xx, yy, zz) = (x * x, y * y, z * z);
-    let square = xx + yy + zz;
-    let p = a * (b * c + xx) + (b * yy + c * zz);
-    let r = [
-        (b * c + square) * x + (b - c) * (y * z),
-        (c * a + square) * y + (c - a) * (z * x),
-        (a * b + square) * z + (a - b) * (x * y),
-    ];
-    (p, r)
-}
-
-/// The quaternion of the turns of equal parts of the time, one after the other.
-fn turn_in_parts<T: Scalar>(d: &[T; 3], m: &[T; 3], parts: u32) -> (T, [T; 3]) {
-    let size = T::from_ratio(1, i64::from(parts));
-    let mut part = m.map(|component| component * size);
-    let mut whole = (T::one(), [T::zero(); 3]);
-    for _ in 0..parts {
-        let (p, r) = unit(turn(d, &part));
-        whole = product(whole, (p, r));
-        part = carried(&part, p, &r);
-    }
-    whole
-}
-
-/// x/w; at half a turn, where w vanishes, that of an angle which differs by a unit in the last place.
-#[inline]
-fn ratio<T: Scalar>((w, x): (T, SVector<T, 3>)) -> SVector<T, 3> {
-    let least = T::EPSILON * (x[0].abs() + x[1].abs() + x[2].abs());
-    x * T::select(w.abs().below(least), least, w).recip()
-}
-
-/// The unit quaternion of a multiple.
-fn unit<T: Scalar>((p, r): (T, [T; 3])) -> (T, [T; 3]) {
-    let [x, y, z] = r;
-    let inverse = (p * p + x * x + y * y + z * z).sqrt().recip();
-    (p * inverse, r.map(|component| component * inverse))
-}
-
-/// The product of two quaternions.
-fn product<T: Scalar>((p, [x, y, z]): (T, [T; 3]), (s, [a, b, c]): (T, [T; 3])) -> (T, [T; 3]) {
-    let scalar = p * s - x * a - y * b - z * c;
-    let vector = [p * a + s * x + y * c - z * b, p * b + s * y + z * a - x * c, p * c + s * z + x * b - y * a];
-    (scalar, vector)
-}
-
-/// Fᵀm of the rotation by a unit quaternion: m − 2ρ₀ ρ × m + 2 ρ × (ρ × m).
-fn carried<T: Scalar>(m: &[T; 3], p: T, r: &[T; 3]) -> [T; 3] {
-    let cross = |[a, b, c]: [T; 3], [x, y, z]: [T; 3]| [b * z - c * y, c * x - a * z, a * y - b * x];
-    let once = cross(*r, *m);
-    let twice = cross(*r, once);
-    let two = T::one() + T::one();
-    core::array::from_fn(|i| m[i] + two * (twice[i] - p * once[i]))
-}
-
-/// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
-#[cold]
-fn series<T: Scalar>(x: &[T; 3]) -> [[T; 4]; MONOMIALS] {
-    let zero = T::zero();
-    let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
-    // e_i, less their mean: coefficients of α and of ε
-    let raw: [[T; 2]; 3] = core::array::from_fn(|i| {
-        let (j, k) = others(i);
-        [x[j] * x[k], x[i]]
-    });
-    let third = T::from_ratio(1, 3);
-    let mean: [T; 2] = core::array::from_fn(|part| third * (raw[0][part] + raw[1][part] + raw[2][part]));
-    let roots: [[T; 2]; 3] = raw.map(|[a, b]| [a - mean[0], b - mean[1]]);
-    let elliptic = elliptic(&roots);
-    let mut all = [[zero; 4]; MONOMIALS];
-    for i in 0..3 {
-        let (j, k) = others(i);
-        let differences = (x[i] - x[j]) * (x[i] - x[k]);
-        // p = 1 + α P_i − e_i + …
-        let mut p = elliptic;
-        (p[1][0], p[1][1]) = (differences - roots[i][0], -roots[i][1]);
-        let inverse = reciprocal(&p);
-        let mut rate: Series<T> = [[zero; DEGREE + 1]; DEGREE + 1];
-        rate[0][0] = x[i];
-        for n in 1..=DEGREE {
-            // (ε − x_i α) times the polynomial of one degree less
-            let mut factor = [zero; DEGREE + 1];
-            (factor[0], factor[1]) = (-differences * x[i], differences);
-            add_product(&mut rate[n], (&factor, 1), (&inverse[n - 1], n - 1));
-        }
-        let solution = riccati(x[i], &rate);
-        for (n, row) in solution.iter().enumerate() {
-            for (part, value) in row.iter().enumerate().take(n + 1) {
-                if let Some(entry) = all.get_mut(place(n - part, part)) {
-                    entry[i] = x[i] * *value;
-                }
-            }
-        }
-    }
-    all
-}
-
-/// τ²/4 ℘(τ/2) = 1 + Σ c_k of degree k, with the roots given by their coefficients of α and ε.
-///
-/// c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k − 3)) Σ c_m c_{k−m}.
-fn elliptic<T: Scalar>(roots: &[[T; 2]; 3]) -> Series<T> {
-    let mut c: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
-    let [[a, p], [b, q], [g, r]] = *roots;
-    // g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃
-    let (tenth, seventh) = (T::from_ratio(1, 10), T::from_ratio(1, 7));
-    c[2][0] = tenth * (a * a + b * b + g * g);
-    c[2][1] = tenth * T::from_f64(2.0) * (a * p + b * q + g * r);
-    c[2][2] = tenth * (p * p + q * q + r * r);
-    c[3][0] = seventh * a * b * g;
-    c[3][1] = seventh * (p * b * g + a * q * g + a * b * r);
-    c[3][2] = seventh * (p * q * g + p * b * r + a * q * r);
-    c[3][3] = seventh * p * q * r;
-    for k in 4..=DEGREE {
-        let mut row = [T::zero(); DEGREE + 1];
-        for m in 2..=k - 2 {
-            add_product(&mut row, (&c[m], m), (&c[k - m], k - m));
-        }
-        let factor = T::from_ratio(3, ((2 * k + 1) * (k - 3)) as i64);
-        c[k] = row.map(|coefficient| factor * coefficient);
-    }
-    c[0][0] = T::one();
-    c
-}
-
-/// 1/p for p = 1 + ….
-fn reciprocal<T: Scalar>(p: &Series<T>) -> Series<T> {
-    let mut inverse: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
-    inverse[0][0] = T::one();
-    for n in 1..=DEGREE {
-        let mut row = [T::zero(); DEGREE + 1];
-        for k in 1..=n {
-            add_product(&mut row, (&p[k], k), (&inverse[n - k], n - k));
-        }
-        inverse[n] = row.map(|coefficient| -coefficient);
-    }
-    inverse
-}
-
-/// V of (2n − 1) V_n = −((α + V²) b)_n with V₀ = 1/b₀, which is the differential equation for d = V.
-fn riccati<T: Scalar>(x: T, rate: &Series<T>) -> Series<T> {
-    let mut v: Series<T> = [[T::zero(); DEGREE + 1]; DEGREE + 1];
-    let mut square = v;
-    v[0][0] = x.recip();
-    square[0][0] = v[0][0] * v[0][0];
-    for n in 1..=DEGREE {
-        let mut row = [T::zero(); DEGREE + 1];
-        // both halves of the square are the same
-        for k in 1..n.div_ceil(2) {
-            add_product(&mut row, (&v[k], k), (&v[n - k], n - k));
-        }
-        row = row.map(|coefficient| coefficient + coefficient);
-        if n % 2 == 0 {
-            add_product(&mut row, (&v[n / 2], n / 2), (&v[n / 2], n / 2));
-        }
-        if n == 1 {
-            row[0] += T::one();
-        }
-        let mut right = row.map(|coefficient| coefficient * x);
-        for k in 1..=n {
-            add_product(&mut right, (&square[n - k], n - k), (&rate[k], k));
-        }
-        let factor = -T::from_ratio(1, (2 * n + 1) as i64);
-        v[n] = right.map(|coefficient| factor * coefficient);
-        let twice = T::from_f64(2.0) * v[0][0];
-        square[n] = core::array::from_fn(|part| row[part] + twice * v[n][part]);
-    }
-    v
-}
-
-/// Adds the product of two homogeneous polynomials, given with their degrees.
-fn add_product<T: Scalar>(sum: &mut [T; DEGREE + 1], one: (&[T; DEGREE + 1], usize), other: (&[T; DEGREE + 1], usize)) {
-    for (i, a) in one.0.iter().enumerate().take(one.1 + 1) {
-        for (entry, b) in sum.iter_mut().skip(i).zip(other.0.iter().take(other.1 + 1)) {
-            *entry += *a * *b;
-        }
-    }
 }
 
 #[cfg(test)]

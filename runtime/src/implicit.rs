@@ -15,6 +15,7 @@ pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
 use crate::linear::{Orientation, rows, solve_dense};
+use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -59,6 +60,15 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         solve_dense(jacobian, residual)
     }
 
+    /// The part of |ξ| below which a correction is not made.
+    ///
+    /// A quarter of ε by the provided method: the solution is then right to rounding. Larger ones are made by [`tolerance`], and end the
+    /// iteration earlier.
+    #[inline]
+    fn tolerance() -> T {
+        T::EPSILON * T::from_ratio(1, 4)
+    }
+
     /// The sign of det Dρ at ξ = 0 and μ = 0, which every solution on the branch has; `None` where it is singular.
     ///
     /// The provided method makes one linearisation. It is asked for in every solve: answer from a constant, made by
@@ -67,6 +77,12 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     fn orientation(&self) -> Option<Orientation> {
         at_identity(self)
     }
+}
+
+/// A part of |ξ| for [`Equation::tolerance`], no smaller than the rounding of T.
+#[inline]
+pub fn tolerance<T: Scalar>(part: f64) -> T {
+    T::from_f64(part.max(T::Lane::EPSILON.to_f64() / 4.0))
 }
 
 /// The sign of det Dρ at ξ = 0 and μ = 0, from a linearisation.
@@ -95,8 +111,8 @@ const QUICK: usize = 12;
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane the same as for a single number. Lanes without a
 /// solution are NaN.
 ///
-/// Accuracy: the correction that Newton's method would make next is below a quarter of a unit in the last place of ξ, or the
-/// residual is round-off. Work: at most 12 linearisations, and where they do not decide at most
+/// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last place
+/// unless the equation says otherwise, or the residual is round-off. It is that always where Newton's method alone does not decide. Work: at most 12 linearisations, and where they do not decide at most
 /// [`LINEARIZATIONS`] more (ten to two hundred in practice).
 ///
 /// # Errors
@@ -118,7 +134,7 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
 /// up as soon as it does not contract cleanly, or leaves the branch.
 ///
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
-/// would come next, and is not made if it cannot be seen. The predictor counts as the correction of ξ = 0, and where it is 0 the
+/// would come next, and is not made if it is negligible. The predictor counts as the correction of ξ = 0, and where it is 0 the
 /// first correction is the predictor.
 #[inline]
 fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
@@ -131,7 +147,8 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     let terms = equation.prepare(target);
     let mut start = xi;
     let half = T::from_ratio(1, 2);
-    let negligible = T::EPSILON * T::from_ratio(1, 4);
+    let negligible = E::tolerance();
+    let visible = larger(T::EPSILON, negligible);
     let mut predicted = size(&start);
     let (mut before, mut residual_before) = (predicted, xi);
     for iteration in 0..QUICK {
@@ -147,7 +164,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         xi = select(open, &(xi - correction), &xi);
         let (now, scale) = (size(&correction), size(&xi));
         // All comparisons are written so that NaN leads to no solution.
-        let seen = open & now.at_most(T::EPSILON * scale);
+        let seen = open & now.at_most(visible * scale);
         (solved, open) = (solved | seen, open & !seen);
         if !open.any() {
             break;

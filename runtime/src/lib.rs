@@ -39,6 +39,8 @@
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
+//! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
+//! | read steps of `order = 1` to second order | [`Stepper::synchronized`], started by [`Stepper::staggered_state`] |
 //! | follow a potential in time | [`Stepper::state_at`] and [`State::time`], which exist where the time matters |
 //! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |
 //! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
@@ -111,6 +113,7 @@ mod ensemble;
 mod error;
 mod exponential;
 mod free_rotation;
+mod free_rotation_4d;
 pub mod group;
 pub mod implicit;
 #[cfg(feature = "lanes")]
@@ -120,6 +123,7 @@ mod logarithm;
 mod opaque;
 mod orbit;
 mod parameters;
+mod root;
 mod scalar;
 mod space;
 mod splitting;

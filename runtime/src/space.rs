@@ -303,6 +303,34 @@ pub(crate) fn by_lane<T: Scalar, const R: usize, const C: usize>(
     value
 }
 
+/// Lanes, at most.
+pub(crate) const MOST_LANES: usize = 16;
+
+/// What a function of the lane gives, lane by lane; `nothing` in the lanes that fail.
+///
+/// # Errors
+/// That of the first lane that is not merely NaN, where all of them fail.
+#[inline]
+pub(crate) fn each_lane<T: Scalar, V: Copy>(
+    nothing: V,
+    mut value: impl FnMut(usize) -> Result<V, Error>,
+) -> Result<[V; MOST_LANES], Error> {
+    let (mut all, mut first, mut some) = ([nothing; MOST_LANES], None, false);
+    for (lane, place) in all.iter_mut().enumerate().take(T::LANES) {
+        match value(lane) {
+            Ok(found) => (*place, some) = (found, true),
+            // lanes that have failed before are NaN, and say nothing new
+            Err(Error::NotFinite { .. }) if first.is_some() => {}
+            Err(error) if matches!(first, None | Some(Error::NotFinite { .. })) => first = Some(error),
+            Err(_) => {}
+        }
+    }
+    match first {
+        Some(error) if !some => Err(error),
+        _ => Ok(all),
+    }
+}
+
 /// The first error of a check that is made lane by lane.
 #[inline]
 pub(crate) fn check_lanes<T: Scalar>(check: impl FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {

@@ -14,7 +14,7 @@
 //! with four kicks and order 4, the nodes of Gauss and Legendre, and (8, 6, 6) with five and order 6. Without gradients they are those of S. Blanes and
 //! P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142 (2002).
 
-use crate::{Error, Scalar};
+use crate::{Clock, Error, Scalar, Time};
 
 /// A kick with the drift before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,16 +92,16 @@ pub fn split<T: Scalar, S, const K: usize>(
     let kicked = |state: S, passed: T, begun: T, part: &Kick| {
         kick(begun + passed * h, T::from_f64(part.weight), T::from_f64(part.gradient), state)
     };
-    let (mut state, mut begun) = (drift(end, start)?, t);
+    let (mut state, mut begun) = (drift(end, start)?, Clock::at(t));
     for left in (0..steps).rev() {
         let mut passed = end;
-        state = kicked(state, passed, begun, first);
+        state = kicked(state, passed, begun.now(), first);
         for part in others {
             let size = T::from_f64(part.drift);
             passed += size;
-            state = kicked(drift(size, state)?, passed, begun, part);
+            state = kicked(drift(size, state)?, passed, begun.now(), part);
         }
-        begun += h;
+        begun = begun.after_step(h);
         state = drift(if left == 0 { end } else { end + end }, state)?;
     }
     Ok(state)

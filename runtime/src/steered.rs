@@ -38,7 +38,7 @@ pub fn forced_step<S: Clebsch>(
 where
     (S::Configuration, S::Momentum): Space<S::Scalar>,
 {
-    let impulse = system.impulse(constants, t, q);
+    let impulse = system.impulse(constants, t, q, mu);
     let (q, mu, _) = system.step(constants, t, q, mu, &impulse, u)?;
     check_reached((q, mu))
 }

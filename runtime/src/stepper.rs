@@ -2,6 +2,7 @@
 
 mod each;
 mod formulas;
+mod staggered;
 mod step_size;
 
 use crate::space::check_lanes;
@@ -101,7 +102,8 @@ impl<S: Clebsch> Stepper<S> {
     /// The same as stepping so often but for rounding, and faster: no state between is made, and splittings drift from one step into the next.
     ///
     /// # Errors
-    /// As [`step`](Self::step); `state` is untouched.
+    /// As [`step`](Self::step), at whichever step; `state` is untouched. Where the scalar has lanes, [`Error::InLane`] names one of those that fail:
+    /// take the lanes one by one, or step after step, to know the others and how far each came.
     #[inline]
     pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
         let State { time, configuration, momentum, .. } = state;
@@ -156,14 +158,14 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
-        let anew = self.system.impulse(&self.constants, state.time.now(), &state.configuration);
+        let anew = self.system.impulse(&self.constants, state.time.now(), &state.configuration, &state.momentum);
         if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
     ///
     /// # Errors
-    /// As [`step`](Self::step), and [`Error::NoCovector`] where forces act.
+    /// As [`step`](Self::step), and [`Error::NoCovector`] where forces act or momenta are stepped alone.
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let CotangentState { time, configuration, covector } = state;
@@ -222,10 +224,13 @@ impl<S: Clebsch> Stepper<S> {
     fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
         self.check_configuration(&q)?;
         check_momentum(&self.system, &q, &mu)?;
-        let impulse = self.system.impulse(&self.constants, t, &q);
-        if !impulse.is_finite() {
-            return Err(Error::NotFinite { name: "the gradient of the potential at the configuration" });
-        }
+        self.made_state(t, q, mu)
+    }
+
+    /// The state (q, N) with what its first step takes.
+    fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        let impulse = self.system.impulse(&self.constants, t, &q, &mu);
+        check_gradient(&impulse)?;
         Ok(State { time: S::Time::at(t), configuration: q, momentum: mu, impulse, h: self.h })
     }
 
@@ -322,6 +327,13 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
     ) -> Result<CotangentState<S>, Error> {
         check_time(t)?;
         self.checked_cotangent_state(t, q, p)
+    }
+}
+
+fn check_gradient<T: Scalar, I: Space<T>>(kick: &I) -> Result<(), Error> {
+    match kick.is_finite() {
+        true => Ok(()),
+        false => Err(Error::NotFinite { name: "the gradient of the potential at the configuration" }),
     }
 }
 

@@ -1,7 +1,8 @@
 //! The trait that the derive macro implements.
 
-use crate::{Error, Scalar, Space, Stepper, Time};
+use crate::{Clock, Error, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
+use core::ops::{Add, Sub};
 
 /// A mechanical or control system with everything that is derived from its declaration.
 ///
@@ -19,15 +20,16 @@ use core::fmt::Debug;
 pub trait Clebsch {
     /// The number type.
     type Scalar: Scalar;
-    /// q, nested as in the declared action.
+    /// q, nested as in the declared action; `()` where the momentum is stepped alone, by `emit = [momentum]`.
     type Configuration: Space<Self::Scalar>;
     /// F, nested as in the declared action.
     type Element: Space<Self::Scalar>;
     /// μ: all components in one vector.
-    type Momentum: Space<Self::Scalar>;
+    type Momentum: Space<Self::Scalar> + Add<Output = Self::Momentum> + Sub<Output = Self::Momentum>;
     /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
     type MomentumMatrix: Space<Self::Scalar>;
-    /// The kick that the end of one step and the start of the next share; `()` where there is none.
+    /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps; `()` where
+    /// there is none.
     type Impulse: Space<Self::Scalar>;
     /// What forces take from outside during a step, `()` where they take nothing; the `u` of `force`.
     type Input: Space<Self::Scalar>;
@@ -84,8 +86,25 @@ pub trait Clebsch {
         mu: &Self::Momentum,
     ) -> Result<Self::Element, Error>;
 
-    /// The kick at q and the time t of q, shared by the end of one step and the start of the next.
-    fn impulse(&self, constants: &Self::Constants, t: Self::Scalar, q: &Self::Configuration) -> Self::Impulse;
+    /// The kick at q and the time t of q, shared by the end of one step and the start of the next, or what the free motion with the momentum μ
+    /// keeps.
+    fn impulse(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Self::Impulse;
+
+    /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½ J(q, ∂(U₁ − U₀)), where
+    /// U₀(t, q) and U₁(t, q) are what ℓd adds at the start and at the end of a step.
+    ///
+    /// The time is that of the configuration. −h/2 J(q, ∂V) with `order = 1`, half of the kick; 0 with every other order, where N is π. See
+    /// [`Stepper::synchronized`](crate::Stepper::synchronized).
+    fn stagger(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration) -> Self::Momentum {
+        let _ = (h, t, q);
+        Self::Momentum::origin()
+    }
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, given the impulse
     /// at q and the input of its forces; returns the impulse at q⁺ too.
@@ -120,11 +139,11 @@ pub trait Clebsch {
         impulse: &Self::Impulse,
         u: &Self::Input,
     ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error> {
-        let (mut state, mut t) = ((*q, *mu, *impulse), t);
+        let (mut state, mut clock) = ((*q, *mu, *impulse), Clock::at(t));
         for _ in 0..steps {
             let (q, mu, impulse) = &state;
-            state = self.step(constants, t, q, mu, impulse, u)?;
-            t += h;
+            state = self.step(constants, clock.now(), q, mu, impulse, u)?;
+            clock = clock.after_step(h);
         }
         Ok(state)
     }
@@ -132,7 +151,7 @@ pub trait Clebsch {
     /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
     ///
     /// # Errors
-    /// As [`inverse_legendre`](Self::inverse_legendre), and [`Error::NoCovector`] where forces act.
+    /// As [`inverse_legendre`](Self::inverse_legendre), and [`Error::NoCovector`] where forces act or momenta are stepped alone.
     fn step_symmetric(
         &self,
         constants: &Self::Constants,

@@ -202,7 +202,7 @@ where
             return Err(Error::NotFinite { name: "the state after the step" });
         }
         let time = state.time.after_step(self.step_size());
-        let impulse = self.system().impulse(self.constants(), time.now(), &q);
+        let impulse = self.system().impulse(self.constants(), time.now(), &q, &mu);
         Ok(State { time, configuration: q, momentum: mu, impulse, h: self.step_size() })
     }
 

@@ -7,10 +7,11 @@ use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::principal_body::PrincipalBody;
+use clebsch_tests::fixtures::rigid_body4::RigidBody4;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 
 const H: f64 = 0.02;
 
@@ -86,6 +87,34 @@ fn moser_veselov_lagrangian_is_the_cost_of_the_mass_matrix() {
         let (cost, lagrangian) = (cost.expect("a step"), lagrangian.expect("a step"));
         assert_near(cost.configuration(), lagrangian.configuration(), 1e-13, "R");
         assert_near(cost.momentum(), lagrangian.momentum(), 1e-13, "π");
+    }
+}
+
+/// A body in four dimensions whose mass matrix has products of inertia.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<4>, R: SO<4>| R * F,
+    lagrangian     = |omega| (self.j_d * omega.matrix() * omega.matrix().transpose()).trace(),
+    discretization = moser_veselov,
+)]
+pub struct Body4 {
+    #[clebsch(symmetric)]
+    pub j_d: Matrix4<f64>,
+}
+
+/// All entries of a mass matrix are found, those off the diagonal too.
+#[test]
+fn moser_veselov_lagrangian_in_four_dimensions() {
+    let random = &mut Random::new(28);
+    let j_d = random.inertia::<4>();
+    let cost = RigidBody4 { j_d }.stepper(H).expect("a body");
+    let lagrangian = Body4 { j_d }.stepper(H).expect("a body");
+    let (r, mu) = (random.attitude(), random.vector::<6>());
+    let starts = (cost.state(r, mu).expect("a state"), lagrangian.state(r, mu).expect("a state"));
+    for (cost, lagrangian) in cost.trajectory(starts.0).zip(lagrangian.trajectory(starts.1)).take(100) {
+        let (cost, lagrangian) = (cost.expect("a step"), lagrangian.expect("a step"));
+        assert_near(cost.configuration(), lagrangian.configuration(), 1e-13, "R");
+        assert_near(cost.momentum(), lagrangian.momentum(), 1e-13, "μ");
     }
 }
 

@@ -54,7 +54,7 @@ macro_rules! potentials {
                     let h = 2.0;
                     let constants = particle.constants(h).expect("a regular particle");
                     // J(x, −h/2 ∂V) = −∂V
-                    let kick = particle.impulse(&constants, 0.0, &x);
+                    let kick = particle.impulse(&constants, 0.0, &x, &nalgebra::zero());
                     for i in 0..3 {
                         let at = |e: f64| plain(&particle, x + Vector3::ith(i, e));
                         let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;

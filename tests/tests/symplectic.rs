@@ -223,7 +223,7 @@ fn steps_on_the_sphere_are_poisson_in_configuration_and_momentum() {
         let n = q.cross(&random.vector());
         let constants = pendulum.constants(Dual::constant(H)).expect("a regular pendulum");
         let (at, momentum) = (variables::<6, 3, 1>(&q, 0), variables(&n, 3));
-        let impulse = pendulum.impulse(&constants, Dual::constant(0.0), &at);
+        let impulse = pendulum.impulse(&constants, Dual::constant(0.0), &at, &momentum);
         let (next, next_momentum, _) =
             pendulum.step(&constants, Dual::constant(0.0), &at, &momentum, &impulse, &()).expect("a solvable step");
         let d = jacobian(next.iter().chain(next_momentum.iter()));

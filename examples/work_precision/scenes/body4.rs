@@ -71,6 +71,25 @@ bodies! {
     };
 }
 
+/// The motion itself, which no order makes better.
+mod exact {
+    use clebsch::Clebsch;
+    use nalgebra::Matrix4;
+
+    /// A free body.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: SO<4>, R: SO<4>| R * F,
+        lagrangian     = |xi| (self.j_d * xi.matrix() * xi.matrix().transpose()).trace(),
+        discretization = exact,
+    )]
+    pub struct Body {
+        /// Half the second moments of mass, kg·m².
+        #[clebsch(symmetric)]
+        pub j_d: Matrix4<f64>,
+    }
+}
+
 /// J_d = diag(1, 1.5, 2, 2.5).
 pub fn scene() -> Scene<22> {
     let inertia = inertia();
@@ -82,6 +101,14 @@ pub fn scene() -> Scene<22> {
         pack(&(attitude * omega), &above(&(product - product.transpose())))
     };
     let mut settings = declarations();
+    // components of a momentum in the basis of SO(4) are twice the entries below the diagonal
+    let exact_start = (Matrix4::identity(), MOMENTUM * -2.0);
+    settings.push(declared(
+        "exact",
+        exact::Body { j_d: j_d() },
+        exact_start,
+        |attitude: &Matrix4<f64>, momentum: &Vector6<f64>| pack(attitude, &(momentum * -0.5)),
+    ));
     let start = pack(&Matrix4::identity(), &MOMENTUM);
     settings.extend(Equation { field, start, flat: |y| *y }.settings());
     Scene {

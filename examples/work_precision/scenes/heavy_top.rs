@@ -131,6 +131,8 @@ pub fn scene() -> Scene<12> {
         momentum.dot(&(inverse * momentum)) / 2.0 + weight * (attitude * center).z
     };
     let mut settings = declarations(inertia, weight, center);
+    let first = exact::first::Top { inertia, weight, center };
+    settings.push(declared("exact synchronized", first, (tilted(), momentum), pack).synchronized());
     let start = compact(&tilted_quaternion(), &momentum);
     settings.extend(Equation { field: fast, start, flat: unpack_compact }.settings());
     Scene {

@@ -78,6 +78,8 @@ pub fn scene() -> Scene<6> {
         pack(&n.cross(&q), &(Vector3::new(-q.y, q.x, 0.0) * gravity))
     };
     let mut settings = declarations(gravity);
+    let first = exponential::first::Pendulum { mass: 1.0, gravity };
+    settings.push(declared("exponential synchronized", first, (POSITION, MOMENTUM), pack).synchronized());
     settings.extend(Equation { field, start: pack(&POSITION, &MOMENTUM), flat: |y| *y }.settings());
     Scene {
         name: "pendulum",

@@ -1,6 +1,7 @@
 //! The implicit equation by fixed-point iteration with the constant inverse of its Jacobian at the identity.
 
 use super::{Equation, select, size, solve, with_derivatives};
+use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
@@ -13,7 +14,8 @@ const QUICK: usize = 32;
 /// h|ω|, and takes a residual in place of a Jacobian and a linear system. Where corrections do not shrink to a quarter each time,
 /// [`solve`] takes over from the start.
 ///
-/// Accuracy: what later corrections would add up to is below half a unit in the last place of ξ.
+/// Accuracy: what later corrections would add up to is below twice [`Equation::tolerance`] of ξ, half a unit in its last place unless the equation says
+/// otherwise.
 ///
 /// # Errors
 /// Those of [`solve`].
@@ -58,14 +60,15 @@ fn contract<T: Scalar, E: Equation<T, M>, const M: usize>(
     let terms = equation.prepare(target);
     let mut xi = equation.predict(target);
     let mut before = size(&xi);
-    let [quarter, negligible] = [T::from_ratio(1, 4), T::EPSILON * T::from_ratio(1, 4)];
+    let [quarter, negligible] = [T::from_ratio(1, 4), E::tolerance()];
+    let visible = larger(T::EPSILON, negligible);
     for _ in 0..QUICK {
         let correction = equation.predict(&equation.residual(&terms, &xi));
         xi = select(open, &(xi - correction), &xi);
         let (now, scale) = (size(&correction), size(&xi));
         let ratio = now / before;
         // all comparisons are written so that NaN leads to no solution
-        let seen = now.at_most(T::EPSILON * scale);
+        let seen = now.at_most(visible * scale);
         let contracts = ratio.at_most(quarter);
         let arrived = open & (seen | contracts & (now * ratio).at_most(negligible * scale));
         (solved, open) = (solved | arrived, open & contracts & !arrived);

@@ -25,6 +25,9 @@ impl<S: Clebsch> Stepper<S> {
         let mut alone = *state;
         alone.momentum = S::Momentum::filled(S::Scalar::zero() / S::Scalar::zero());
         alone.momentum.set_lane(lane, &state.momentum.lane(lane));
+        // nothing is known of their motions
+        alone.impulse = S::Impulse::filled(S::Scalar::zero());
+        alone.impulse.set_lane(lane, &state.impulse.lane(lane));
         match self.attempt(&alone, &S::Input::origin()) {
             Err(error) => Some(error.with_step_size(self.h.lane(lane).to_f64())),
             Ok(next) if (next.configuration.finite() & next.momentum.finite()).lane(lane) => None,

@@ -91,13 +91,19 @@ const _: () = {
             q: &SVector<f64, 3>,
             mu: &SVector<f64, 3>,
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let d = increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q)))?;
+            let d = increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q, mu)))?;
             Ok(::clebsch::__private::from_increment(&d))
         }
 
         /// −(h/2) J(q, ∇V(t, q))
         #[inline]
-        fn impulse(&self, constants: &Constants, t: f64, q: &SVector<f64, 3>) -> SVector<f64, 3> {
+        fn impulse(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+            _mu: &SVector<f64, 3>,
+        ) -> SVector<f64, 3> {
             moment(self, t, q) * -constants.half_h
         }
 
@@ -114,7 +120,7 @@ const _: () = {
         ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
             let kicked = mu + impulse;
             let next = q + increment(constants, &kicked)? * q;
-            let impulse_next = self.impulse(constants, t + constants.h, &next);
+            let impulse_next = self.impulse(constants, t + constants.h, &next, mu);
             Ok((next, kicked + impulse_next, impulse_next))
         }
 
@@ -217,7 +223,7 @@ const _: () = {
             mu: &SVector<f64, 3>,
             _u: &(),
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q)))
+            increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q, mu)))
         }
 
         /// ξ_Q

@@ -104,14 +104,20 @@ const _: () = {
             r: &SMatrix<f64, 3, 3>,
             mu: &SVector<f64, 3>,
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let kicked = mu + self.impulse(constants, t, r);
+            let kicked = mu + self.impulse(constants, t, r, mu);
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
             Ok(SMatrix::<f64, 3, 3>::identity() + increment(&c))
         }
 
         /// −(h/2) J(R, ∇V) = (h/2)·weight·Γ × center, Γ = Rᵀe₃
         #[inline]
-        fn impulse(&self, constants: &Constants, _t: f64, r: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+        fn impulse(
+            &self,
+            constants: &Constants,
+            _t: f64,
+            r: &SMatrix<f64, 3, 3>,
+            _mu: &SVector<f64, 3>,
+        ) -> SVector<f64, 3> {
             torque(&constants.moment, r)
         }
 
@@ -134,7 +140,7 @@ const _: () = {
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
             let motion = increment(&c);
             let next = r + r * motion;
-            let impulse_next = self.impulse(constants, t + constants.h, &next);
+            let impulse_next = self.impulse(constants, t + constants.h, &next, mu);
             Ok((next, kicked + motion.tr_mul(&kicked) + impulse_next, impulse_next))
         }
 
@@ -240,7 +246,7 @@ const _: () = {
             mu: &SVector<f64, 3>,
             _u: &(),
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let kicked = mu + ::clebsch::Clebsch::impulse(self, constants, t, r);
+            let kicked = mu + ::clebsch::Clebsch::impulse(self, constants, t, r, mu);
             Ok(increment(&::clebsch::__private::solve(&Equation { constants }, &kicked)?))
         }
 

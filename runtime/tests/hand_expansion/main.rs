@@ -180,7 +180,7 @@ fn a_step_that_is_too_long_says_how_much() -> Result<(), Error> {
     assert_eq!(step_size, Some(0.5));
     assert_eq!(
         error.to_string(),
-        "the step of 5.000e-1 is too long for this momentum: the implicit equation is solvable up to 0.800 of it; \
+        "the step of 5.000e-1 is too long for this momentum: its equation is solvable up to 0.800 of it; \
          reduce the step size below about 4.000e-1"
     );
     let items: Vec<_> = stepper.trajectory(start).take(5).collect();

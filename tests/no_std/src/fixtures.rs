@@ -44,10 +44,10 @@ pub extern "C" fn step_between(
 }
 
 modules! {
-    annotated_body centred_body damped_body exact_body first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    annotated_body centred_body damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body principal_body4 promised_top quaternion_top regulator
-    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body two_bodies two_pendulums
+    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body tolerant_top tumbling_momentum two_bodies two_pendulums
     underwater_vehicle unicycle watched_top weighted_sl2
 }
 
@@ -56,6 +56,7 @@ steppers! {
     step_centred_body: centred_body::CentredBody;
     step_first_order_top: first_order_top::FirstOrderTop;
     step_exact_body: exact_body::ExactBody;
+    step_exact_body4: exact_body4::ExactBody4;
     step_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid;
     step_flying_body: flying_body::FlyingBody;
     step_free_particle: free_particle::FreeParticle;
@@ -89,6 +90,8 @@ steppers! {
     step_spherical_pendulum: spherical_pendulum::SphericalPendulum;
     step_spin_pair: spin_pair::SpinPair;
     step_split_top: split_top::SplitTop;
+    step_tolerant_top: tolerant_top::TolerantTop;
+    step_tumbling_momentum: tumbling_momentum::TumblingMomentum;
     step_two_bodies: two_bodies::TwoBodies;
     step_two_pendulums: two_pendulums::TwoPendulums;
     step_underwater_vehicle: underwater_vehicle::UnderwaterVehicle;

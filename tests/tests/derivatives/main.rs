@@ -78,7 +78,7 @@ fn one_factor<S, const N: usize, const C: usize, const M: usize>(
             assert_three(&evaluate(formulas.momentum_map[0]), code.as_slice(), &hand.momentum_map::<M>(&q, &p), "J");
             let code = system.legendre(H, 0.0, &q, &f);
             assert_three(&evaluate(formulas.legendre[0]), code.as_slice(), &hand.legendre::<M>(&q, &f), "F⁻ℓd");
-            let code = system.impulse(&system.constants(H).expect("a regular system"), 0.0, &q);
+            let code = system.impulse(&system.constants(H).expect("a regular system"), 0.0, &q, &nalgebra::zero());
             let kick = formulas.substeps[0].start.as_ref().expect("a kick")[0];
             assert_three(&evaluate(kick), code.as_slice(), &hand.kick::<M>(&q), "kick");
             let (drift, kick) = (&formulas.legendre_next, &formulas.legendre_kick);
@@ -175,7 +175,7 @@ fn two_bodies() {
             |x: [Vector3<f64>; 2]| -bodies.gravitation * bodies.mass[0] * bodies.mass[1] / (x[1] - x[0]).norm();
         let kick = formulas.substeps[0].start.as_ref().expect("a kick");
         let formula: Vec<f64> = kick.iter().flat_map(|part| values.evaluate(*part).entries).collect();
-        let code = bodies.impulse(&bodies.constants(H).expect("regular bodies"), 0.0, &x);
+        let code = bodies.impulse(&bodies.constants(H).expect("regular bodies"), 0.0, &x, &nalgebra::zero());
         let moved = |i: usize, e: f64| {
             let mut x = x;
             x[i / 3][i % 3] += e;

@@ -12,7 +12,7 @@ use clebsch::{Clebsch, Scalar, State, Stepper};
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::vee;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
 use systems::{Composed, Satellite, Sixth, Top};
 
 const H: f64 = 0.1;
@@ -174,4 +174,96 @@ fn bodies_at_rest_have_derivatives() {
         Matrix3::<f64>::identity(),
         Vector3::<f64>::zeros()
     );
+}
+
+/// A heavy top whose drift is the free motion: power series, whose coefficients are made of the inertia.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    potential      = |R| self.weight * (R * self.center).z,
+    discretization = exact,
+    order          = 4,
+)]
+struct SplitTop<T: Scalar> {
+    #[clebsch(symmetric)]
+    inertia: Matrix3<T>,
+    weight: T,
+    center: Vector3<T>,
+}
+
+/// By each entry of the inertia, also where it is diagonal or that of a ball, and by the momentum: against differences of values.
+#[test]
+fn exact_drifts_differentiate() {
+    let tensors = [
+        Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.4, -0.1, 0.0, -0.1, 0.9),
+        Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 2.0)),
+        Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 2.0)),
+        Matrix3::identity(),
+    ];
+    let pi = Vector3::new(1.0, -1.5, 2.0);
+    fn spatial<T: Scalar>(inertia: Matrix3<T>, pi: Vector3<T>, h: f64) -> Vector3<T> {
+        let top = SplitTop { inertia, weight: T::from_f64(0.7), center: center() };
+        let stepper = top.into_stepper(T::from_f64(h)).expect("parameters");
+        let end = stepper.advance(&stepper.state(Matrix3::identity(), pi).expect("a state"), 5).expect("steps");
+        end.configuration() * Vector3::new(T::one(), T::zero(), T::zero())
+    }
+    for (inertia, h) in tensors.into_iter().flat_map(|inertia| [(inertia, 0.1), (inertia, 2.0)]) {
+        let delta = 1e-5;
+        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+            let mut direction = Matrix3::zeros();
+            (direction[(i, j)], direction[(j, i)]) = (1.0, 1.0);
+            let dual = inertia.zip_map(&direction, Dual64::new);
+            let slope = spatial(dual, pi.map(Dual64::from_f64), h).map(|x| x.eps);
+            let at = |size: f64| spatial(inertia + direction * size, pi, h);
+            let difference = (at(delta) - at(-delta)) / (2.0 * delta);
+            assert!(
+                (slope - difference).norm() < 1e-6 * (1.0 + difference.norm()),
+                "{inertia}({i}, {j}) {h}: {slope} {difference}"
+            );
+        }
+        let slope = spatial(inertia.map(Dual64::from_f64), pi.map(|x| Dual64::new(x, x)), h).map(|x| x.eps);
+        let at = |size: f64| spatial(inertia, pi * (1.0 + size), h);
+        let difference = (at(delta) - at(-delta)) / (2.0 * delta);
+        assert!((slope - difference).norm() < 1e-6 * (1.0 + difference.norm()), "{inertia}{h}: {slope} {difference}");
+    }
+}
+
+/// A body in four dimensions, whose motion is a power series in the time where numbers have derivatives.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<4>, R: SO<4>| R * F,
+    lagrangian     = |omega| (self.mass * omega.matrix() * omega.matrix().transpose()).trace() / 2,
+    discretization = exact,
+)]
+struct Body4<T: Scalar> {
+    #[clebsch(symmetric)]
+    mass: Matrix4<T>,
+}
+
+#[test]
+fn motions_in_four_dimensions_differentiate() {
+    fn end<T: Scalar>(mass: Matrix4<T>, mu: Vector6<T>) -> (Matrix4<T>, Vector6<T>) {
+        let stepper = Body4 { mass }.into_stepper(T::from_f64(1.5)).expect("parameters");
+        let end = stepper.advance(&stepper.state(Matrix4::identity(), mu).expect("a state"), 3).expect("steps");
+        end.into_parts()
+    }
+    let mu = Vector6::new(0.6, -1.0, 0.4, 1.2, -0.2, 1.0);
+    let ball = Matrix4::identity();
+    let mass = Matrix4::from_diagonal(&Vector4::new(1.0, 1.5, 2.0, 2.5));
+    for mass in [mass, ball] {
+        let value = end(mass.map(Dual64::from_f64), mu.map(Dual64::from_f64)).0.map(|x| x.re);
+        assert!((value - end(mass, mu).0).norm() < 1e-13);
+        let delta = 1e-5;
+        for (i, j) in [(0, 0), (3, 3), (0, 1), (1, 3)] {
+            let mut direction = Matrix4::zeros();
+            (direction[(i, j)], direction[(j, i)]) = (1.0, 1.0);
+            let (r, m) = end(mass.zip_map(&direction, Dual64::new), mu.map(|x| Dual64::new(x, x)));
+            let at = |size: f64| end(mass + direction * size, mu * (1.0 + size));
+            let (after, before) = (at(delta), at(-delta));
+            let (turn, rate) = ((after.0 - before.0) / (2.0 * delta), (after.1 - before.1) / (2.0 * delta));
+            assert!((r.map(|x| x.eps) - turn).norm() < 1e-7, "{mass}({i}, {j}): {} {turn}", r.map(|x| x.eps));
+            assert!((m.map(|x| x.eps) - rate).norm() < 1e-7, "{mass}({i}, {j}): {} {rate}", m.map(|x| x.eps));
+        }
+    }
 }

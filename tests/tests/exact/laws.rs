@@ -189,6 +189,20 @@ fn any_body_and_any_step() {
     }
 }
 
+/// A step that has no error serves for every error above rounding.
+#[test]
+fn any_step_size_is_suggested() {
+    let (r, pi) = start();
+    for wished in [1e-3, 1e-12] {
+        let probing = ExactBody { moments: MOMENTS }.stepper(0.1).expect("regular");
+        let h = probing.suggest_step_size(&probing.state(r, pi).expect("a state"), wished, 100.0).expect("a step size");
+        assert!(h > 1.0, "{h}");
+    }
+    let probing = ExactBody { moments: MOMENTS }.stepper(0.1).expect("regular");
+    let refused = probing.suggest_step_size(&probing.state(r, pi).expect("a state"), 1e-17, 100.0);
+    assert!(matches!(refused, Err(Error::BelowRounding { .. })), "{refused:?}");
+}
+
 #[test]
 fn what_cannot_be_stepped_is_said() {
     let stepper = ExactBody { moments: MOMENTS }.stepper(1.0).expect("regular");

@@ -3,6 +3,7 @@
 
 #![allow(missing_docs)]
 
+mod four;
 mod laws;
 mod orders;
 mod systems;

@@ -140,7 +140,12 @@ fn lorentz_frame() {
     // the kick J(q, −h/2 ∂V) = −h/2 ⟨qᵀ field spinᵀ, E_i⟩
     let gradient = q.transpose() * system.field * system.spin.transpose() * (-H / 2.0);
     let expected = SVector::<f64, 6>::from_fn(|i, _| gradient.dot(&basis(i)));
-    assert_near(&system.impulse(&system.constants(H).expect("a frame"), 0.0, &q), &expected, NEAR, "the kick");
+    assert_near(
+        &system.impulse(&system.constants(H).expect("a frame"), 0.0, &q, &nalgebra::zero()),
+        &expected,
+        NEAR,
+        "the kick",
+    );
     assert!(stepper.state(q * 1.01, mu).is_err(), "off the group");
 }
 

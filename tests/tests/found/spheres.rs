@@ -28,7 +28,12 @@ fn spherical_pendulums() {
     assert!(matches!(stepper.state(q, mu), Err(Error::OutsideMomentumSpace { .. })), "N·q = 0 is demanded");
     let mu = mu - q * q.dot(&mu);
     let kick = -q.cross(&Vector3::z()) * (0.7 * 9.81 * 1.3 * H / 2.0);
-    assert_near(&pendulum.impulse(&pendulum.constants(H).expect("a pendulum"), 0.0, &q), &kick, NEAR, "−h/2 q × ∇V");
+    assert_near(
+        &pendulum.impulse(&pendulum.constants(H).expect("a pendulum"), 0.0, &q, &nalgebra::zero()),
+        &kick,
+        NEAR,
+        "−h/2 q × ∇V",
+    );
     let state = stepper.step(&stepper.state(q, mu).expect("a state")).expect("a step");
     let kicked = mu + kick;
     let a = kicked * (H / scale);
@@ -86,7 +91,7 @@ fn neumann() {
     let mu: Vector6<f64> = components(&((w * q.transpose() - q * w.transpose()) / 2.0));
     let gradient: Vector4<f64> = problem.stiffness * q;
     let kick = (gradient * q.transpose() - q * gradient.transpose()) * (-H / 2.0);
-    let impulse = problem.impulse(&problem.constants(H).expect("a sphere"), 0.0, &q);
+    let impulse = problem.impulse(&problem.constants(H).expect("a sphere"), 0.0, &q, &nalgebra::zero());
     // half of h, and M = ½ Σ m_i E_i
     assert_near(&skew::<4, 6>(&impulse), &kick, NEAR, "components −h/2 (x_i g_j − x_j g_i)");
     assert_reversible(&problem, q, mu);
@@ -109,7 +114,7 @@ fn two_pendulums() {
     let [up, down] = [(q.0, q.1, 1.0), (q.1, q.0, 0.6)].map(|(q, other, mass)| {
         -q.cross(&(Vector3::z() * (5.0 * mass) + system.coupling.component_mul(&other))) * (H / 2.0)
     });
-    let kick = system.impulse(&system.constants(H).expect("pendulums"), 0.0, &q);
+    let kick = system.impulse(&system.constants(H).expect("pendulums"), 0.0, &q, &nalgebra::zero());
     assert_near(&kick.fixed_rows::<3>(0).into_owned(), &up, NEAR, "−h/2 p × ∂V/∂p");
     assert_near(&kick.fixed_rows::<3>(3).into_owned(), &down, NEAR, "−h/2 q × ∂V/∂q");
     let momenta = [q.0.cross(&random.vector()), q.1.cross(&random.vector())];

@@ -10,7 +10,9 @@ use clebsch_tests::oracle::random::Random;
 use lift::Lift;
 use nalgebra::{Matrix3, Matrix4, SVector, Vector3};
 use side_by_side::{Count, same};
-use systems::{Body, Body4, Flyer, Pendulum, Satellite, SixthTop, SplitTop, Top};
+use systems::{
+    Body, Body4, ExactBody, ExactBody4, FixedBody, Flyer, Pendulum, Satellite, SixthTop, SplitTop, TolerantBody, Top,
+};
 
 const H: f64 = 0.1;
 /// States of each system, and the steps of each.
@@ -86,6 +88,20 @@ fn free_bodies_in_single_precision() {
 }
 
 #[test]
+fn bodies_to_a_tolerance() {
+    let longest = 2.0 / H;
+    assert_mixed(compare!(F64x8, TolerantBody { moments: moments() }, H, |random| {
+        (random.attitude::<3>(), momentum::<3>(&mut random, longest))
+    }));
+    assert_mixed(compare!(F64x8, FixedBody { moments: moments() }, H, |random| {
+        (random.attitude::<3>(), momentum::<3>(&mut random, longest))
+    }));
+    assert_mixed(compare!(F32x8, TolerantBody { moments: moments() }, H, |random| {
+        (random.attitude::<3>(), momentum::<3>(&mut random, longest))
+    }));
+}
+
+#[test]
 fn heavy_tops() {
     assert_mixed(compare!(F64x8, Top { mass_matrix: mass_matrix(), weight: 3.0, center: center() }, H, |random| (
         random.attitude::<3>(),
@@ -112,6 +128,20 @@ fn exact_drifts() {
         momentum::<3>(&mut random, 1e4 / H)
     ));
     assert!(count.stepped > STATES && count.failed > 0, "{count:?}");
+}
+
+/// Motions that each lane knows, with as many parts as each needs.
+#[test]
+fn exact_motions() {
+    let inertia = Matrix3::new(1.2, 0.1, -0.2, 0.1, 0.8, 0.05, -0.2, 0.05, 0.5);
+    assert_mixed(compare!(F64x8, ExactBody { inertia: inertia }, H, |random| {
+        (random.attitude::<3>(), momentum::<3>(&mut random, 1e4 / H))
+    }));
+    let turn = Random::new(12).attitude::<4>();
+    let mass = turn * Matrix4::from_diagonal(&nalgebra::Vector4::new(0.4, 0.7, 1.0, 1.3)) * turn.transpose();
+    assert_mixed(compare!(F64x8, ExactBody4 { mass: mass }, H, |random| {
+        (random.attitude::<4>(), momentum::<6>(&mut random, 1e4 / H))
+    }));
 }
 
 #[test]

@@ -14,7 +14,32 @@ pub struct Body<T: Scalar> {
     pub moments: Vector3<T>,
 }
 
-/// The same with kicks.
+/// The same with an iteration that ends early, at another number of steps in each lane.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    discretization = moser_veselov,
+    tolerance      = 1e-6,
+)]
+pub struct TolerantBody<T: Scalar> {
+    pub moments: Vector3<T>,
+}
+
+/// The same by fixed points.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    discretization = moser_veselov,
+    solver         = fixed_point,
+    tolerance      = 1e-6,
+)]
+pub struct FixedBody<T: Scalar> {
+    pub moments: Vector3<T>,
+}
+
+/// Three unknowns with kicks.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |F: SO<3>, R: SO<3>| R * F,
@@ -41,6 +66,30 @@ pub struct SixthTop<T: Scalar> {
     pub mass_matrix: Matrix3<T>,
     pub weight: T,
     pub center: Vector3<T>,
+}
+
+/// A motion without an error in h, of which each state brings along what it keeps.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    discretization = exact,
+)]
+pub struct ExactBody<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<T>,
+}
+
+/// The same in four dimensions.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<4>, R: SO<4>| R * F,
+    lagrangian     = |omega| (self.mass * omega.matrix() * omega.matrix().transpose()).trace() / 2,
+    discretization = exact,
+)]
+pub struct ExactBody4<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub mass: Matrix4<T>,
 }
 
 /// An exact drift between kicks with force gradients.

@@ -125,7 +125,7 @@ where
     let q = system.advance(&(case.lift)(&case.q), &system.retraction(&eta));
     let mu = SVector::from_fn(|i, _| variable(M + i, case.mu[i]));
     let constants = system.constants(h).expect("a regular system");
-    let impulse = system.impulse(&constants, t, &q);
+    let impulse = system.impulse(&constants, t, &q, &mu);
     let (q, mu, _) = system.step(&constants, t, &q, &mu, &impulse, &input).expect("a solvable step");
     (q, mu)
 }

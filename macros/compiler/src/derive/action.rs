@@ -24,9 +24,11 @@ pub(super) fn identities<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
 /// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
 pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let pairing = generator.iter().zip(&symbols.covectors).map(|(velocity, p)| p.dot(*velocity)).reduce(|a, b| a + b);
-    // by construction: a configuration has at least one leaf
-    let pairing = pairing.expect("a leaf of the configuration");
-    symbols.algebra.iter().map(|xi| pairing.gradient(*xi)).collect()
+    let gradient = |xi: &Expr<'g>| match pairing {
+        Some(pairing) => pairing.gradient(*xi),
+        None => xi.graph().zero(xi.shape()),
+    };
+    symbols.algebra.iter().map(gradient).collect()
 }
 
 /// Ad*_F μ.
@@ -40,9 +42,10 @@ pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Ve
         model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
     let images = model.action.iter().map(|image| image.substitute(&inverses));
     let pairing = images.zip(&symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
-    // by construction: a configuration has at least one leaf
-    let pairing = pairing.expect("a leaf of the configuration");
-    model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
+    let gradient = |pairing: Expr<'g>| -> Vec<Expr<'g>> {
+        model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
+    };
+    pairing.map_or(Vec::new(), gradient)
 }
 
 /// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along: Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
@@ -81,6 +84,9 @@ pub(super) fn impulse<'g>(
 
 /// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
 pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
+    if generator.is_empty() {
+        return false;
+    }
     let columns = generator_columns(symbols, generator);
     let moving = model.factors.iter().filter(|factor| factor.moves);
     let moving: usize = moving.map(|factor| factor.group.dimension()).sum();

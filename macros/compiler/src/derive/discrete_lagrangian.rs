@@ -65,6 +65,13 @@ impl<'g> DiscreteLagrangian<'g> {
         }
     }
 
+    /// The Lagrangian with half of U₀ + U₁ at each end. Its step is that of ℓd between two shifts of the momentum by ½J(q, ∂(U₁ − U₀)),
+    /// which undo each other from one step to the next: both make the same configurations.
+    pub(super) fn balanced(&self) -> DiscreteLagrangian<'g> {
+        let half = (self.start + self.end) / 2;
+        DiscreteLagrangian { start: half, end: half, ..*self }
+    }
+
     /// Whether ℓd is its own adjoint, up to what no variation sees: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials.
     pub fn is_time_symmetric(&self, model: &Model<'g>) -> bool {
         let adjoint = self.adjoint(model);

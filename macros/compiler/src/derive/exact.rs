@@ -7,7 +7,7 @@ use super::equation::{Sources, is_diagonal};
 use super::structure::Structure;
 use super::{DiscreteLagrangian, Equation, Solution, Substep, Symbols, action, velocity};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Discretization, Kinetic, Model, Order, Side};
+use crate::model::{Discretization, Factor, Kinetic, Model, Order, Side};
 
 /// A step of drifts and kicks, with a force gradient where the potential is a formula.
 pub struct Splitting<'g> {
@@ -53,16 +53,25 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
     let refused = |message: String, help: &str, note: &str| -> Result<(), Diagnostics> {
         Err(Diagnostic::new(model.spans.kinetic.place, message).help(help).note(note).into())
     };
-    let known =
-        |group: Group| group.is_translation() || matches!(group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
+    let known = |group: Group| {
+        group.is_translation() || matches!(group, Group::SpecialOrthogonal(3 | 4) | Group::UnitQuaternions)
+    };
     if let Some(factor) = model.factors.iter().find(|factor| !known(factor.group)) {
         let name = factor.group.name(model.graph);
         return refused(
             format!(
-                "`discretization = exact` knows the free motion on `SO<3>`, `SU<2>` and `Translation<n>`, not on `{name}`"
+                "`discretization = exact` knows the free motion on `SO<3>`, `SU<2>`, `SO<4>` and `Translation<n>`, not on `{name}`"
             ),
             "write `discretization = exponential`, which is exact where the kinetic energy is the same for all axes, or leave the key out",
-            "the free motion of other groups is no power series whose coefficients depend on two invariants alone",
+            "the free motion of other groups is no map of Moser and Veselov with constants that are known",
+        );
+    }
+    let turns_in_four = model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4));
+    if turns_in_four && (model.factors.len() > 1 || model.potential.is_some() || model.opaque.is_some()) {
+        return refused(
+            "`discretization = exact` knows the free motion on `SO<4>` where nothing else moves or acts".into(),
+            "leave out the potential and the other factors, or the key",
+            "its constants are those of one motion: a kick ends the motion, and to find those of the next takes much longer than a step",
         );
     }
     if model.force.is_some() {
@@ -95,20 +104,54 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
             "the free motion conserves the energy and the length of the momentum, and is known in terms of both",
         );
     }
+    let has_mass = |(factor, velocity): (&Factor<'g>, &Expr<'g>)| {
+        factor.group != Group::SpecialOrthogonal(4)
+            || velocity::mass_matrix(factor.group, energy.gradient(*velocity).matrix_of_linear(*velocity)).is_some()
+    };
+    if !model.factors.iter().zip(velocities).all(has_mass) {
+        let velocity = velocities[0];
+        return refused(
+            "`discretization = exact` needs the kinetic energy of a mass distribution on `SO<4>`".into(),
+            &format!(
+                "write `(self.mass * {velocity}.matrix() * {velocity}.matrix().transpose()).trace() / 2` with a symmetric matrix `mass`, or leave the key out"
+            ),
+            "other quadratic forms of the velocity have no integrals beside the energy and those of the group: their motions are chaotic",
+        );
+    }
     Ok(())
 }
 
+/// Whether a solution gives F − I and the next momentum themselves, not chart coordinates: the free motion of four dimensions, which is alone.
+pub(super) fn turns_whole(model: &Model<'_>) -> bool {
+    is_exact(model) && model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4))
+}
+
 /// The equation d x − m^ x = m of a free rotation with the Gibbs vector x and m = h μ/2, d of the modified inertia.
+///
+/// In four dimensions F̃J̃ − J̃F̃ᵀ = m, J̃ of the modified body and F̃ the motion but for a turn that the momentum gives.
 pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> Equation<'g> {
     let (graph, block) = (sources.model.graph, sources.symbols.blocks[i]);
-    let d = graph.symbol("d", Shape::square(3), Role::Auxiliary(0), Property::Symmetric);
-    let m = graph.symbol("m", Shape::vector(3), Role::Auxiliary(1), Property::General);
-    let hat = Group::SpecialOrthogonal(3).wedge(m);
+    let n = block.dimension();
+    let m = graph.symbol("m", Shape::vector(n), Role::Auxiliary(1), Property::General);
+    let (residual, directional) = match turns_whole(sources.model) {
+        true => {
+            let group = sources.model.factors[block.factor].group;
+            let mass = graph.symbol("J̃", Shape::square(4), Role::Auxiliary(0), Property::Symmetric);
+            let turned = graph.symbol("F̃", Shape::square(4), Role::Auxiliary(2), Property::Orthogonal);
+            let skew = turned * mass - mass * turned.transpose();
+            (group.projected_coordinates(skew) - m, graph.zero(Shape::vector(n)))
+        }
+        false => {
+            let d = graph.symbol("d", Shape::square(3), Role::Auxiliary(0), Property::Symmetric);
+            let hat = Group::SpecialOrthogonal(3).wedge(m);
+            (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
+        }
+    };
     Equation {
         components: block.components().collect(),
         factors: vec![block.factor],
-        residual: d * block.coordinates - hat * block.coordinates - m,
-        directional: d * block.direction - hat * block.direction,
+        residual,
+        directional,
         cleared: true,
         solution: Solution::FreeRotation,
         formula: None,

@@ -22,6 +22,7 @@ mod signature;
 mod structure;
 mod symbols;
 mod symmetry;
+mod tolerance;
 mod trivialisation;
 mod variation;
 mod velocity;
@@ -31,7 +32,7 @@ use std::cell::OnceCell;
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::Model;
+use crate::model::{Model, Order};
 
 pub(crate) use action::generator_columns;
 pub(crate) use cayley::of_increment as cayley_coordinates;
@@ -73,6 +74,10 @@ pub struct Formulas<'g> {
     pub energy: Energy<'g>,
     /// V(q), that of the cost included.
     pub potential_energy: Expr<'g>,
+    /// ½J(q, ∂(U₁ − U₀)) for each factor, by which the momentum of a step of first order is ahead of its configuration; `None` if it is not.
+    pub stagger: Option<Vec<Expr<'g>>>,
+    /// Whether a step of first order is one of second order but for that shift.
+    pub is_staggered: bool,
     /// What is conserved.
     pub symmetries: Symmetries<'g>,
     /// The declared discrete Lagrangian.
@@ -197,14 +202,20 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
     let legendre_kick = impulse(lagrangian.end);
     let (legendre, legendre_next) = legendre(&sources(1), &lagrangian);
+    let is_first = model.order == Order::First;
+    let stagger = if is_first { impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
+    let is_staggered = stagger.is_some() && model.force.is_none() && lagrangian.balanced().is_time_symmetric(&model);
     let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, covector.as_deref());
     check_offers(&model, &symmetries)?;
     let splitting = exact::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && exact::drifts_exactly(&model, &symbols, &substeps);
     closed_form::adopt_sine(&mut symbols, &mut substeps);
+    tolerance::check(&model, &substeps)?;
     Ok(Formulas {
         splitting,
         is_exact,
+        stagger,
+        is_staggered,
         legendre,
         legendre_next,
         legendre_kick,
@@ -256,6 +267,8 @@ fn steered<'g>(
         parts: 0,
         splitting: None,
         is_exact: false,
+        stagger: None,
+        is_staggered: false,
         covector: None,
         steering,
         endpoint,
@@ -398,6 +411,11 @@ impl Formulas<'_> {
         let rotates =
             |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3) && self.is_free_rotation(*k);
         (0..self.model.factors.len()).filter(rotates).collect()
+    }
+
+    /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.
+    pub fn turns_whole(&self) -> bool {
+        exact::turns_whole(&self.model)
     }
 
     /// Whether the cost or the potential depends on the time.

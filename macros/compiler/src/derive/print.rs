@@ -5,7 +5,7 @@ use std::fmt;
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::{Equation, Formulas, Reference, Solution, Substep, reference};
-use crate::model::{Kinetic, Side};
+use crate::model::Kinetic;
 
 /// A derived formula, `symbol = expression`.
 #[derive(Clone)]
@@ -142,6 +142,7 @@ impl<'g> Formulas<'g> {
         for substep in self.substeps.iter().take(self.parts) {
             formulas.extend(self.formulas_of_substep(substep));
         }
+        formulas.extend(self.formula_of_stagger());
         formulas.extend(Formula::of_splitting(self));
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
         formulas
@@ -258,9 +259,18 @@ impl<'g> Formulas<'g> {
             .collect()
     }
 
+    /// N − π, of a step of first order.
+    pub fn formula_of_stagger(&self) -> Option<Formula> {
+        let stagger = self.stagger.as_ref()?;
+        Some(Formula::new("synchronized momentum", format!("N − π, at {}", self.q()), &readable(stagger)))
+    }
+
     /// F⁻ℓd(q, F).
     pub fn formula_of_legendre(&self) -> Formula {
-        Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &readable(&self.legendre))
+        let mut formula =
+            Formula::new("Legendre transform", format!("F⁻ℓd({}, {})", self.q(), self.f()), &readable(&self.legendre));
+        self.explain_free_momenta(&mut formula);
+        formula
     }
 
     /// F⁺ℓd(q, F).
@@ -280,7 +290,21 @@ impl<'g> Formulas<'g> {
                 .zip(kicks)
                 .for_each(|(latex, end)| *latex += &format!(" + \\left[{end}\\right]_{{q^+}}"));
         }
+        self.explain_free_momenta(&mut formula);
         formula
+    }
+
+    /// Says what the symbol μ means where a factor moves freely.
+    fn explain_free_momenta(&self, formula: &mut Formula) {
+        let texts = formula.text.iter_mut().zip(&mut formula.latex).enumerate();
+        for (k, (text, latex)) in texts.filter(|(k, _)| self.is_free_rotation(*k)) {
+            let (mu, f) = (self.symbols.momenta[k], self.model.factors[k].symbol);
+            *text += &format!(", {mu} the momentum of the free motion from I to {f} in h, by less than half a turn");
+            let (mu, f) = (mu.latex(), f.latex());
+            *latex += &format!(
+                ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
+            );
+        }
     }
 
     fn formulas_of_substep(&self, substep: &Substep<'g>) -> Vec<Formula> {
@@ -337,14 +361,9 @@ impl<'g> Formulas<'g> {
             return Formula::new("momentum update", "M⁺", &readable(other));
         }
         let update = |k: usize| {
-            let factor = &self.model.factors[k];
             let mu = self.symbols.momenta[k];
             let mu = substep.rest.as_ref().map_or(mu, |rest| mu - rest[k]);
-            match (substep.unchanged[k], factor.side) {
-                (true, _) => mu,
-                (false, Side::Left) => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
-                (false, Side::Right) => factor.group.coadjoint(factor.symbol, mu),
-            }
+            if substep.unchanged[k] { mu } else { self.carried(k, mu) }
         };
         let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
         Formula::new("momentum update", "M⁺", &updates)

@@ -89,7 +89,7 @@ fn moser_veselov<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>
 }
 
 /// The symmetric 𝕄 with ½ tr(ξ 𝕄 ξᵀ) = ½ ξ·Σξ for all ξ, if there is one: ½tr(J)I − J on SO(3).
-fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
+pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
     let graph = inertia.graph();
     match group {
         Group::SpecialOrthogonal(3) => {
@@ -110,7 +110,7 @@ fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g>> {
         })
         .collect();
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
-        basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b))).collect()
+        basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).collect()
     };
     let (units, images) = independent(units.into_iter().map(|unit| (unit, image(&unit))).collect());
     let shape = Shape::new(images[0].len(), units.len());

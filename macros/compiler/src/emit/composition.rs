@@ -68,7 +68,7 @@ impl Emitter<'_, '_> {
     pub(super) fn symmetric_step_taken(&self) -> TokenStream {
         let (private, krate, step) = (&self.paths.private, &self.paths.krate, &self.names.step);
         let time = self.time_argument();
-        if self.model.force.is_some() {
+        if !self.model.has_covectors() {
             return quote!(::core::result::Result::Err(#krate::Error::NoCovector));
         }
         let pushed = |_: &TokenStream| {
@@ -99,7 +99,7 @@ impl Emitter<'_, '_> {
             }
             None if self.keeps_motions() => (
                 "Several steps of one motion.",
-                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu).map(|(q, mu)| (q, mu, ()))),
+                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu, impulse)),
             ),
             None => return TokenStream::new(),
         };

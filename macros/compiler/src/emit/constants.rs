@@ -16,7 +16,8 @@ impl Emitter<'_, '_> {
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = self.paths.matrix(self.dimension(), self.dimension());
         let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
-        let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::FreeRotation<#scalar>,));
+        let kind = self.kind_of_free_rotation();
+        let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::#kind<#scalar>,));
         let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: #scalar,));
         let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
@@ -65,7 +66,7 @@ impl Emitter<'_, '_> {
 
     /// The part of `inertia` that belongs to a free rotation.
     pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
-        if self.dimension() == 3 {
+        if self.dimension() == solve.components.len() {
             return quote!(inertia);
         }
         let start = Literal::usize_unsuffixed(solve.components[0]);
@@ -123,7 +124,8 @@ impl Emitter<'_, '_> {
         });
         let rotations = self.free_rotations().map(|(name, solve)| {
             let inertia = self.block_of_inertia(solve);
-            quote!(#name: #private::FreeRotation::new(&#inertia, h)?,)
+            let kind = self.kind_of_free_rotation();
+            quote!(#name: #private::#kind::new(&#inertia, h)?,)
         });
         let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: h,));
         let documentation = docs::formulas(

@@ -221,6 +221,20 @@ fn scheme(program: &Program<'_>) -> String {
         }
     };
     let mut text = format!("{order}\n");
+    if program.formulas.stagger.is_some() {
+        text += match (program.formulas.is_staggered, model.force.is_some()) {
+            (true, _) => {
+                "The momentum N is ahead of its configuration by half of that kick. Taken back by it, π = N − ½ J(q, ∂(U₁ − U₀)), it is that of the step of second order, \
+                 half kick, drift, half kick: `synchronized` reads π, and `staggered_state` starts from it.\n"
+            }
+            (false, true) => {
+                "`synchronized` takes back half of the kick of the potential alone; the motion stays of first order, as the force acts with the velocity before it.\n"
+            }
+            (false, false) => {
+                "`synchronized` takes back half of that kick; the motion stays of first order, as the cost is not time-symmetric.\n"
+            }
+        };
+    }
     if let Some(stages) = program.formulas.stages() {
         text += &format!(
             "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
@@ -244,14 +258,29 @@ fn scheme(program: &Program<'_>) -> String {
                 how(program, equation, solve)
             ));
         }
-        if kernels.update.is_none() {
+        if kernels.update.is_none() && !program.formulas.turns_whole() {
             told.push("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
         }
     }
     // both halves of a composed step tell the same
     let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
     text.extend(first.map(|(_, line)| line.as_str()));
-    text
+    text + &tolerance(program)
+}
+
+/// What an iteration that ends early leaves as it is, and what it does not.
+fn tolerance(program: &Program<'_>) -> String {
+    let Some(tolerance) = &program.formulas.model.tolerance else { return String::new() };
+    let kept = program.formulas.conserved_by_any_element();
+    let kept: Vec<&str> = kept.into_iter().map(|momentum| momentum.name.as_str()).collect();
+    let kept = match kept.is_empty() {
+        true => "No momentum is conserved to rounding".to_string(),
+        false => format!("As N⁺ is Ad* of N, conserved to rounding all the same: the momentum {}", kept.join("; ")),
+    };
+    format!(
+        "Iterations end before a correction that is below {:e} of x, as asked for. F lies on its group whatever x is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
+        tolerance.value
+    )
 }
 
 /// How a splitting goes.
@@ -323,6 +352,9 @@ fn how(program: &Program<'_>, equation: &Equation<'_>, solve: &Solve) -> String 
         Solution::Linear => {
             format!("is linear in {chart}: solved by one elimination, no iteration")
         }
+        Solution::FreeRotation if program.formulas.turns_whole() => {
+            "is solved by the free motion itself: F̃J̃ − J̃F̃ᵀ = m = h̃μ with J̃² = D² + β, F = exp(δm + κ⋆m) F̃; the constants of a motion are found once, from its Taylor series, and travel along with the state; then NF̃ = G with N and G polynomials of m, one division a step, no iteration, and no error in h".to_string()
+        }
         Solution::FreeRotation => {
             "is solved by the free motion itself: d x − m × x = m for the Gibbs vector x, m = h μ/2, with d = diag(d_i) in principal axes, power series in h² |μ|² and h² μ·Σ⁻¹μ that are made once for the body; no iteration, and no error in h".to_string()
         }
@@ -354,7 +386,9 @@ fn left_out(program: &Program<'_>) -> String {
     if formulas.potential_energy.is_zero() {
         text += "Left out: the kick, as there is no potential.\n";
     }
-    if formulas.model.isotropy == Isotropy::Free && !formulas.is_free {
+    if formulas.model.emit.momentum {
+        text += "Left out, as asked for by `emit = [momentum]`: the configuration. A step solves for F and carries the momentum along.\n";
+    } else if formulas.model.isotropy == Isotropy::Free && !formulas.is_free {
         text += "Left out, as asked for by `isotropy = free`: the check of 𝔤_q^⊥; motions that fix the configuration are motions too.\n";
     } else if formulas.is_free {
         text += "Left out: the check of 𝔤_q^⊥, as only the identity fixes a general configuration.\n";

@@ -214,6 +214,16 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
+        let tolerance = self.model.tolerance.as_ref().map(|tolerance| {
+            let part = Literal::f64_unsuffixed(tolerance.value);
+            quote! {
+                /// The declared tolerance.
+                #[inline]
+                fn tolerance() -> #scalar {
+                    #private::tolerance(#part)
+                }
+            }
+        });
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
@@ -243,6 +253,7 @@ impl<'g> Emitter<'_, 'g> {
 
                 #correct
                 #orientation
+                #tolerance
             }
         }
     }

@@ -8,6 +8,7 @@ mod control;
 mod derivation;
 mod docs;
 mod equation;
+mod exact;
 mod jacobian;
 mod names;
 mod opaque;
@@ -262,7 +263,11 @@ impl<'a, 'g> Emitter<'a, 'g> {
     }
 
     fn impulse_type(&self) -> TokenStream {
-        if self.shares_impulse() { self.momentum_type() } else { quote!(()) }
+        match self.shares_impulse() {
+            true => self.momentum_type(),
+            false if self.keeps_motions() => self.kept_type(),
+            false => quote!(()),
+        }
     }
 
     fn constants_generics(&self) -> (TokenStream, TokenStream) {

@@ -8,7 +8,7 @@ use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
-use crate::lower::{Kernel, Solve, SplittingKernels, StepKernels};
+use crate::lower::{Kernel, Solve, StepKernels};
 
 /// The most operations of a step that is inlined wherever it is called.
 const SHORT_STEP: usize = 128;
@@ -42,7 +42,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn part(
+    pub(super) fn part(
         &self,
         title: &str,
         formulas: &[Formula],
@@ -124,8 +124,11 @@ impl Emitter<'_, '_> {
             let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
             self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
         });
-        let solve = self.solve(name("solve"), suffix, step, false);
         let solve_kept = self.keeps_motions().then(|| self.solve(name("solve_kept"), suffix, step, true));
+        let (solve, solve_kept) = match self.program.formulas.turns_whole() {
+            true => (self.turns(), None),
+            false => (self.solve(name("solve"), suffix, step, false), solve_kept),
+        };
         quote!(#solve_kept #start #rest #end #start_force #moving_force #end_force #start_gradient #end_gradient #coupled_gradient #solve #update)
     }
 
@@ -153,28 +156,7 @@ impl Emitter<'_, '_> {
             match solve.solution {
                 Solution::ClosedForm => quote!(let #solution = #name::closed_form(&#equation, &#target)?;),
                 Solution::Explicit => quote!(let #solution = #name::explicit(&#equation, &#target #given);),
-                Solution::FreeRotation => {
-                    let rotation = self.free_rotation(suffix, number);
-                    let method = if self.weight_of(solve).is_some() { quote!(turn) } else { quote!(gibbs_vector) };
-                    let found = |target| match kept {
-                        true => {
-                            let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
-                            quote!(#private::FreeMotion::#method(&kept[#index], &#target))
-                        }
-                        false => quote!(#private::FreeRotation::#method(&self.constants.#rotation, &#target)?),
-                    };
-                    // spatial momenta move as those of the body that turns back
-                    let is_left = self.is_left(solve);
-                    let found = if is_left { found(quote!(-#target)) } else { found(target) };
-                    let turned_back = is_left.then(|| quote!(let #solution = -#solution;));
-                    match self.weight_of(solve) {
-                        Some(number) => {
-                            let weight = format_ident!("w{}", number + 1);
-                            quote!(let (#weight, #solution) = #found; #turned_back)
-                        }
-                        None => quote!(let #solution = #found; #turned_back),
-                    }
-                }
+                Solution::FreeRotation => self.found_free_rotation((suffix, number, solve), &solution, &target, kept),
                 Solution::Linear => quote!(let #solution = #private::solve_linear_equation(&#equation, &#target)?;),
                 Solution::Newton => {
                     let solver =
@@ -188,8 +170,8 @@ impl Emitter<'_, '_> {
         let documentation =
             docs::lines(&["The chart coordinates x of the group element whose momentum is μ.".to_string()]);
         let kept = kept.then(|| {
-            let (motions, _) = self.kept_motions();
-            quote!(kept: &#motions,)
+            let kept = self.kept_type();
+            quote!(kept: &#kept,)
         });
         let result = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
         let (coordinates, weights) = (self.coordinates_type(), self.program.formulas.weighted().len());
@@ -224,7 +206,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Some components of a flat vector; all of them are the vector itself.
-    fn part_of(&self, vector: &str, components: &[usize]) -> TokenStream {
+    pub(super) fn part_of(&self, vector: &str, components: &[usize]) -> TokenStream {
         let (private, vector) = (&self.paths.private, format_ident!("{vector}"));
         if components.iter().copied().eq(0..self.dimension()) {
             return quote!(*#vector);
@@ -240,7 +222,7 @@ impl Emitter<'_, '_> {
     fn shared_parts(&self) -> TokenStream {
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let step = &self.program.steps[0];
-        let increment = self.part(
+        let increment = (!self.program.formulas.turns_whole()).then(|| self.part(
             "The increment D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
             &[],
             match self.program.formulas.weighted().is_empty() {
@@ -252,7 +234,7 @@ impl Emitter<'_, '_> {
             },
             &step.increment,
             Some(Nesting::Element),
-        );
+        ));
         let advance = match &step.displace {
             Some(displace) => self.part(
                 "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
@@ -289,6 +271,7 @@ impl Emitter<'_, '_> {
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
         let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
         let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
+        let found = self.found_increment(quote!(self.#solve(#place &mu)?));
         quote! {
             #stepped
             /// F with momentum μ at q.
@@ -296,8 +279,7 @@ impl Emitter<'_, '_> {
                 let mu = *mu;
                 let q = *q;
                 #kicked
-                let x = self.#solve(#place &mu)?;
-                let d = self.increment(&x);
+                #found
                 #inverse
             }
         }
@@ -331,135 +313,6 @@ impl Emitter<'_, '_> {
                 ::core::result::Result::Ok((q, mu, impulse))
             }
             #symmetric
-        }
-    }
-
-    /// The number of the weight of the chart coordinates of an equation, where they are given up to a factor.
-    fn weight_of(&self, solve: &Solve) -> Option<usize> {
-        let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
-        let factor = self.program.formulas.symbols.blocks[block].factor;
-        self.program.formulas.weighted().iter().position(|&other| other == factor)
-    }
-
-    /// The chart coordinates of all factors, with the weights of those that are given up to a factor.
-    fn coordinates_type(&self) -> TokenStream {
-        let (momentum, scalar) = (self.momentum_type(), &self.paths.scalar);
-        match self.program.formulas.weighted().len() {
-            0 => momentum,
-            count => {
-                let count = Literal::usize_unsuffixed(count);
-                quote!((#momentum, [#scalar; #count]))
-            }
-        }
-    }
-
-    /// Whether the free motions of several steps are the same, so that what they keep is computed once.
-    pub(super) fn keeps_motions(&self) -> bool {
-        self.program.formulas.is_exact && self.free_rotations().next().is_some()
-    }
-
-    /// The number of the free rotation of an equation among those of a step.
-    fn index_of_free_rotation(&self, number: usize) -> usize {
-        let before = self.program.steps[0].solves.iter().take(number);
-        before.filter(|solve| solve.solution == Solution::FreeRotation).count()
-    }
-
-    /// The type and the value of what the free motions from a momentum `mu` keep.
-    fn kept_motions(&self) -> (TokenStream, TokenStream) {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let motions: Vec<_> = self
-            .free_rotations()
-            .map(|(name, solve)| {
-                let target = self.part_of("mu", &solve.momenta);
-                let target = if self.is_left(solve) { quote!(-#target) } else { target };
-                quote!(#private::FreeRotation::motion(&self.constants.#name, &#target)?)
-            })
-            .collect();
-        let count = Literal::usize_unsuffixed(motions.len());
-        (quote!([#private::FreeMotion<'_, #scalar>; #count]), quote!([#(#motions),*]))
-    }
-
-    /// The steps of one free motion.
-    fn kept_steps(&self) -> TokenStream {
-        if !self.keeps_motions() {
-            return TokenStream::new();
-        }
-        let (krate, configuration, momentum) = (&self.paths.krate, self.configuration_type(), self.momentum_type());
-        let (_, motions) = self.kept_motions();
-        let step = &self.program.steps[0];
-        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
-        let (advanced, updated) =
-            (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
-        quote! {
-            /// (q, N) after several steps of one motion, whose invariants are used once.
-            fn euler_poincare_steps(
-                &self,
-                steps: ::core::primitive::usize,
-                q: &#configuration,
-                mu: &#momentum,
-            ) -> ::core::result::Result<(#configuration, #momentum), #krate::Error> {
-                let kept = #motions;
-                let mut state = (*q, *mu);
-                for _ in 0..steps {
-                    let (q, mu) = state;
-                    let x = self.solve_kept(&kept, &mu)?;
-                    #increment
-                    #advanced
-                    #updated
-                    state = (q, mu);
-                }
-                ::core::result::Result::Ok(state)
-            }
-        }
-    }
-
-    /// The drift and the kicks of a splitting: exact, so that the part a of the step with the momentum μ is the step with a μ.
-    fn splitting(&self, splitting: &SplittingKernels) -> TokenStream {
-        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
-        let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
-        let step = &self.program.steps[0];
-        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
-        let (advanced, updated) =
-            (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
-        let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
-        let formula = Formula::of_splitting(&self.program.formulas);
-        let kick = self.part("A kick.", &formula, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
-        let kick_gradient = self.part(
-            "The same for the covector.",
-            &[],
-            quote!(kick_gradient(&self, #weights) -> #configuration),
-            &splitting.gradient,
-            Some(Nesting::Configuration),
-        );
-        quote! {
-            #kick
-            #kick_gradient
-            /// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
-            #[inline]
-            fn drift(
-                &self,
-                part: #scalar,
-                (q, mu): (#configuration, #momentum),
-            ) -> ::core::result::Result<(#configuration, #momentum), #krate::Error> {
-                let x = self.solve(&(mu * part))?;
-                #increment
-                #advanced
-                #updated
-                ::core::result::Result::Ok((q, mu))
-            }
-            /// (q, p) ↦ (q⁺, p⁺) by the same.
-            fn drift_symmetric(
-                &self,
-                part: #scalar,
-                (q, p): (#configuration, #configuration),
-            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
-                let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
-                let x = self.solve(&(mu * part))?;
-                let d = self.increment(&x);
-                #advanced
-                let p = self.lift(&q, &p, &d);
-                ::core::result::Result::Ok((q, p))
-            }
         }
     }
 
@@ -528,12 +381,18 @@ impl Emitter<'_, '_> {
         };
         // where the step moves by the coordinates alone, it makes no matrix
         let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
+        let found = match self.keeps_motions() {
+            true => {
+                let found = self.found_by_kept(step);
+                quote!(let kept = impulse; #found)
+            }
+            false => quote!(let x = self.#solve(#place &mu)?; #increment),
+        };
         let advanced = self.advanced(step);
         quote! {
             #kicked
             #start_force
-            let x = self.#solve(#place &mu)?;
-            #increment
+            #found
             #moving_force
             #from
             #advanced
@@ -544,7 +403,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The move, by the increments or by the chart coordinates.
-    fn advanced(&self, step: &StepKernels) -> TokenStream {
+    pub(super) fn advanced(&self, step: &StepKernels) -> TokenStream {
         match step.displace {
             Some(_) => quote!(let q = self.displace(&q, &x);),
             None => quote!(let q = self.advance(&q, &d);),
@@ -565,12 +424,24 @@ impl Emitter<'_, '_> {
                 let impulse = self.#kick(#time &q);
                 let mu = mu + impulse;
             },
+            false if self.keeps_motions() => quote!(let impulse = *impulse;),
             false => quote!(let impulse = ();),
         }
     }
 
+    /// F − I from the solution of the equation, or at once.
+    fn found_increment(&self, solution: TokenStream) -> TokenStream {
+        match self.program.formulas.turns_whole() {
+            true => quote!(let (d, _) = self.turn_kept(&self.kept_motions(&mu), &mu)?;),
+            false => quote! {
+                let x = #solution;
+                let d = self.increment(&x);
+            },
+        }
+    }
+
     fn symmetric(&self) -> TokenStream {
-        if self.model.force.is_some() {
+        if !self.model.has_covectors() {
             return TokenStream::new();
         }
         let (krate, configuration, time) = (&self.paths.krate, self.configuration_type(), self.time_parameter());
@@ -594,12 +465,12 @@ impl Emitter<'_, '_> {
                 quote!(let mu = mu + self.#name(#time &q);)
             });
             let advanced = self.advanced(step);
+            let found = self.found_increment(quote!(self.#solve(#place &mu)?));
             quote! {
                 #start
                 let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
                 #rest
-                let x = self.#solve(#place &mu)?;
-                let d = self.increment(&x);
+                #found
                 #coupled
                 #advanced
                 let p = self.lift(&q, &p, &d);

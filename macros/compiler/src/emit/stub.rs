@@ -99,7 +99,7 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(inverse_legendre(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #element),
-        quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration)),
+        quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum)),
         quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &(), u: &Self::Input) -> #step),
         quote!(step_symmetric(&self, constants: &(), t: #scalar, q: &#configuration, p: &#configuration) -> #symmetric),
         quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar),

@@ -90,6 +90,12 @@ impl Emitter<'_, '_> {
             let factor = &self.model.factors[self.program.formulas.symbols.blocks[block].factor];
             let access = code::accessor(&factor.accessor);
             let of_block = self.block_of_inertia(solve);
+            if self.program.formulas.turns_whole() {
+                return match self.is_left(solve) {
+                    true => quote!(-#private::free_momentum_4d(&#of_block, h, &f #access.transpose())),
+                    false => quote!(#private::free_momentum_4d(&#of_block, h, &f #access)),
+                };
+            }
             let rotation = match factor.group {
                 Group::UnitQuaternions => quote!(#private::gibbs_vector_of_quaternion(&f #access)),
                 _ => quote!(#private::gibbs_vector_of_matrix(&f #access)),
@@ -99,7 +105,7 @@ impl Emitter<'_, '_> {
                 false => quote!(#private::free_momentum(&#of_block, h, &#rotation)),
             }
         };
-        if self.dimension() == 3 {
+        if self.dimension() == 3 || self.program.formulas.turns_whole() {
             let momentum = solves().map(momentum);
             return Some(quote!(let inertia = { #inertia }; let mu = #(#momentum)*;));
         }
@@ -203,8 +209,8 @@ impl Emitter<'_, '_> {
                 None,
             ),
         ];
-        let potential = self.potential();
-        quote!(#(#methods)* #potential)
+        let (stagger, potential) = (self.stagger(), self.potential());
+        quote!(#(#methods)* #stagger #potential)
     }
 
     fn potential(&self) -> TokenStream {
@@ -313,8 +319,14 @@ impl Emitter<'_, '_> {
         let [whole, first] = self.whole_and_first();
         let impulse = match self.shares_impulse() {
             true => quote!(#step::#kick(&#step { system: self, #first }, #time q)),
+            false if self.keeps_motions() => quote!(#step::kept_motions(&#step { system: self, #first }, mu)),
             false => quote!(()),
         };
+        let (title, inline_of_impulse) = match self.keeps_motions() {
+            true => ("What the free motion with this momentum keeps.", quote!()),
+            false => ("The kick that the end of a step and the start of the next share.", quote!(#[inline])),
+        };
+        let title = docs::lines(&[title.to_string()]);
         quote! {
             /// The group element that is connected to the identity and has this momentum.
             fn inverse_legendre(
@@ -326,9 +338,15 @@ impl Emitter<'_, '_> {
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
                 #step::inverse_legendre(&#step { system: self, #whole }, #time q, mu)
             }
-            /// The kick that the end of a step and the start of the next share.
-            #[inline]
-            fn impulse(&self, constants: &Self::Constants, t: #scalar, q: &Self::Configuration) -> Self::Impulse {
+            #title
+            #inline_of_impulse
+            fn impulse(
+                &self,
+                constants: &Self::Constants,
+                t: #scalar,
+                q: &Self::Configuration,
+                mu: &Self::Momentum,
+            ) -> Self::Impulse {
                 #impulse
             }
             /// One step of the discrete Euler–Poincaré representation.
@@ -356,6 +374,18 @@ impl Emitter<'_, '_> {
                 #taken_symmetric
             }
         }
+    }
+
+    /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
+    fn stagger(&self) -> Option<TokenStream> {
+        let (kernel, scalar) = (self.program.stagger.as_ref()?, &self.paths.scalar);
+        let formulas = self.program.formulas.titled("synchronized momentum");
+        Some(self.method(
+            ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", &formulas),
+            quote!(stagger(&self, h: #scalar, t: #scalar, q: &Self::Configuration) -> Self::Momentum),
+            kernel,
+            None,
+        ))
     }
 
     /// By how much q violates what the declaration promises.

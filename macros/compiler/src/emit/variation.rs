@@ -253,7 +253,7 @@ impl Emitter<'_, '_> {
                     u: &Self::Input,
                 ) -> (#slopes, #slopes) {
                     #stage
-                let step = #step { system: self, constants };
+                    let step = #step { system: self, constants };
                     #slopes_of_step
                 }
             }

@@ -52,6 +52,8 @@ pub struct Program<'g> {
     pub legendre: Kernel,
     /// F⁺ℓd, from h, q and F.
     pub legendre_next: Kernel,
+    /// ½J(q, ∂(U₁ − U₀)), from h, t and q; `None` if it vanishes.
+    pub stagger: Option<Kernel>,
     /// V(q).
     pub potential: Kernel,
     /// Σ.
@@ -127,6 +129,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),
         legendre: stacked(&formulas.legendre, &mut scalars),
         legendre_next: stacked(&after, &mut scalars),
+        stagger: formulas.stagger.as_ref().map(|stagger| stacked(stagger, &mut scalars)),
         potential: outputs(&mut scalars, &[formulas.potential_energy]),
         inertia: outputs(&mut scalars, &[formulas.inertia]),
         energy_coefficients: energy_coefficients(&formulas, &mut scalars),

@@ -58,6 +58,7 @@ impl Program<'_> {
         kernels.extend(self.velocity.iter().map(|kernel| ("velocity".to_string(), kernel)));
         kernels.extend(self.gyroscopic.iter().map(|kernel| ("gyroscopic".to_string(), kernel)));
         kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
+        kernels.extend(self.stagger.iter().map(|kernel| ("stagger".to_string(), kernel)));
         kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
         kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
         kernels.extend(self.splitting.iter().flat_map(|splitting| {
@@ -95,7 +96,9 @@ impl Program<'_> {
                 kernels.push((of("linearize"), &solve.linearize));
             }
             kernels.extend(step.start_force.iter().map(|kernel| (named("start_force"), kernel)));
-            kernels.push((named("increment"), &step.increment));
+            if !self.formulas.turns_whole() {
+                kernels.push((named("increment"), &step.increment));
+            }
             match &step.displace {
                 Some(displace) => kernels.push((named("displace"), displace)),
                 None => kernels.push((named("advance"), &step.advance)),

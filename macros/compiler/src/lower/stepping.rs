@@ -189,15 +189,19 @@ fn step<'g>(
             gradients(substep.lagrangian.kinetic).iter().map(|gradient| gradient.substitute(&moved)).collect();
         separate(scalars, hoisted, &gradients)
     });
-    let (increment, advance) = (increment(formulas, scalars), advance(formulas, scalars));
-    let update = update(formulas, substep, scalars, hoisted);
+    let advance = advance(formulas, scalars);
+    // where F − I and the next momentum are found at once, none is made of the other
+    let (increment, update) = match formulas.turns_whole() {
+        true => (kernel(scalars, &[], Hoisting::Nothing), None),
+        false => (increment(formulas, scalars), update(formulas, substep, scalars, hoisted)),
+    };
     let by_increments = match update.is_some() {
         // the increments are made in any case
         true => advance.cost().total(),
         false => increment.cost().total() + advance.cost().total(),
     };
     let displace = displacement::displaced(formulas).map(|images| plain(scalars, &images));
-    let displace = displace.filter(|_| formulas.weighted().is_empty());
+    let displace = displace.filter(|_| formulas.weighted().is_empty() && !formulas.turns_whole());
     let displace = displace.filter(|displace| displace.cost().total() < by_increments);
     StepKernels {
         end_is_start: substep.start == substep.end && !formulas.is_timed(),

@@ -13,6 +13,7 @@ mod forces;
 mod groups;
 mod leaves;
 mod membership;
+mod momentum;
 mod outline;
 mod print;
 mod quaternion;
@@ -83,7 +84,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         (factor.side, factor.moves) = (law.side, law.moves);
     }
     let dials = &declaration.dials;
-    Ok(Model {
+    momentum::alone(Model {
         graph,
         item: item(declaration, fields.scalar),
         parameters: fields.parameters,
@@ -105,6 +106,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         endpoint: formulas.endpoint,
         symmetries: formulas.symmetries,
         solver: dials.solver.as_ref().map(|solver| solver.value),
+        tolerance: dials.tolerance.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),

@@ -38,11 +38,14 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let names = Names { generics: &declaration.generics, declared: &declared };
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
     let groups = spaces::read_groups(types.group, names, &mut ignored)?;
-    let spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
+    let mut spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
     let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
     let forces = steered.chain(&declaration.force).chain(&declaration.force_on);
     let input = forces.filter_map(|closure| closure.arguments.last()?.ty.as_ref()).next();
     let input = input.and_then(|ty| spaces::read_spaces(ty, names, &mut ignored));
+    if declaration.dials.emit.momentum {
+        (spaces.structure, spaces.leaves) = (Structure::Tuple(Vec::new()), Vec::new());
+    }
     Some(Outline {
         inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
         input: input.map_or(Structure::Tuple(Vec::new()), |input| input.structure),

@@ -54,6 +54,9 @@ impl fmt::Display for Model<'_> {
         if let Some(solver) = self.solver {
             writeln!(f, "  solver     {solver}")?;
         }
+        if let Some(tolerance) = &self.tolerance {
+            writeln!(f, "  tolerance  {:e}", tolerance.value)?;
+        }
         if let Some(chart) = self.chart {
             writeln!(f, "  chart      {chart}")?;
         }

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::Structure;
-use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise, Solver};
+use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -54,6 +54,8 @@ pub struct Model<'g> {
     pub chart: Option<ChartChoice>,
     /// The solver that the user chooses.
     pub solver: Option<Solver>,
+    /// The part of a step by which its implicit equations may be missed; `None` for round-off.
+    pub tolerance: Option<Located<f64>>,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.
@@ -66,6 +68,11 @@ impl Model<'_> {
     /// Whether discrete Lagrangians are differentiated twice.
     pub fn has_variations(&self) -> bool {
         self.emit.variations() || (self.control.is_some() && !self.is_steered())
+    }
+
+    /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.
+    pub fn has_covectors(&self) -> bool {
+        self.force.is_none() && !self.configurations.is_empty()
     }
 
     /// Whether inputs move the configuration, without any mechanics.

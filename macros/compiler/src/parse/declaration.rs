@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::keys::{Dials, Keys};
-use super::{Closure, Control, DeclaredGroup, Field, Opaque, control};
+use super::{Closure, Control, DeclaredGroup, Field, Opaque, control, momentum};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -138,6 +138,7 @@ pub(super) fn assemble(
         None => (keys.action.take(), kinetic, None),
     };
     control::check_order(&keys, &mut diagnostics);
+    momentum::check(&keys, &mut diagnostics);
     control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
     if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
         diagnostics.push(

@@ -101,15 +101,22 @@ pub struct Emit {
     pub tangent: bool,
     /// What problems with fixed endpoints need: second derivatives of the discrete Lagrangian.
     pub boundary: bool,
+    /// The momentum alone: the configuration is `()`.
+    pub momentum: bool,
 }
 
 impl Emit {
     /// Nothing beside the integrator.
-    pub(super) const NOTHING: Emit = Emit { generated: false, tangent: false, boundary: false };
+    pub(super) const NOTHING: Emit = Emit { generated: false, tangent: false, boundary: false, momentum: false };
 
     /// The words that ask for it.
     pub(super) fn words(self) -> Vec<&'static str> {
-        let all = [(self.generated, "generated"), (self.tangent, "tangent"), (self.boundary, "boundary")];
+        let all = [
+            (self.generated, "generated"),
+            (self.tangent, "tangent"),
+            (self.boundary, "boundary"),
+            (self.momentum, "momentum"),
+        ];
         all.into_iter().filter(|(asked, _)| *asked).map(|(_, word)| word).collect()
     }
 
@@ -119,6 +126,7 @@ impl Emit {
             generated: self.generated || other.generated,
             tangent: self.tangent || other.tangent,
             boundary: self.boundary || other.boundary,
+            momentum: self.momentum || other.momentum,
         }
     }
 

@@ -27,6 +27,7 @@ pub(super) enum Kind {
     Discretization,
     Chart,
     Solver,
+    Tolerance,
     Isotropy,
     Emit,
     Scalar,
@@ -54,10 +55,10 @@ pub(super) const KEYS: [(&str, Kind); 24] = [
     ("discretization", Kind::Discretization),
     ("chart", Kind::Chart),
     ("solver", Kind::Solver),
+    ("tolerance", Kind::Tolerance),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
     ("crate", Kind::Crate),
-    ("tolerance", Kind::Later),
     ("constraint", Kind::Later),
     ("discrete_constraint", Kind::Later),
     ("space", Kind::Later),
@@ -85,10 +86,11 @@ pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
     [("fixed", Some(Isotropy::Fixed)), ("free", Some(Isotropy::Free))];
 
 /// What may be emitted beside the integrator.
-pub(super) const EMITTED: [(&str, Option<Emit>); 4] = [
+pub(super) const EMITTED: [(&str, Option<Emit>); 5] = [
     ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
     ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
     ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
+    ("momentum", Some(Emit { momentum: true, ..Emit::NOTHING })),
     ("connection", None),
 ];
 
@@ -106,6 +108,8 @@ pub struct Dials {
     pub chart: Option<Located<ChartChoice>>,
     /// `solver = newton`.
     pub solver: Option<Located<Solver>>,
+    /// `tolerance = 1e-8`.
+    pub tolerance: Option<Located<f64>>,
     /// `isotropy = fixed`.
     pub isotropy: Option<Located<Isotropy>>,
     /// `emit = [generated]`.

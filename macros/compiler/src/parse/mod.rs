@@ -9,6 +9,7 @@ mod dials;
 mod field;
 mod groups;
 mod keys;
+mod momentum;
 mod opaque;
 mod print;
 mod spelling;

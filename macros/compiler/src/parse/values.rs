@@ -5,7 +5,7 @@ use proc_macro2::extra::DelimSpan;
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseBuffer, ParseStream};
 use syn::punctuated::Punctuated;
-use syn::{Expr, ExprClosure, LitInt, Path, Token, bracketed, parenthesized};
+use syn::{Expr, ExprClosure, Lit, LitInt, Path, Token, bracketed, parenthesized};
 
 use super::dials::{Emit, Order};
 use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS};
@@ -22,6 +22,7 @@ pub(super) fn example(kind: Kind) -> &'static str {
         Kind::Discretization => "cayley",
         Kind::Chart => "exponential",
         Kind::Solver => "fixed_point",
+        Kind::Tolerance => "1e-8",
         Kind::Isotropy => "free",
         Kind::Emit => "[generated]",
         Kind::Scalar => "f64",
@@ -73,6 +74,10 @@ pub(super) fn read(
         }
         Kind::Chart => keys.dials.chart = read_name(key, kind, stream, &CHARTS, diagnostics)?,
         Kind::Solver => keys.dials.solver = read_name(key, kind, stream, &SOLVERS, diagnostics)?,
+        Kind::Tolerance => {
+            let literal: Lit = stream.parse().map_err(|_| expected("a number"))?;
+            keys.dials.tolerance = read_tolerance(&literal, diagnostics);
+        }
         Kind::Isotropy => keys.dials.isotropy = read_name(key, kind, stream, &ISOTROPIES, diagnostics)?,
         Kind::Emit => {
             if !stream.peek(syn::token::Bracket) {
@@ -153,6 +158,25 @@ fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located
         );
     }
     found.map(|value| Located { value, span })
+}
+
+/// A number between 0 and 1.
+fn read_tolerance(literal: &Lit, diagnostics: &mut Diagnostics) -> Option<Located<f64>> {
+    let number = match literal {
+        Lit::Float(number) if number.suffix().is_empty() => number.base10_parse().ok(),
+        _ => None,
+    };
+    let found = number.filter(|part: &f64| 0.0 < *part && *part < 1.0);
+    if found.is_none() {
+        let written = super::spelling::tokens(literal);
+        let error = Diagnostic::new(literal.span(), format!("`{written}` is no tolerance"));
+        diagnostics.push(
+            error
+                .help("write a number between 0 and 1, as in `tolerance = 1e-8`, or leave the key out for round-off")
+                .note("it is the part of a step by which its momentum equation may be missed"),
+        );
+    }
+    found.map(|value| Located { value, span: literal.span() })
 }
 
 /// A name of a table.

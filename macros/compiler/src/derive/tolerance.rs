@@ -1,0 +1,49 @@
+//! Equations that are solved to a tolerance: whether there are any, and what is conserved all the same.
+
+use clebsch_symbolic::{Expr, identity};
+
+use super::{ConservedMomentum, Formulas, Solution, Substep};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Model, Side};
+
+/// A tolerance ends an iteration.
+pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>]) -> Result<(), Diagnostics> {
+    let iterates =
+        substeps.iter().flat_map(|substep| &substep.equations).any(|equation| equation.solution == Solution::Newton);
+    let Some(tolerance) = model.tolerance.as_ref().filter(|_| !iterates) else { return Ok(()) };
+    let error = Diagnostic::new(tolerance.span, "the momentum equation of this step is solved without iteration");
+    Err(error.help("leave out `tolerance`").note("a tolerance says where an iteration ends").into())
+}
+
+impl<'g> Formulas<'g> {
+    /// Ad*_{F⁻¹} μ for a left action, Ad*_F μ for a right one: M⁺ of a factor whose momentum the drift carries along, of M = μ.
+    pub(super) fn carried(&self, k: usize, mu: Expr<'g>) -> Expr<'g> {
+        let factor = &self.model.factors[k];
+        match factor.side {
+            Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
+            Side::Right => factor.group.coadjoint(factor.symbol, mu),
+        }
+    }
+
+    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
+    /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
+    pub fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
+        let substeps = || self.substeps.iter().take(self.parts);
+        if substeps().any(|substep| substep.other.is_some()) {
+            return Vec::new();
+        }
+        let moves: Vec<Vec<(Expr<'g>, Expr<'g>)>> = substeps()
+            .map(|substep| {
+                let leaves = self.model.configurations.iter().zip(&self.model.action);
+                let momenta = self.symbols.momenta.iter().enumerate();
+                let momenta =
+                    momenta.filter(|(k, _)| !substep.unchanged[*k]).map(|(k, mu)| (*mu, self.carried(k, *mu)));
+                leaves.map(|(leaf, image)| (leaf.symbol, *image)).chain(momenta).collect()
+            })
+            .collect();
+        let stays = |momentum: &&ConservedMomentum<'g>| {
+            moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
+        };
+        self.symmetries.conserved.iter().filter(stays).collect()
+    }
+}

@@ -1,0 +1,307 @@
+//! The coefficients of x_i d_i, and how far each number of them reaches.
+//!
+//! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed either of their values on one principal axis, or of the
+//! coefficients (c₀, c₁, c₂) of c₀ + c₁X + c₂X², which X³ = e₁X² − e₂X + e₃ leaves of any polynomial. The second way knows no axes, which have no
+//! derivatives where two moments are equal.
+
+use crate::{Real, Scalar};
+
+/// The degree up to which the series are known.
+const DEGREE: usize = 14;
+
+/// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
+pub(super) const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
+
+/// The degrees of polynomials that are evaluated: as many terms as α asks for.
+const DEGREES: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 14];
+
+/// The coefficients of α^i ε^j in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d, at [`place`]; the fourth of each is 0, as registers hold
+/// two or four.
+pub(super) type Coefficients<T> = [[T; 4]; MONOMIALS];
+
+/// A function of X: its value on one axis, or its three coefficients.
+type Function<T, const N: usize> = [T; N];
+
+/// A homogeneous polynomial in α and ε, of which entry j belongs to ε^j.
+type Polynomial<T, const N: usize> = [Function<T, N>; DEGREE + 1];
+
+/// One of each degree.
+type Series<T, const N: usize> = [Polynomial<T, N>; DEGREE + 1];
+
+/// The place of the coefficient of α^i ε^j, those of one j after the other.
+const fn place(i: usize, j: usize) -> usize {
+    // Σ_{k<j} (DEGREE + 1 − k)
+    j * (2 * DEGREE + 3 - j) / 2 + i
+}
+
+/// The coefficients of α^i ε^j; there are some for all that are asked for, without a panic where the optimiser cannot see that.
+#[inline(always)]
+pub(super) fn coefficient<T: Scalar>(series: &Coefficients<T>, i: usize, j: usize) -> [T; 4] {
+    series.get(place(i, j)).copied().unwrap_or([T::zero(); 4])
+}
+
+/// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
+#[cold]
+pub(super) fn on_axes<T: Scalar>(x: &[T; 3]) -> Coefficients<T> {
+    let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
+    // e_i, less their mean: coefficients of α and of ε
+    let raw: [[T; 2]; 3] = core::array::from_fn(|i| {
+        let (j, k) = others(i);
+        [x[j] * x[k], x[i]]
+    });
+    let third = T::from_ratio(1, 3);
+    let mean: [T; 2] = core::array::from_fn(|part| third * (raw[0][part] + raw[1][part] + raw[2][part]));
+    let roots: [[T; 2]; 3] = raw.map(|[a, b]| [a - mean[0], b - mean[1]]);
+    let [[a, p], [b, q], [g, r]] = roots;
+    let squares = [a * a + b * b + g * g, T::from_f64(2.0) * (a * p + b * q + g * r), p * p + q * q + r * r];
+    let products = [a * b * g, p * b * g + a * q * g + a * b * r, p * q * g + p * b * r + a * q * r, p * q * r];
+    let elliptic = elliptic(&squares, &products);
+    // values on an axis are multiplied as they are
+    let nothing = [T::zero(); 3];
+    let mut all = [[T::zero(); 4]; MONOMIALS];
+    for i in 0..3 {
+        let (j, k) = others(i);
+        let differences = (x[i] - x[j]) * (x[i] - x[k]);
+        let roots = roots[i].map(|root| [root]);
+        let series = of_function(&nothing, [x[i]], [x[i].recip()], [differences], roots, &elliptic);
+        each_coefficient(&series, &mut all, |entry, [value]| entry[i] = value);
+    }
+    all
+}
+
+/// The same for c₀, c₁ and c₂ of X d = c₀ + c₁X + c₂X², where e = (e₁, e₂, e₃) are the sum of the x_i, that of x_jx_k, and their product.
+#[cold]
+pub(super) fn in_powers<T: Scalar>(e: &[T; 3]) -> Coefficients<T> {
+    let [first, second, third] = *e;
+    let (zero, one, two) = (T::zero(), T::one(), T::from_f64(2.0));
+    let part = T::from_ratio(1, 3);
+    // x_jx_k = X² − e₁X + e₂, and X, less their means
+    let roots = [[second - part * second, -first, one], [-part * first, one, zero]];
+    // tr f of f = c₀ + c₁X + c₂X²
+    let trace = |f: [T; 3]| T::from_f64(3.0) * f[0] + first * f[1] + (first * first - two * second) * f[2];
+    let [a, b] = roots;
+    let squares = [product(&a, &a, e), product(&a, &b, e), product(&b, &b, e)];
+    let (aa, ab, bb) = (trace(squares[0]), trace(squares[1]), trace(squares[2]));
+    // e₁e₂e₃ = ⅓ tr of the cube, as the trace of the roots vanishes
+    let cubes = [
+        part * trace(product(&squares[0], &a, e)),
+        trace(product(&squares[0], &b, e)),
+        trace(product(&squares[2], &a, e)),
+        part * trace(product(&squares[2], &b, e)),
+    ];
+    let elliptic = elliptic(&[aa, two * ab, bb], &cubes);
+    let x = [zero, one, zero];
+    let inverse = third.recip();
+    let reciprocal = [inverse * second, -inverse * first, inverse];
+    let differences = [second, -two * first, T::from_f64(3.0)];
+    let series = of_function(e, x, reciprocal, differences, roots, &elliptic);
+    let mut all = [[zero; 4]; MONOMIALS];
+    each_coefficient(&series, &mut all, |entry, [a, b, c]| *entry = [a, b, c, zero]);
+    all
+}
+
+fn each_coefficient<T: Scalar, const N: usize>(
+    series: &Series<T, N>,
+    all: &mut Coefficients<T>,
+    mut put: impl FnMut(&mut [T; 4], Function<T, N>),
+) {
+    for (n, row) in series.iter().enumerate() {
+        for (j, value) in row.iter().enumerate().take(n + 1) {
+            if let Some(entry) = all.get_mut(place(n - j, j)) {
+                put(entry, *value);
+            }
+        }
+    }
+}
+
+/// x d of a function X and 1/X, (x − x_j)(x − x_k) on each axis, the coefficients of α and ε in the roots, and those of τ²/4 ℘(τ/2).
+fn of_function<T: Scalar, const N: usize>(
+    e: &[T; 3],
+    x: Function<T, N>,
+    reciprocal: Function<T, N>,
+    differences: Function<T, N>,
+    roots: [Function<T, N>; 2],
+    elliptic: &Series<T, 1>,
+) -> Series<T, N> {
+    let zero = [T::zero(); N];
+    // p = 1 + α P − e + …
+    let mut p = elliptic.map(|row| row.map(|[value]| core::array::from_fn(|k| if k == 0 { value } else { T::zero() })));
+    p[1][0] = sum(&differences, &scaled(&roots[0], -T::one()));
+    p[1][1] = scaled(&roots[1], -T::one());
+    let inverse = inverse(&p, e);
+    let mut rate: Series<T, N> = [[zero; DEGREE + 1]; DEGREE + 1];
+    rate[0][0] = x;
+    // (ε − x α) P times the polynomial of one degree less
+    let mut factor = [zero; DEGREE + 1];
+    (factor[0], factor[1]) = (scaled(&product(&differences, &x, e), -T::one()), differences);
+    for n in 1..=DEGREE {
+        add_product(&mut rate[n], (&factor, 1), (&inverse[n - 1], n - 1), e);
+    }
+    riccati(reciprocal, x, &rate, e).map(|row| row.map(|value| product(&x, &value, e)))
+}
+
+/// τ²/4 ℘(τ/2) = 1 + Σ c_k of degree k, for the coefficients of α^i ε^j in Σ e_i² and e₁e₂e₃.
+///
+/// c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k − 3)) Σ c_m c_{k−m}; g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃.
+fn elliptic<T: Scalar>(squares: &[T; 3], products: &[T; 4]) -> Series<T, 1> {
+    let mut c: Series<T, 1> = [[[T::zero()]; DEGREE + 1]; DEGREE + 1];
+    let (tenth, seventh) = (T::from_ratio(1, 10), T::from_ratio(1, 7));
+    c[2].iter_mut().zip(squares).for_each(|(entry, square)| *entry = [tenth * *square]);
+    c[3].iter_mut().zip(products).for_each(|(entry, product)| *entry = [seventh * *product]);
+    for k in 4..=DEGREE {
+        let mut row = [[T::zero()]; DEGREE + 1];
+        for m in 2..=k - 2 {
+            add_product(&mut row, (&c[m], m), (&c[k - m], k - m), &[T::zero(); 3]);
+        }
+        let factor = T::from_ratio(3, ((2 * k + 1) * (k - 3)) as i64);
+        c[k] = row.map(|coefficient| scaled(&coefficient, factor));
+    }
+    c[0][0] = [T::one()];
+    c
+}
+
+/// 1
+fn unity<T: Scalar, const N: usize>() -> Function<T, N> {
+    core::array::from_fn(|k| if k == 0 { T::one() } else { T::zero() })
+}
+
+fn sum<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>) -> Function<T, N> {
+    core::array::from_fn(|k| a[k] + b[k])
+}
+
+fn scaled<T: Scalar, const N: usize>(a: &Function<T, N>, factor: T) -> Function<T, N> {
+    a.map(|coefficient| factor * coefficient)
+}
+
+/// The product of two functions: of their values, or of polynomials, the powers from X³ on reduced.
+fn product<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>, e: &[T; 3]) -> Function<T, N> {
+    let mut all = [T::zero(); 5];
+    for (i, a) in a.iter().enumerate() {
+        for (entry, b) in all.iter_mut().skip(i).zip(b) {
+            *entry += *a * *b;
+        }
+    }
+    if N == 3 {
+        let [.., fourth] = all;
+        all[3] += e[0] * fourth;
+        all[2] += e[0] * all[3] - e[1] * fourth;
+        all[1] += e[2] * fourth - e[1] * all[3];
+        all[0] += e[2] * all[3];
+    }
+    core::array::from_fn(|k| all.get(k).copied().unwrap_or_else(T::zero))
+}
+
+/// 1/p for p = 1 + ….
+fn inverse<T: Scalar, const N: usize>(p: &Series<T, N>, e: &[T; 3]) -> Series<T, N> {
+    let mut inverse: Series<T, N> = [[[T::zero(); N]; DEGREE + 1]; DEGREE + 1];
+    inverse[0][0] = unity();
+    for n in 1..=DEGREE {
+        let mut row = [[T::zero(); N]; DEGREE + 1];
+        for k in 1..=n {
+            add_product(&mut row, (&p[k], k), (&inverse[n - k], n - k), e);
+        }
+        inverse[n] = row.map(|coefficient| scaled(&coefficient, -T::one()));
+    }
+    inverse
+}
+
+/// V of (2n − 1) V_n = −((α + V²) b)_n with V₀ = 1/b₀, which is the differential equation for d = V.
+fn riccati<T: Scalar, const N: usize>(
+    start: Function<T, N>,
+    x: Function<T, N>,
+    rate: &Series<T, N>,
+    e: &[T; 3],
+) -> Series<T, N> {
+    let mut v: Series<T, N> = [[[T::zero(); N]; DEGREE + 1]; DEGREE + 1];
+    let mut square = v;
+    v[0][0] = start;
+    square[0][0] = product(&start, &start, e);
+    for n in 1..=DEGREE {
+        let mut row = [[T::zero(); N]; DEGREE + 1];
+        // both halves of the square are the same
+        for k in 1..n.div_ceil(2) {
+            add_product(&mut row, (&v[k], k), (&v[n - k], n - k), e);
+        }
+        row = row.map(|coefficient| sum(&coefficient, &coefficient));
+        if n % 2 == 0 {
+            add_product(&mut row, (&v[n / 2], n / 2), (&v[n / 2], n / 2), e);
+        }
+        if n == 1 {
+            row[0] = sum(&row[0], &unity());
+        }
+        let mut right = row.map(|coefficient| product(&coefficient, &x, e));
+        for k in 1..=n {
+            add_product(&mut right, (&square[n - k], n - k), (&rate[k], k), e);
+        }
+        let factor = -T::from_ratio(1, (2 * n + 1) as i64);
+        v[n] = right.map(|coefficient| scaled(&coefficient, factor));
+        let twice = scaled(&start, T::from_f64(2.0));
+        square[n] = core::array::from_fn(|j| sum(&row[j], &product(&twice, &v[n][j], e)));
+    }
+    v
+}
+
+/// Adds the product of two homogeneous polynomials, given with their degrees.
+fn add_product<T: Scalar, const N: usize>(
+    sum: &mut Polynomial<T, N>,
+    one: (&Polynomial<T, N>, usize),
+    other: (&Polynomial<T, N>, usize),
+    e: &[T; 3],
+) {
+    for (i, a) in one.0.iter().enumerate().take(one.1 + 1) {
+        for (entry, b) in sum.iter_mut().skip(i).zip(other.0.iter().take(other.1 + 1)) {
+            *entry = self::sum(entry, &product(a, b, e));
+        }
+    }
+}
+
+/// What cannot be seen beside 1.
+#[inline]
+fn negligible<T: Real>() -> T {
+    T::from_ratio(1, 8) * T::EPSILON
+}
+
+/// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α.
+///
+/// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
+#[cold]
+pub(super) fn reach<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; 8] {
+    let sizes = sizes(x, series);
+    let root = |size: T, n: usize| match size > T::zero() {
+        true => (negligible::<T>() / size).powf(T::from_ratio(1, n as i64)),
+        false => T::one(),
+    };
+    let size = |n: usize| sizes.get(n).copied().unwrap_or(T::one());
+    // beyond the last degree terms grow on as they did; that they shrink is not counted on
+    let (last, before) = (size(DEGREE), size(DEGREE - 1));
+    let grown = if before > T::zero() { last * (last / before) } else { last };
+    let beyond = if grown > last { grown } else { last };
+    DEGREES.map(|degree| {
+        let of_degree = |n: usize| root(if n <= DEGREE { size(n) } else { beyond }, n);
+        let (reach, other) = (of_degree(degree + 1), of_degree(degree + 2));
+        let reach = if other < reach { other } else { reach };
+        if reach.is_finite() { reach } else { T::zero() }
+    })
+}
+
+/// The largest sum of the terms of each degree where α = 1.
+fn sizes<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; DEGREE + 1] {
+    const SAMPLES: i64 = 16;
+    let (mut low, mut high) = (x[0], x[0]);
+    for &other in x {
+        low = if other < low { other } else { low };
+        high = if other > high { other } else { high };
+    }
+    let mut sizes = [T::zero(); DEGREE + 1];
+    for sample in 0..=SAMPLES {
+        let epsilon = low + (high - low) * T::from_ratio(sample, SAMPLES);
+        for (n, size) in sizes.iter_mut().enumerate() {
+            let terms = (0..=n).rev().fold([T::zero(); 4], |sum, j| {
+                let coefficients = coefficient(series, n - j, j);
+                core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
+            });
+            *size = crate::space::larger(*size, terms[0].abs() + terms[1].abs() + terms[2].abs());
+        }
+    }
+    sizes
+}

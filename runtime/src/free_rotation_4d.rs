@@ -1,0 +1,361 @@
+//! The free motion of a rigid body in four dimensions, exactly: M′ = MΩ − ΩM, R′ = RΩ with M = DΩ + ΩD, for as long as it is the same motion.
+//!
+//! A motion conserves |M|², the Pfaffian of M, its energy, and one more quadratic integral. The map of Moser and Veselov commutes with it, so that
+//! four constants of the motion make that map exact:
+//!
+//! ```text
+//! m = h̃M = F̃J̃ − J̃F̃ᵀ,    J̃² = D² + β,    F = exp(h(δM + κ⋆M)) F̃,    ⋆M the dual of M
+//! ```
+//! They are found once, from the Taylor series of one step. A step then solves no equation by iteration: A = F̃J̃ obeys A² = mA + J̃², its
+//! characteristic polynomial λ⁴ − e₁λ³ + e₂λ² − e₃λ + e₄ is a constant of the motion, and F̃ is the solution of
+//!
+//! ```text
+//! N F̃ = G,    N = m³ + J̃²m + mJ̃² + e₂m − e₁(m² + J̃²) − e₃,    G = −(m² + J̃² − e₁m + e₂ + e₄J̃⁻²)J̃
+//! ```
+//! The e_i are taken from m anew in each step, from det(λ² − λm − J̃²): kept as they were, rounding would grow exponentially.
+//!
+//! Source: J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of matrix polynomials*,
+//! Comm. Math. Phys. 139 (1991); the integrals are those of S. V. Manakov, *Note on the integration of Euler's equations of the dynamics of an
+//! n-dimensional rigid body*, Funct. Anal. Appl. 10 (1976). The constants of the motion follow from the theorem of Liouville and Arnold: the map is
+//! the flow of a function of the four integrals.
+
+use crate::eigen::Spectrum;
+use crate::root::root;
+use crate::space::{MOST_LANES, each_lane, lane_of, larger, set_lane};
+use crate::{Error, Mask, Real, Scalar};
+use flow::{Matrix, PLANES, dot, flow, identity, product, skew};
+use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
+use setup::Constants;
+use turn::{composed, turn};
+
+mod flow;
+mod setup;
+mod turn;
+
+/// The most parts that a motion is made of.
+const PARTS: u32 = 1024;
+
+/// What a motion keeps: its constants, one after the other.
+pub type KeptRotation4<T> = SVector<T, { setup::LENGTH }>;
+
+/// What no free motion of a body over a given time changes.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeRotation4<T> {
+    /// d_i/s, with the largest s of them.
+    moments: [T; 4],
+    /// h/s: by it momenta are free of units.
+    scale: T,
+    axes: Axes<T>,
+}
+
+/// The axes in which momenta are written.
+#[derive(Clone, Copy, Debug)]
+enum Axes<T> {
+    /// Those of the coordinates, which are principal axes.
+    Coordinates,
+    /// The columns of this rotation, which are principal axes.
+    Principal(Matrix<T>),
+    /// Those of the coordinates, with s Σ⁻¹: numbers with derivatives know no principal axes.
+    Tensor(SMatrix<T, 6, 6>),
+}
+
+impl<T: Scalar> FreeRotation4<T> {
+    /// The free motions over the time `h` of a body with the quadratic form `inertia` of velocities, of which the lower triangle is read.
+    ///
+    /// # Errors
+    /// [`Error::SingularKineticEnergy`] where Σ is singular, [`Error::NotFinite`].
+    pub fn new(inertia: &SMatrix<T, 6, 6>, h: T) -> Result<Self, Error> {
+        let of_lane = |lane: usize| FreeRotation4::<T::Lane>::of_number(&lane_of(inertia, lane), h.lane(lane));
+        let first = of_lane(0)?;
+        let mut all = [first; MOST_LANES];
+        for (lane, place) in all.iter_mut().enumerate().take(T::LANES) {
+            *place = of_lane(lane)?;
+        }
+        let axes = match first.axes {
+            Axes::Tensor(_) => Axes::Tensor(SMatrix::from_fn(|i, j| {
+                T::from_lanes(|lane| match &all[lane].axes {
+                    Axes::Tensor(inverse) => inverse[(i, j)],
+                    _ => <T::Lane as Zero>::zero(),
+                })
+            })),
+            _ if all.iter().all(|one| matches!(one.axes, Axes::Coordinates)) => Axes::Coordinates,
+            // the axes of the coordinates are those of the identity, by which nothing is rounded
+            _ => Axes::Principal(array(|i| array(|j| T::from_lanes(|lane| all[lane].axes.rotation()[i][j])))),
+        };
+        Ok(Self {
+            moments: array(|i| T::from_lanes(|lane| all[lane].moments[i])),
+            scale: T::from_lanes(|lane| all[lane].scale),
+            axes,
+        })
+    }
+
+    /// The constants of the motion with the momentum `momentum`; those of a motion that is too long are 0.
+    #[cold]
+    pub fn motion(&self, momentum: &SVector<T, 6>) -> KeptRotation4<T> {
+        let m = self.in_principal_axes(momentum);
+        let mut kept = KeptRotation4::<T>::from_element(T::zero());
+        for lane in 0..T::LANES {
+            if let Ok(found) = self.of_lane(lane).constants(&lane_of_array(&m, lane)) {
+                set_lane(&mut kept, lane, &found.write());
+            }
+        }
+        kept
+    }
+
+    /// F − I and the momentum after a step of the motion with these constants.
+    ///
+    /// # Errors
+    /// [`Error::Unsolvable`] where the motion is too long, [`Error::NotFinite`]: of the first lane, where all fail; else those lanes are NaN.
+    #[inline]
+    pub fn turn(
+        &self,
+        kept: &KeptRotation4<T>,
+        momentum: &SVector<T, 6>,
+    ) -> Result<(SMatrix<T, 4, 4>, SVector<T, 6>), Error> {
+        let constants = Constants::read(kept);
+        let m = self.in_principal_axes(momentum);
+        let alone = constants.parts.equals(T::one()) & constants.by_series.equals(T::zero());
+        let (increment, next) = match alone.all() {
+            true => {
+                let (increment, next) = turn(&constants, &m.map(|entry| constants.step * entry));
+                (increment, scaled(&next, constants.step.recip()))
+            }
+            false => self.lane_by_lane(kept, &m)?,
+        };
+        Ok(self.in_coordinates(&increment, &next))
+    }
+
+    /// The same where lanes have different numbers of parts.
+    #[cold]
+    #[inline(never)]
+    fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+        let nothing = T::Lane::from_f64(f64::NAN);
+        let all = each_lane::<T, _>(([[nothing; 4]; 4], [nothing; 6]), |lane| {
+            self.of_lane(lane).in_parts(&Constants::read(&lane_of(kept, lane)), &lane_of_array(m, lane))
+        })?;
+        Ok((
+            array(|i| array(|j| T::from_lanes(|lane| all[lane].0[i][j]))),
+            array(|i| T::from_lanes(|lane| all[lane].1[i])),
+        ))
+    }
+
+    fn of_lane(&self, lane: usize) -> FreeRotation4<T::Lane> {
+        FreeRotation4 {
+            moments: lane_of_array(&self.moments, lane),
+            scale: self.scale.lane(lane),
+            axes: match &self.axes {
+                Axes::Coordinates => Axes::Coordinates,
+                Axes::Principal(axes) => Axes::Principal(axes.map(|row| row.map(|entry| entry.lane(lane)))),
+                Axes::Tensor(inverse) => Axes::Tensor(lane_of(inverse, lane)),
+            },
+        }
+    }
+
+    /// The entries above the diagonal of hM/s. Components are those below it.
+    #[inline]
+    fn in_principal_axes(&self, momentum: &SVector<T, 6>) -> [T; 6] {
+        let [m] = momentum.data.0;
+        let scaled = scaled(&m, -self.scale);
+        match &self.axes {
+            Axes::Principal(axes) => {
+                let turned = product(&transposed(axes), &product(&skew(&scaled), axes));
+                PLANES.map(|(i, j)| turned[i][j])
+            }
+            _ => scaled,
+        }
+    }
+
+    #[inline]
+    fn in_coordinates(&self, increment: &Matrix<T>, m: &[T; 6]) -> (SMatrix<T, 4, 4>, SVector<T, 6>) {
+        let inverse = -self.scale.recip();
+        match &self.axes {
+            Axes::Principal(axes) => {
+                let turned = |a: &Matrix<T>| product(axes, &product(a, &transposed(axes)));
+                let (increment, body) = (turned(increment), turned(&skew(m)));
+                (matrix(&increment), PLANES.map(|(i, j)| inverse * body[i][j]).into())
+            }
+            _ => (matrix(increment), scaled(m, inverse).into()),
+        }
+    }
+}
+
+impl<T: Real> FreeRotation4<T> {
+    /// The constants of one body.
+    fn of_number(inertia: &SMatrix<T, 6, 6>, h: T) -> Result<Self, Error> {
+        if inertia.iter().any(|entry| !entry.is_finite()) {
+            return Err(Error::NotFinite { name: "the inertia" });
+        }
+        let mass = mass(inertia);
+        let is_diagonal = (0..4).all(|i| (0..i).all(|j| mass[(i, j)] == T::zero()));
+        let (moments, axes): ([T; 4], _) = match is_diagonal {
+            true => (array(|i| mass[(i, i)]), Axes::Coordinates),
+            false => {
+                let spectrum = Spectrum::of(&mass);
+                (spectrum.values.into(), Axes::Principal(array(|i| array(|j| spectrum.vectors[(i, j)]))))
+            }
+        };
+        let size = moments.iter().fold(T::zero(), |most, moment| larger(most, moment.abs()));
+        let inverse = size.recip();
+        let relative = moments.map(|moment| moment * inverse);
+        // Σ_(ij) = d_i + d_j
+        let least = PLANES.iter().map(|&(i, j)| (relative[i] + relative[j]).abs());
+        let least = least.fold(T::one(), |least, sum| if sum < least { sum } else { least });
+        let is_regular = least > T::EPSILON;
+        if !is_regular {
+            return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
+        }
+        let axes = match T::DERIVATIVES > 0 {
+            true => Axes::Tensor(crate::parameters::invert(inertia)? * size),
+            false => axes,
+        };
+        Ok(Self { moments: relative, scale: h * inverse, axes })
+    }
+
+    /// The constants of the motion with m = hM/s: as few parts as will do.
+    ///
+    /// # Errors
+    /// [`Error::Unsolvable`], [`Error::NotFinite`].
+    #[cold]
+    fn constants(&self, m: &[T; 6]) -> Result<Constants<T>, Error> {
+        if m.iter().any(|entry| !entry.is_finite()) {
+            return Err(Error::NotFinite { name: "the momentum" });
+        }
+        let velocity = self.velocity(m);
+        let angle = dot(&velocity, &velocity).sqrt().to_f64();
+        let is_short = angle < f64::from(PARTS);
+        if !is_short {
+            return Err(Error::Unsolvable { solvable_fraction: 0.999 * f64::from(PARTS) / angle, step_size: None });
+        }
+        // parts of no more than a radian, or so few that their series end
+        let fewest = (0..10).fold(1, |parts, _| if f64::from(parts) < angle { 2 * parts } else { parts });
+        let mut parts = fewest;
+        while parts <= PARTS && !matches!(self.axes, Axes::Tensor(_)) {
+            let part = T::from_ratio(1, i64::from(parts));
+            if let Some(found) = setup::set_up(&self.moments, &scaled(m, part)) {
+                return Ok(Constants { parts: T::from_f64(f64::from(parts)), step: part * found.step, ..found });
+            }
+            parts *= 2;
+        }
+        Ok(Constants::by_series(T::from_f64(f64::from(fewest))))
+    }
+
+    /// F − I and the momentum after a part of a motion, by one series, or two of half the time.
+    fn series(&self, m: &[T; 6], halves: u32) -> Result<(Matrix<T>, [T; 6]), Error> {
+        if let Some(found) = flow(|m| self.velocity(m), m) {
+            return Ok(found);
+        }
+        if halves == 0 {
+            return Err(Error::NotFinite { name: "the free motion" });
+        }
+        let two = T::from_f64(2.0);
+        let (first, between) = self.series(&scaled(m, two.recip()), halves - 1)?;
+        let (second, end) = self.series(&between, halves - 1)?;
+        Ok((composed(&first, &second), scaled(&end, two)))
+    }
+
+    fn velocity(&self, m: &[T; 6]) -> [T; 6] {
+        match &self.axes {
+            Axes::Tensor(inverse) => (inverse * SVector::from(*m)).into(),
+            _ => array(|e| m[e] / (self.moments[PLANES[e].0] + self.moments[PLANES[e].1])),
+        }
+    }
+
+    /// F − I and the momentum after all parts of the time.
+    fn in_parts(&self, constants: &Constants<T>, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+        let parts = constants.parts.to_f64();
+        // no constants: the motion says why
+        let constants = if parts >= 1.0 { *constants } else { self.constants(m)? };
+        let parts = constants.parts.to_f64() as u32;
+        let (mut whole, mut m) = ([[T::zero(); 4]; 4], scaled(m, constants.step));
+        for _ in 0..parts {
+            let (increment, next) = match constants.by_series > T::zero() {
+                true => self.series(&m, PARTS.ilog2())?,
+                false => turn(&constants, &m),
+            };
+            (whole, m) = (composed(&whole, &increment), next);
+        }
+        Ok((whole, scaled(&m, constants.step.recip())))
+    }
+}
+
+impl<T: Scalar> Axes<T> {
+    fn rotation(&self) -> Matrix<T> {
+        match self {
+            Axes::Principal(axes) => *axes,
+            _ => identity(),
+        }
+    }
+}
+
+/// The momentum of the free motion over the time `h` from I to `f`, the one that Newton's method finds from M = (FD − DFᵀ)/h; NaN where it finds none.
+#[cold]
+pub fn free_momentum_4d<T: Scalar>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> SVector<T, 6> {
+    let mut momentum = SVector::from_element(T::zero());
+    for lane in 0..T::LANES {
+        let found = momentum_of(&lane_of(inertia, lane), h.lane(lane), &lane_of(f, lane));
+        let nothing = SVector::from_element(T::Lane::from_f64(f64::NAN));
+        set_lane(&mut momentum, lane, &found.unwrap_or(nothing));
+    }
+    momentum
+}
+
+fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> Option<SVector<T, 6>> {
+    let free = FreeRotation4::new(inertia, h).ok()?;
+    let below = |a: &SMatrix<T, 4, 4>| SVector::<T, 6>::from_fn(|e, _| a[(PLANES[e].1, PLANES[e].0)]);
+    // the turn that is left, R(μ)ᵀF, is small: its skew part tells it
+    let defect = |momentum: &SVector<T, 6>| {
+        let (increment, _) = free.turn(&free.motion(momentum), momentum).ok()?;
+        let left = f.tr_mul(&increment) + f.transpose();
+        Some(below(&(left - left.transpose())))
+    };
+    let mass = mass(inertia);
+    let skew = f * mass - mass * f.transpose();
+    root(below(&skew) * h.recip(), defect)
+}
+
+fn array<T, const N: usize>(entry: impl FnMut(usize) -> T) -> [T; N] {
+    core::array::from_fn(entry)
+}
+
+#[inline]
+fn scaled<T: Scalar, const N: usize>(vector: &[T; N], factor: T) -> [T; N] {
+    vector.map(|entry| factor * entry)
+}
+
+#[inline]
+fn lane_of_array<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane; N] {
+    numbers.map(|number| number.lane(lane))
+}
+
+#[inline]
+fn transposed<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
+    array(|i| array(|j| a[j][i]))
+}
+
+#[inline]
+fn matrix<T: Scalar>(rows: &Matrix<T>) -> SMatrix<T, 4, 4> {
+    // columns, one after the other
+    SMatrix::from_array_storage(nalgebra::ArrayStorage(transposed(rows)))
+}
+
+/// The symmetric D of a quadratic form Σ with ΣΩ = DΩ + ΩD: from R_ij = Σ_k Σ(e_i∧e_k, e_j∧e_k) = 2D + tr D.
+fn mass<T: Scalar>(inertia: &SMatrix<T, 6, 6>) -> SMatrix<T, 4, 4> {
+    // the component and the sign of e_i∧e_k
+    let plane = |i: usize, k: usize| {
+        let (low, high) = (i.min(k), i.max(k));
+        let index = PLANES.iter().position(|&plane| plane == (low, high)).unwrap_or(0);
+        (index, if i < k { T::one() } else { -T::one() })
+    };
+    let ricci = SMatrix::<T, 4, 4>::from_fn(|i, j| {
+        (0..4).filter(|&k| k != i && k != j).fold(T::zero(), |sum, k| {
+            let ((a, sign), (b, other)) = (plane(i, k), plane(j, k));
+            sum + sign * other * inertia[(a.max(b), a.min(b))]
+        })
+    });
+    let mean = ricci.trace() * T::from_ratio(1, 6);
+    (ricci - SMatrix::identity() * mean) * T::from_ratio(1, 2)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,95 @@
+//! Skew matrices of four dimensions, and free motions by the Taylor series in time.
+
+use crate::space::larger;
+use crate::{Real, Scalar};
+
+/// The entries (i, j) above the diagonal, in the order of the components.
+pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+
+/// A matrix by rows.
+pub(super) type Matrix<T> = [[T; 4]; 4];
+
+/// The skew matrix with these entries above the diagonal.
+pub(super) fn skew<T: Scalar>(v: &[T; 6]) -> Matrix<T> {
+    let mut matrix = [[T::zero(); 4]; 4];
+    for (&(i, j), &entry) in PLANES.iter().zip(v) {
+        (matrix[i][j], matrix[j][i]) = (entry, -entry);
+    }
+    matrix
+}
+
+/// ⋆v, the planes perpendicular to those of v.
+#[inline]
+pub(super) fn dual<T: Scalar>(v: &[T; 6]) -> [T; 6] {
+    [v[5], -v[4], v[3], v[2], -v[1], v[0]]
+}
+
+/// Pf v
+#[inline]
+pub(super) fn pfaffian<T: Scalar>(v: &[T; 6]) -> T {
+    v[0] * v[5] - v[1] * v[4] + v[2] * v[3]
+}
+
+#[inline]
+pub(super) fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
+}
+
+/// A B
+#[inline]
+pub(super) fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| (a[i][0] * b[0][j] + a[i][1] * b[1][j]) + (a[i][2] * b[2][j] + a[i][3] * b[3][j]))
+    })
+}
+
+pub(super) fn identity<T: Scalar>() -> Matrix<T> {
+    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { T::one() } else { T::zero() }))
+}
+
+/// The most terms of a series. Motions of a radian take some twenty.
+const TERMS: usize = 36;
+
+/// F − I and the momentum after the free motion from I in the time 1, Ω = `velocity`(M); `None` where the series has not ended.
+#[cold]
+pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) -> Option<(Matrix<T>, [T; 6])> {
+    let zero = T::zero();
+    let (mut rotations, mut momenta, mut velocities) =
+        ([[[zero; 4]; 4]; TERMS], [[zero; 6]; TERMS], [[zero; 6]; TERMS]);
+    rotations[0] = identity();
+    (momenta[0], velocities[0]) = (*m, velocity(m));
+    let small = T::from_ratio(1, 32) * T::EPSILON;
+    let (mut whole, mut ends, mut derivatives) = (([[zero; 4]; 4], *m), 0, T::DERIVATIVES);
+    for n in 0..TERMS - 1 {
+        let factor = T::from_ratio(1, n as i64 + 1);
+        let (mut rotation, mut momentum) = ([[zero; 4]; 4], [zero; 6]);
+        for l in 0..=n {
+            let (turn, speed) = (&rotations[l], skew(&velocities[n - l]));
+            let (body, other) = (skew(&momenta[l]), skew(&velocities[n - l]));
+            for (row, of_row) in rotation.iter_mut().zip(turn) {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    *entry += (0..4).fold(zero, |sum, k| sum + of_row[k] * speed[k][j]);
+                }
+            }
+            for (entry, &(i, j)) in momentum.iter_mut().zip(&PLANES) {
+                *entry += (0..4).fold(zero, |sum, k| sum + body[i][k] * other[k][j] - other[i][k] * body[k][j]);
+            }
+        }
+        let rotation = rotation.map(|row| row.map(|entry| entry * factor));
+        let momentum = momentum.map(|entry| entry * factor);
+        (rotations[n + 1], momenta[n + 1], velocities[n + 1]) = (rotation, momentum, velocity(&momentum));
+        whole.0.iter_mut().flatten().zip(rotation.iter().flatten()).for_each(|(sum, term)| *sum += *term);
+        whole.1.iter_mut().zip(&momentum).for_each(|(sum, term)| *sum += *term);
+        let largest = |entries: &[T]| entries.iter().fold(zero, |most, entry| larger(most, entry.abs()));
+        let is_small = largest(rotation.as_flattened()) < small && largest(&momentum) <= small * largest(m);
+        ends = if is_small { ends + 1 } else { 0 };
+        // two terms in a row, as one may vanish
+        if ends >= 2 {
+            if derivatives == 0 {
+                return Some(whole);
+            }
+            derivatives -= 1;
+        }
+    }
+    None
+}

@@ -1,0 +1,301 @@
+//! The constants of a motion, from its Taylor series.
+
+use super::flow::{Matrix, PLANES, dot, dual, flow, pfaffian, product, skew};
+use crate::space::larger;
+use crate::stumpff::stumpff;
+use crate::{Real, Scalar};
+use nalgebra::SVector;
+
+/// How many numbers a motion is given by.
+pub const LENGTH: usize = 25;
+
+/// What a motion with m = h̃M keeps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Constants<T> {
+    /// The number of equal parts of the time; 0 for a motion that has none of these constants.
+    pub parts: T,
+    /// 1 where each part is a Taylor series, as none of the constants below was found; else 0.
+    pub by_series: T,
+    /// h̃ of a part.
+    pub step: T,
+    /// J̃
+    pub moments: [T; 4],
+    /// e₁, e₂ and e₃ at m = 0, and their slopes by the [`integrals`].
+    pub origin: [T; 3],
+    pub slopes: [[T; 3]; 3],
+    /// 1/(|m|² ± 2 Pf m), or 0 where that vanishes.
+    pub casimirs: [T; 2],
+    /// exp(δM + κ⋆M) − I = a + b m + c ⋆m + d (m² + |m|²/2).
+    pub turn: [T; 4],
+}
+
+impl<T: Scalar> Constants<T> {
+    /// Those of a motion whose parts are Taylor series.
+    pub fn by_series(parts: T) -> Self {
+        let zero = T::zero();
+        Self {
+            parts,
+            by_series: T::one(),
+            step: parts.recip(),
+            moments: [zero; 4],
+            origin: [zero; 3],
+            slopes: [[zero; 3]; 3],
+            casimirs: [zero; 2],
+            turn: [zero; 4],
+        }
+    }
+
+    #[inline]
+    pub fn read(kept: &SVector<T, LENGTH>) -> Self {
+        let [[parts, by_series, step, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v]] = kept.data.0;
+        Self {
+            parts,
+            by_series,
+            step,
+            moments: [a, b, c, d],
+            origin: [e, f, g],
+            slopes: [[h, i, j], [k, l, m], [n, o, p]],
+            casimirs: [q, r],
+            turn: [s, t, u, v],
+        }
+    }
+
+    pub fn write(&self) -> SVector<T, LENGTH> {
+        let ([a, b, c, d], [e, f, g], [q, r], [s, t, u, v]) = (self.moments, self.origin, self.casimirs, self.turn);
+        let [[h, i, j], [k, l, m], [n, o, p]] = self.slopes;
+        let Self { parts, by_series, step, .. } = *self;
+        SVector::from([parts, by_series, step, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v])
+    }
+}
+
+/// Σm², Pf² − Σ m_ij²(k_p + k_q) and Σ m_ij² k_p k_q, with p and q those that are not i and j: what det(λ² − λm − K) depends on.
+#[inline]
+pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &[T; 6], pfaffian: T) -> [T; 3] {
+    let [a, b, c, d] = *k;
+    let sums = [c + d, b + d, b + c, a + d, a + c, a + b];
+    let products = [c * d, b * d, b * c, a * d, a * c, a * b];
+    let whole = (squares[0] + squares[1]) + (squares[2] + squares[3]) + (squares[4] + squares[5]);
+    [whole, pfaffian * pfaffian - dot(squares, &sums), dot(squares, &products)]
+}
+
+/// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD; `None` where they are not found.
+#[cold]
+pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants<T>> {
+    let (increment, _) = flow(|m| core::array::from_fn(|e| m[e] / (d[PLANES[e].0] + d[PLANES[e].1])), momentum)?;
+    let mut motion = increment;
+    (0..4).for_each(|i| motion[i][i] += T::one());
+    let fitted = Fit { d, momentum, motion: &motion }.fit()?;
+    let [_, step, delta, kappa] = fitted.unknowns;
+    let moments = fitted.moments;
+    let m = momentum.map(|entry| step * entry);
+    let k = moments.map(|j| j * j);
+    let squares = m.map(|entry| entry * entry);
+    let (pf, square) = (pfaffian(&m), squares.iter().fold(T::zero(), |sum, entry| sum + *entry));
+    let here = integrals(&k, &squares, pf);
+    let e = characteristic(&moments, &fitted.motion, &k, &here)?;
+    let slopes = slopes(&e, last(&moments))?;
+    let origin = core::array::from_fn(|i| e[i] - dot(&slopes[i], &here));
+    let two = T::from_f64(2.0);
+    let least = T::from_f64(1e4) * T::EPSILON * square;
+    let casimirs = [square + two * pf, square - two * pf].map(|c| if c > least { c.recip() } else { T::zero() });
+    let turn = turn([delta / step, kappa / step], square, pf);
+    let constants = Constants { parts: T::one(), by_series: T::zero(), step, moments, origin, slopes, casimirs, turn };
+    constants.write().iter().all(|number| number.is_finite()).then_some(constants)
+}
+
+/// The coefficients of exp(δm + κ⋆m) − I, by the two parts of a rotation in four dimensions, which commute.
+fn turn<T: Real>([delta, kappa]: [T; 2], square: T, pf: T) -> [T; 4] {
+    let (half, quarter, two) = (T::from_ratio(1, 2), T::from_ratio(1, 4), T::from_f64(2.0));
+    let (left, right) = (delta + kappa, delta - kappa);
+    let angle = |rate: T, sign: T| rate * rate * quarter * (square + sign * two * pf);
+    let (p, q) = (angle(left, T::one()), angle(right, -T::one()));
+    // cos − 1
+    let (versine, other) = (-p * stumpff(2, p), -q * stumpff(2, q));
+    let (sine, sine_other) = (stumpff(1, p), stumpff(1, q));
+    let along = (versine + T::one()) * sine_other * right;
+    let of_left = (other + T::one()) * sine * left;
+    [
+        versine + other + versine * other,
+        half * (of_left + along),
+        half * (of_left - along),
+        half * sine * sine_other * left * right,
+    ]
+}
+
+/// e₁, e₂ and e₃ of A = F̃J̃, as its integrals ask for to the last place.
+fn characteristic<T: Real>(moments: &[T; 4], motion: &Matrix<T>, k: &[T; 4], here: &[T; 3]) -> Option<[T; 3]> {
+    let a: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| motion[i][j] * moments[j]));
+    let trace = |a: &Matrix<T>| a[0][0] + a[1][1] + a[2][2] + a[3][3];
+    let square = product(&a, &a);
+    let (first, second, third) = (trace(&a), trace(&square), trace(&product(&square, &a)));
+    let half = T::from_ratio(1, 2);
+    let mut e = [first, half * (first * first - second), T::zero()];
+    e[2] = T::from_ratio(1, 3) * (e[1] * first - e[0] * second + third);
+    let two = T::from_f64(2.0);
+    let last = last(moments);
+    let [a, b, c, d] = *k;
+    let sum = a + b + c + d;
+    let pairs = a * b + a * c + a * d + b * c + b * d + c * d;
+    let triples = a * b * c + a * b * d + a * c * d + b * c * d;
+    let wanted = [here[0] - sum, pairs + here[1], here[2] - triples];
+    for _ in 0..3 {
+        let found =
+            [two * e[1] - e[0] * e[0], e[1] * e[1] + two * last - two * e[0] * e[2], two * e[1] * last - e[2] * e[2]];
+        let slopes = slopes(&e, last)?;
+        let defect: [T; 3] = core::array::from_fn(|i| wanted[i] - found[i]);
+        e = core::array::from_fn(|i| e[i] + dot(&slopes[i], &defect));
+    }
+    Some(e)
+}
+
+/// e₄ = det J̃
+#[inline]
+fn last<T: Scalar>(moments: &[T; 4]) -> T {
+    (moments[0] * moments[1]) * (moments[2] * moments[3])
+}
+
+/// The derivatives of e₁, e₂ and e₃ by the integrals: the inverse of (−2e₁ 2 0; −2e₃ 2e₂ −2e₁; 0 2e₄ −2e₃).
+fn slopes<T: Real>(e: &[T; 3], last: T) -> Option<[[T; 3]; 3]> {
+    let ([a, b, c], half) = (*e, T::from_ratio(1, 2));
+    // half of each entry
+    let determinant = a * (b * c - a * last) - c * c;
+    let cofactors = [[a * last - b * c, c, -a], [-c * c, a * c, -a * a], [-c * last, a * last, c - a * b]];
+    let inverse = half / determinant;
+    inverse.is_finite().then(|| cofactors.map(|row| row.map(|entry| entry * inverse)))
+}
+
+/// The four constants that make a map of Moser and Veselov of the exact motion.
+struct Fit<'a, T> {
+    d: &'a [T; 4],
+    momentum: &'a [T; 6],
+    /// F
+    motion: &'a Matrix<T>,
+}
+
+/// β, h̃, δ, κ, and what they make.
+struct Fitted<T> {
+    unknowns: [T; 4],
+    /// J̃
+    moments: [T; 4],
+    /// F̃ = exp(−(δM + κ⋆M)) F
+    motion: Matrix<T>,
+    /// F̃J̃ − J̃F̃ᵀ − h̃M
+    residual: [T; 6],
+}
+
+impl<T: Real> Fit<'_, T> {
+    /// By the method of Gauss and Newton, from no correction at all: from a small one where a moment vanishes, as J̃ has no slope there.
+    fn fit(&self) -> Option<Fitted<T>> {
+        let largest = |entries: &[T]| entries.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
+        let small = T::from_ratio(1, 1000) * dot(self.momentum, self.momentum);
+        let beta = if self.d.iter().any(|d| *d * *d <= small) { small } else { T::zero() };
+        let mut found = self.at([beta, T::one(), T::zero(), T::zero()]);
+        let mut derivatives = T::DERIVATIVES;
+        for _ in 0..20 {
+            let next = self.corrected(&found);
+            // NaN ends it
+            let shrinks = largest(&next.residual) < T::from_ratio(1, 2) * largest(&found.residual);
+            if !shrinks {
+                if derivatives == 0 {
+                    break;
+                }
+                derivatives -= 1;
+            }
+            found = next;
+        }
+        let accepted = T::from_f64(64.0) * T::EPSILON * largest(self.momentum);
+        (largest(&found.residual) <= accepted).then_some(found)
+    }
+
+    fn at(&self, unknowns: [T; 4]) -> Fitted<T> {
+        let [beta, step, delta, kappa] = unknowns;
+        let moments = self.d.map(|d| {
+            let root = (d * d + beta).sqrt();
+            if d < T::zero() { -root } else { root }
+        });
+        let m = self.momentum;
+        let square = m.iter().fold(T::zero(), |sum, entry| sum + *entry * *entry);
+        let [a, b, c, d] = turn([-delta, -kappa], square, pfaffian(m));
+        let (body, perpendicular) = (skew(m), skew(&dual(m)));
+        let squared = product(&body, &body);
+        let increment: Matrix<T> = core::array::from_fn(|i| {
+            core::array::from_fn(|j| {
+                let entry = b * body[i][j] + c * perpendicular[i][j] + d * squared[i][j];
+                if i == j { entry + a + d * T::from_ratio(1, 2) * square } else { entry }
+            })
+        });
+        let carried = product(&increment, self.motion);
+        let motion: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| self.motion[i][j] + carried[i][j]));
+        let residual = core::array::from_fn(|e| across(&motion, &moments, PLANES[e]) - step * self.momentum[e]);
+        Fitted { unknowns, moments, motion, residual }
+    }
+
+    /// One correction.
+    fn corrected(&self, found: &Fitted<T>) -> Fitted<T> {
+        let Fitted { unknowns, moments, motion, residual } = found;
+        let (body, perpendicular) = (skew(self.momentum), skew(&dual(self.momentum)));
+        let (turned, other) = (product(&body, motion), product(&perpendicular, motion));
+        let half = T::from_ratio(1, 2);
+        let reciprocals = moments.map(T::recip);
+        let columns = [
+            PLANES.map(|plane| half * across(motion, &reciprocals, plane)),
+            self.momentum.map(|entry| -entry),
+            PLANES.map(|plane| -across(&turned, moments, plane)),
+            PLANES.map(|plane| -across(&other, moments, plane)),
+        ];
+        let correction = least_squares(columns, *residual);
+        self.at(core::array::from_fn(|i| unknowns[i] - correction[i]))
+    }
+}
+
+/// Entry (i, j) of FJ − JFᵀ.
+#[inline]
+fn across<T: Scalar>(f: &Matrix<T>, moments: &[T; 4], (i, j): (usize, usize)) -> T {
+    f[i][j] * moments[j] - f[j][i] * moments[i]
+}
+
+/// The x that comes closest to Σ x_k a_k = b, by orthogonal columns, the longest first. Where columns are dependent, there are many, and x is small.
+fn least_squares<T: Real>(columns: [[T; 6]; 4], b: [T; 6]) -> [T; 4] {
+    let lengths = columns.map(|column| dot(&column, &column).sqrt());
+    let unit = |column: &[T; 6], length: T| column.map(|entry| entry / length);
+    let mut left: [[T; 6]; 4] = core::array::from_fn(|k| match lengths[k] > T::zero() {
+        true => unit(&columns[k], lengths[k]),
+        false => [T::zero(); 6],
+    });
+    let mut rest = b;
+    // a_k less its parts along those before is r_kk q_k
+    let (mut order, mut upper, mut right) = ([0; 4], [[T::zero(); 4]; 4], [T::zero(); 4]);
+    let mut used = [false; 4];
+    let mut rank = 0;
+    for stage in 0..4 {
+        let size = |k: usize| dot(&left[k], &left[k]).sqrt();
+        let next = (0..4).filter(|&k| !used[k]).max_by(|&a, &b| match size(a) < size(b) {
+            true => core::cmp::Ordering::Less,
+            false => core::cmp::Ordering::Greater,
+        });
+        let Some(next) = next else { break };
+        let length = size(next);
+        // NaN ends it
+        let is_independent = length > T::from_f64(1e3) * T::EPSILON;
+        if !is_independent {
+            break;
+        }
+        (order[stage], used[next], rank) = (next, true, stage + 1);
+        let q = unit(&left[next], length);
+        upper[stage][next] = length;
+        right[stage] = dot(&q, &rest);
+        rest = core::array::from_fn(|i| rest[i] - right[stage] * q[i]);
+        for k in (0..4).filter(|&k| !used[k]) {
+            let along = dot(&q, &left[k]);
+            upper[stage][k] = along;
+            left[k] = core::array::from_fn(|i| left[k][i] - along * q[i]);
+        }
+    }
+    let mut x = [T::zero(); 4];
+    for stage in (0..rank).rev() {
+        let known =
+            (stage + 1..rank).fold(right[stage], |sum, later| sum - upper[stage][order[later]] * x[order[later]]);
+        x[order[stage]] = known / upper[stage][order[stage]];
+    }
+    core::array::from_fn(|k| if lengths[k] > T::zero() { x[k] / lengths[k] } else { T::zero() })
+}

@@ -1,0 +1,167 @@
+//! The exact motion against a Runge–Kutta method in small steps, and against its own laws.
+
+use super::{FreeRotation4, KeptRotation4, PLANES, free_momentum_4d};
+use crate::Error;
+use nalgebra::{Matrix4, SMatrix, SVector, Vector6};
+use proptest::prelude::*;
+
+type Tensor = SMatrix<f64, 6, 6>;
+
+/// Σ of D: ½ tr(E_aᵀ(D E_b + E_b D)).
+fn form(mass: &Matrix4<f64>) -> Tensor {
+    Tensor::from_fn(|a, b| 0.5 * (basis(a).transpose() * (mass * basis(b) + basis(b) * mass)).trace())
+}
+
+/// E_ji − E_ij
+fn basis(index: usize) -> Matrix4<f64> {
+    let (i, j) = PLANES[index];
+    let mut matrix = Matrix4::zeros();
+    (matrix[(j, i)], matrix[(i, j)]) = (1.0, -1.0);
+    matrix
+}
+
+fn wedge(xi: &Vector6<f64>) -> Matrix4<f64> {
+    (0..6).fold(Matrix4::zeros(), |sum, index| sum + basis(index) * xi[index])
+}
+
+/// ½ Σ tr(Mᵀ E_i): entry by entry below the diagonal.
+fn components(matrix: &Matrix4<f64>) -> Vector6<f64> {
+    Vector6::from_fn(|index, _| matrix[(PLANES[index].1, PLANES[index].0)])
+}
+
+/// (R, μ) after a time, by the classical method of Runge and Kutta: R′ = RΩ, M′ = MΩ − ΩM.
+fn followed(inertia: &Tensor, mu: &Vector6<f64>, time: f64, steps: u32) -> (Matrix4<f64>, Vector6<f64>) {
+    let inverse = inertia.try_inverse().expect("regular");
+    let rate = |(r, mu): &(Matrix4<f64>, Vector6<f64>)| {
+        let (omega, m) = (wedge(&(inverse * mu)), wedge(mu));
+        (r * omega, components(&(m * omega - omega * m)))
+    };
+    let h = time / f64::from(steps);
+    let beside = |state: &(Matrix4<f64>, Vector6<f64>), rate: &(Matrix4<f64>, Vector6<f64>), part: f64| {
+        (state.0 + rate.0 * part, state.1 + rate.1 * part)
+    };
+    let mut state = (Matrix4::identity(), *mu);
+    for _ in 0..steps {
+        let first = rate(&state);
+        let second = rate(&beside(&state, &first, h / 2.0));
+        let third = rate(&beside(&state, &second, h / 2.0));
+        let fourth = rate(&beside(&state, &third, h));
+        for (slope, weight) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
+            state = beside(&state, &slope, weight * h / 6.0);
+        }
+    }
+    state
+}
+
+/// Where a number of steps of one motion lead.
+fn stepped(inertia: &Tensor, mu: &Vector6<f64>, h: f64, steps: u32) -> (Matrix4<f64>, Vector6<f64>) {
+    let free = FreeRotation4::new(inertia, h).expect("regular");
+    let kept = free.motion(mu);
+    let (mut r, mut mu) = (Matrix4::identity(), *mu);
+    for _ in 0..steps {
+        let (increment, next) = free.turn(&kept, &mu).expect("a step");
+        (r, mu) = (r + r * increment, next);
+    }
+    (r, mu)
+}
+
+const START: [f64; 6] = [0.6, -1.0, 0.4, 1.2, -0.2, 1.0];
+
+fn bodies() -> [(&'static str, Matrix4<f64>); 6] {
+    let turn =
+        SMatrix::<f64, 4, 4>::new(0.5, 0.5, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5, 0.5, 0.5, -0.5, -0.5, 0.5, -0.5, -0.5, 0.5);
+    let principal = |d: [f64; 4]| Matrix4::from_diagonal(&d.into());
+    [
+        ("four moments", principal([2.0, 3.0, 4.0, 5.0])),
+        ("turned axes", turn * principal([2.0, 3.0, 4.0, 5.0]) * turn.transpose()),
+        ("a pair of equal moments", principal([2.0, 2.0, 4.0, 5.0])),
+        ("two pairs", principal([2.0, 2.0, 4.0, 4.0])),
+        ("a ball", principal([3.0, 3.0, 3.0, 3.0])),
+        ("flat", principal([0.0, 1.0, 2.0, 3.0])),
+    ]
+}
+
+#[test]
+fn motions_are_those_of_small_steps() {
+    for (what, mass) in bodies() {
+        let (inertia, mu) = (form(&mass), Vector6::from(START));
+        let wanted = followed(&inertia, &mu, 4.0, 8000);
+        for steps in [1, 2, 4, 40] {
+            let found = stepped(&inertia, &mu, 4.0 / f64::from(steps), steps);
+            let error = ((found.0 - wanted.0).amax()).max((found.1 - wanted.1).amax());
+            assert!(error < 3e-13, "{what}, {steps}: {error:e}");
+        }
+    }
+}
+
+/// Constants are found: a step of a radian is one part, and no Taylor series.
+#[test]
+fn steps_are_of_one_part() {
+    for (what, mass) in bodies() {
+        let free = FreeRotation4::new(&form(&mass), 1.0).expect("regular");
+        let kept: KeptRotation4<f64> = free.motion(&Vector6::from(START));
+        assert_eq!((kept[0], kept[1]), (1.0, 0.0), "{what}");
+    }
+}
+
+/// Of rotations short of half a turn.
+#[test]
+fn the_momentum_is_that_of_the_rotation() {
+    for (what, mass) in bodies() {
+        let (inertia, mu) = (form(&mass), Vector6::from(START));
+        for h in [-0.3, 1e-6, 0.1, 1.0, 2.0] {
+            let (r, _) = stepped(&inertia, &mu, h, 1);
+            let found = free_momentum_4d(&inertia, h, &r);
+            assert!((found - mu).amax() < 1e-12, "{what}, {h}: {found} {mu}");
+        }
+    }
+    let inertia = form(&bodies()[0].1);
+    assert!(free_momentum_4d(&inertia, 0.1, &Matrix4::from_element(f64::NAN)).iter().all(|entry| entry.is_nan()));
+}
+
+#[test]
+fn a_motion_of_many_steps_stays() {
+    let mass = Matrix4::from_diagonal(&[2.0, 3.0, 4.0, 5.0].into());
+    let (inertia, start) = (form(&mass), Vector6::from(START));
+    let (r, mu) = stepped(&inertia, &start, 1.0, 100_000);
+    assert!((r.transpose() * r - Matrix4::identity()).amax() < 1e-12);
+    let spatial = components(&(r * wedge(&mu) * r.transpose()));
+    assert!((spatial - start).amax() < 1e-11, "{:e}", (spatial - start).amax());
+    let inverse = inertia.try_inverse().expect("regular");
+    let energy = |mu: &Vector6<f64>| mu.dot(&(inverse * mu));
+    assert!((energy(&mu) / energy(&start) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let flat = Matrix4::from_diagonal(&[0.0, 0.0, 1.0, 2.0].into());
+    assert!(matches!(FreeRotation4::new(&form(&flat), 0.1), Err(Error::SingularKineticEnergy { .. })));
+    let mass = Matrix4::from_diagonal(&[2.0, 3.0, 4.0, 5.0].into());
+    assert!(matches!(FreeRotation4::new(&(form(&mass) * f64::NAN), 0.1), Err(Error::NotFinite { .. })));
+    let free = FreeRotation4::new(&form(&mass), 0.1).expect("regular");
+    let turned = |mu: SVector<f64, 6>| free.turn(&free.motion(&mu), &mu);
+    assert!(matches!(turned(Vector6::from_element(f64::NAN)), Err(Error::NotFinite { .. })));
+    let far = Vector6::from(START) * 1e9;
+    let Err(Error::Unsolvable { solvable_fraction, .. }) = turned(far) else { panic!("a billion radians were made") };
+    assert!(turned(far * solvable_fraction).is_ok());
+    assert_eq!(turned(Vector6::zeros()).expect("at rest"), (Matrix4::zeros(), Vector6::zeros()));
+}
+
+proptest! {
+    /// The motion of h and then of k is that of h + k, each with its own constants; the integrals stay.
+    #[test]
+    fn motions_add_up(
+        moments in prop::array::uniform4(0.1_f64..3.0),
+        start in prop::array::uniform6(-1.0_f64..1.0),
+        h in 0.01_f64..1.0,
+        k in 0.01_f64..1.0,
+    ) {
+        let (inertia, mu) = (form(&Matrix4::from_diagonal(&moments.into())), Vector6::from(start));
+        let (first, between) = stepped(&inertia, &mu, h, 1);
+        let (second, end) = stepped(&inertia, &between, k, 1);
+        let (whole, last) = stepped(&inertia, &mu, h + k, 1);
+        let error = (first * second - whole).amax().max((end - last).amax());
+        prop_assert!(error < 2e-13, "{error:e}");
+        prop_assert!((whole.transpose() * whole - Matrix4::identity()).amax() < 2e-15);
+    }
+}

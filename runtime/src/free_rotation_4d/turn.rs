@@ -1,0 +1,170 @@
+//! One step of a motion whose constants are known: no iteration, one division.
+
+use super::flow::{Matrix, PLANES, dot, dual, pfaffian};
+use super::setup::{Constants, integrals};
+use crate::Scalar;
+
+/// F − I and the next m of a motion, from m = h̃M.
+#[inline]
+pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &[T; 6]) -> (Matrix<T>, [T; 6]) {
+    let Powers { squares, square, pf, of_square } = Powers::of(m);
+    let j = &constants.moments;
+    let k = j.map(|j| j * j);
+    let here = integrals(&k, &squares, pf);
+    let e: [T; 3] = core::array::from_fn(|i| constants.origin[i] + dot(&constants.slopes[i], &here));
+    let (n, g) = equation(j, &k, &e, m, (&of_square, square, pf));
+    let adjugate = adjugate(&n);
+    let determinant =
+        (n[0][0] * adjugate[0][0] + n[0][1] * adjugate[1][0]) + (n[0][2] * adjugate[2][0] + n[0][3] * adjugate[3][0]);
+    let inverse = determinant.recip();
+    let mut motion = super::flow::product(&adjugate, &g).map(|row| row.map(|entry| entry * inverse));
+    let next = PLANES.map(|(row, column)| j[row] * motion[row][column] - motion[column][row] * j[column]);
+    let next = on_level(constants, &next, square, pf);
+    let turn = of_casimirs(&constants.turn, m, &of_square, square);
+    (0..4).for_each(|i| motion[i][i] -= T::one());
+    (orthogonal(&composed(&turn, &motion)), next)
+}
+
+/// m², and what else is quadratic in m.
+struct Powers<T> {
+    squares: [T; 6],
+    /// |m|²
+    square: T,
+    pf: T,
+    /// m²: above the diagonal, and on it.
+    of_square: ([T; 6], [T; 4]),
+}
+
+impl<T: Scalar> Powers<T> {
+    #[inline]
+    fn of(m: &[T; 6]) -> Self {
+        let [a, b, c, d, e, f] = *m;
+        let squares = m.map(|entry| entry * entry);
+        let [aa, bb, cc, dd, ee, ff] = squares;
+        let above = [-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)];
+        let diagonal = [-(aa + bb + cc), -(aa + dd + ee), -(bb + dd + ff), -(cc + ee + ff)];
+        let square = (aa + bb + cc) + (dd + ee + ff);
+        Self { squares, square, pf: pfaffian(m), of_square: (above, diagonal) }
+    }
+}
+
+/// N = m³ + Km + mK + e₂m − e₁(m² + K) − e₃ and G = −(m² + K − e₁m + e₂ + e₄K⁻¹)J̃, with m³ = −|m|²m + Pf(m)⋆m.
+#[inline]
+fn equation<T: Scalar>(
+    j: &[T; 4],
+    k: &[T; 4],
+    e: &[T; 3],
+    m: &[T; 6],
+    ((above, diagonal), square, pf): (&([T; 6], [T; 4]), T, T),
+) -> (Matrix<T>, Matrix<T>) {
+    let zero = [[T::zero(); 4]; 4];
+    let (mut n, mut g) = (zero, zero);
+    let (perpendicular, rest) = (dual(m), e[1] - square);
+    for (index, &(row, column)) in PLANES.iter().enumerate() {
+        let skew = (rest + (k[row] + k[column])) * m[index] + pf * perpendicular[index];
+        let symmetric = e[0] * above[index];
+        (n[row][column], n[column][row]) = (skew - symmetric, -skew - symmetric);
+        let along = e[0] * m[index];
+        g[row][column] = (along - above[index]) * j[column];
+        g[column][row] = -(along + above[index]) * j[row];
+    }
+    // e₄/J̃
+    let (first, second) = (j[0] * j[1], j[2] * j[3]);
+    let others = [j[1] * second, j[0] * second, first * j[3], first * j[2]];
+    for i in 0..4 {
+        let sum = diagonal[i] + k[i];
+        n[i][i] = -(e[0] * sum + e[2]);
+        g[i][i] = -((sum + e[1]) * j[i] + others[i]);
+    }
+    (n, g)
+}
+
+/// The adjugate, by minors of the upper and the lower two rows.
+#[inline]
+fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
+    let minor = |(p, q): (usize, usize), (r, s): (usize, usize)| a[p][r] * a[q][s] - a[q][r] * a[p][s];
+    let [s0, s1, s2, s3, s4, s5] = PLANES.map(|columns| minor((0, 1), columns));
+    let [c0, c1, c2, c3, c4, c5] = PLANES.map(|columns| minor((2, 3), columns));
+    [
+        [
+            a[1][1] * c5 - a[1][2] * c4 + a[1][3] * c3,
+            -a[0][1] * c5 + a[0][2] * c4 - a[0][3] * c3,
+            a[3][1] * s5 - a[3][2] * s4 + a[3][3] * s3,
+            -a[2][1] * s5 + a[2][2] * s4 - a[2][3] * s3,
+        ],
+        [
+            -a[1][0] * c5 + a[1][2] * c2 - a[1][3] * c1,
+            a[0][0] * c5 - a[0][2] * c2 + a[0][3] * c1,
+            -a[3][0] * s5 + a[3][2] * s2 - a[3][3] * s1,
+            a[2][0] * s5 - a[2][2] * s2 + a[2][3] * s1,
+        ],
+        [
+            a[1][0] * c4 - a[1][1] * c2 + a[1][3] * c0,
+            -a[0][0] * c4 + a[0][1] * c2 - a[0][3] * c0,
+            a[3][0] * s4 - a[3][1] * s2 + a[3][3] * s0,
+            -a[2][0] * s4 + a[2][1] * s2 - a[2][3] * s0,
+        ],
+        [
+            -a[1][0] * c3 + a[1][1] * c1 - a[1][2] * c0,
+            a[0][0] * c3 - a[0][1] * c1 + a[0][2] * c0,
+            -a[3][0] * s3 + a[3][1] * s1 - a[3][2] * s0,
+            a[2][0] * s3 - a[2][1] * s1 + a[2][2] * s0,
+        ],
+    ]
+}
+
+/// The momentum with |m|² and Pf m of the motion, by what those before the step have lost: off the path of the step.
+#[inline]
+fn on_level<T: Scalar>(constants: &Constants<T>, next: &[T; 6], square: T, pf: T) -> [T; 6] {
+    let (quarter, twice) = (T::from_ratio(1, 4), pf + pf);
+    let lost = |size: T, reciprocal: T| {
+        let lost = quarter * (size * reciprocal - T::one());
+        T::select(reciprocal.equals(T::zero()), T::zero(), lost)
+    };
+    let [left, right] = constants.casimirs;
+    let (left, right) = (lost(square + twice, left), lost(square - twice, right));
+    let (along, across) = (T::one() - (left + right), right - left);
+    let perpendicular = dual(next);
+    core::array::from_fn(|i| along * next[i] + across * perpendicular[i])
+}
+
+/// exp(δM + κ⋆M) − I
+#[inline]
+fn of_casimirs<T: Scalar>(
+    [a, b, c, d]: &[T; 4],
+    m: &[T; 6],
+    (above, diagonal): &([T; 6], [T; 4]),
+    square: T,
+) -> Matrix<T> {
+    let mut turn = [[T::zero(); 4]; 4];
+    let (perpendicular, mean) = (dual(m), *a + *d * (T::from_ratio(1, 2) * square));
+    for (index, &(row, column)) in PLANES.iter().enumerate() {
+        let (skew, symmetric) = (*b * m[index] + *c * perpendicular[index], *d * above[index]);
+        (turn[row][column], turn[column][row]) = (symmetric + skew, symmetric - skew);
+    }
+    (0..4).for_each(|i| turn[i][i] = mean + *d * diagonal[i]);
+    turn
+}
+
+/// A + B + AB of the increments of two rotations, that of the product.
+#[inline]
+pub(super) fn composed<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+    let both = super::flow::product(a, b);
+    core::array::from_fn(|i| core::array::from_fn(|j| both[i][j] + (a[i][j] + b[i][j])))
+}
+
+/// D − ½(I + D)S with S = D + Dᵀ + DᵀD: what rounding has left of the orthogonality of I + D.
+#[inline]
+fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Matrix<T> {
+    let half = T::from_ratio(1, 2);
+    let mut defect = [[T::zero(); 4]; 4];
+    for i in 0..4 {
+        for j in i..4 {
+            let product = (d[0][i] * d[0][j] + d[1][i] * d[1][j]) + (d[2][i] * d[2][j] + d[3][i] * d[3][j]);
+            let entry = half * ((d[i][j] + d[j][i]) + product);
+            (defect[i][j], defect[j][i]) = (entry, entry);
+        }
+    }
+    let carried = super::flow::product(d, &defect);
+    core::array::from_fn(|i| core::array::from_fn(|j| d[i][j] - (carried[i][j] + defect[i][j])))
+}

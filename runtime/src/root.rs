@@ -1,0 +1,60 @@
+//! Roots of functions without a derivative at hand, where time does not matter.
+
+use crate::Real;
+use crate::linear::solve_dense;
+use crate::space::larger;
+use nalgebra::{SMatrix, SVector};
+
+/// More corrections than any start that leads to a root takes.
+const CORRECTIONS: usize = 50;
+
+/// The x near `start` where `defect` vanishes but for rounding, by Newton's method with differences for slopes.
+///
+/// Defects are to be free of units, so that those of order one are large. `None` where the defect is not defined, or shrinks no further before
+/// it is below √ε.
+#[cold]
+pub(crate) fn root<T: Real, const M: usize>(
+    start: SVector<T, M>,
+    defect: impl Fn(&SVector<T, M>) -> Option<SVector<T, M>>,
+) -> Option<SVector<T, M>> {
+    let largest = |v: &SVector<T, M>| v.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
+    let (mut x, mut before) = (start, T::from_f64(f64::INFINITY));
+    for _ in 0..CORRECTIONS {
+        // the largest of some numbers knows nothing of NaN
+        let now = defect(&x).filter(|now| now.iter().all(|entry| entry.is_finite()))?;
+        let size = largest(&now);
+        let shrinks = size > T::zero() && size < before;
+        if !shrinks {
+            return (size < T::EPSILON.sqrt()).then_some(x);
+        }
+        before = size;
+        let step = T::EPSILON.sqrt() * (largest(&x) + T::EPSILON);
+        let mut slope = SMatrix::<T, M, M>::from_element(T::zero());
+        for j in 0..M {
+            let mut beside = x;
+            beside[j] += step;
+            slope.set_column(j, &((defect(&beside)? - now) * step.recip()));
+        }
+        let (correction, _) = solve_dense(&slope, &now)?;
+        x -= correction;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::root;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn roots_are_found_or_said_to_be_none() {
+        // a circle and a line: (0.6, 0.8)
+        let defect = |x: &Vector2<f64>| Some(Vector2::new(x.norm_squared() - 1.0, 4.0 * x.x - 3.0 * x.y));
+        let found = root(Vector2::new(1.0, 1.0), defect).expect("a root");
+        assert!((found - Vector2::new(0.6, 0.8)).norm() < 1e-15);
+        // a circle and a line that do not meet
+        assert_eq!(root(Vector2::new(1.0, 1.0), |x| Some(Vector2::new(x.norm_squared() - 1.0, x.x - 2.0))), None);
+        assert_eq!(root(Vector2::new(1.0, 1.0), |_| Some(Vector2::from_element(f64::NAN))), None);
+        assert_eq!(root(Vector2::new(1.0, 1.0), |_| None), None);
+    }
+}

@@ -1,0 +1,93 @@
+//! Momenta of steps of first order, which are staggered: read at the time of their configuration, and started from there.
+
+use super::{Stepper, check_gradient, check_momentum, check_time};
+use crate::{Clebsch, Clock, Error, State, Time};
+use num_traits::Zero;
+
+/// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
+impl<S: Clebsch> Stepper<S> {
+    /// The momentum that belongs to the configuration of a state, π: with `order = 1` N before the second half of its kick,
+    /// ```text
+    /// π = N − ½ J(q, ∂(U₁ − U₀)) = N + h/2 J(q, ∂V(t, q))
+    /// ```
+    /// and with every other order N itself, so that a program may read π whatever the order is.
+    ///
+    /// Where the kinetic cost is time-symmetric, (q, π) moves by half kick, drift, half kick, of *second* order: steps of both orders make the same
+    /// configurations, if those of first order start by [`staggered_state`](Self::staggered_state) from the same q and π. So the step of first order has
+    /// the accuracy of second order, for a gradient at each reading. From a state that [`state`](Self::state) has made of N = π the
+    /// motion that is read is another one of second order, whose start is off by half a kick.
+    ///
+    /// Of first order still: what a cost makes that is not time-symmetric, and motions under a `force`, which takes the velocity and the input of
+    /// the drift before it; the kick is that of the potential alone. `DERIVATION` says so where it is.
+    ///
+    /// The components and the basis are those of N. NaN where the gradient is.
+    ///
+    /// ```
+    /// # use clebsch::Clebsch;
+    /// # use nalgebra::Vector3;
+    /// /// A pendulum by drift, then kick.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    ///     cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    ///     potential = |q| q.z,
+    ///     order     = 1,
+    /// )]
+    /// struct Pendulum;
+    ///
+    /// let stepper = Pendulum.stepper(0.01)?;
+    /// let start = stepper.staggered_state(Vector3::y(), Vector3::new(0.6, 0.0, 0.2))?;
+    /// assert!((stepper.synchronized(&start) - Vector3::new(0.6, 0.0, 0.2)).norm() < 1e-16);
+    /// let late = stepper.advance(&start, 1000)?;
+    /// let error = |energy: f64| (energy - 0.2).abs(); // (0.6² + 0.2²)/2, at the height 0
+    /// assert!(error(stepper.synchronized_energy(&late)) < 1e-4);
+    /// # let worst = stepper.trajectory(start).take(1000).flatten().map(|state| error(stepper.energy(&state))).fold(0.0, f64::max);
+    /// # assert!(worst > 1e-3);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §I.1.4 (the staggered form of the Störmer–Verlet method)
+    /// and §V.3.3 (processing: methods that are conjugate to one of higher order).
+    #[inline]
+    pub fn synchronized(&self, state: &State<S>) -> S::Momentum {
+        state.momentum - self.system.stagger(self.h, state.time.now(), &state.configuration)
+    }
+
+    /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order
+    /// of π, where that of [`energy`](Self::energy) is of h; with every other order both are the same.
+    #[inline]
+    pub fn synchronized_energy(&self, state: &State<S>) -> S::Scalar {
+        let (t, q) = (state.time.now(), &state.configuration);
+        self.system.kinetic_energy(&self.constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
+    }
+
+    /// The state of a body at q whose momentum there is π, after the checks of [`state`](Self::state): with `order = 1` its momentum N is ahead of π by
+    /// half a kick, and [`synchronized`](Self::synchronized) gives π back but for rounding; with every other order it is the state (q, π). Where
+    /// the time matters it starts at 0.
+    ///
+    /// # Errors
+    /// As [`state`](Self::state), for π.
+    pub fn staggered_state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        self.checked_staggered_state(S::Scalar::zero(), q, mu)
+    }
+
+    fn checked_staggered_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        self.check_configuration(&q)?;
+        check_momentum(&self.system, &q, &mu)?;
+        let stagger = self.system.stagger(self.h, t, &q);
+        check_gradient(&stagger)?;
+        self.made_state(t, q, mu + stagger)
+    }
+}
+
+/// Where the cost or the potential depends on the time.
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+    /// The state at the time t, made as by [`staggered_state`](Self::staggered_state).
+    ///
+    /// # Errors
+    /// As [`staggered_state`](Self::staggered_state); [`Error::NotFinite`] for the time too.
+    pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+        check_time(t)?;
+        self.checked_staggered_state(t, q, mu)
+    }
+}
