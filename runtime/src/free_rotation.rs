@@ -13,7 +13,8 @@
 //! P_i = (x_i − x_j)(x_i − x_k),    e_i = a x_j x_k + e x_i − their mean,    ℘ with the roots e_i
 //! ```
 //! so that d_i is a power series in τ², its coefficients homogeneous polynomials in a and e: made once for a body, without a division by
-//! differences of inertia. Where few terms are not enough the motion is made of equal parts of the time, which is exact too.
+//! differences of inertia. Where few terms are not enough, those of a part of the time are, and formulas of duplication lead from d of a part
+//! to d of twice the part, as often as it takes.
 //!
 //! Source: the equation is that of J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of
 //! matrix polynomials*, Comm. Math. Phys. 139 (1991); that modified constants make it exact, R. I. McLachlan and A. Zanna, *The discrete
@@ -24,18 +25,20 @@ use crate::eigen::Spectrum;
 use crate::root::root;
 use crate::space::{each_lane, lane_of, set_lane};
 use crate::{Error, Real, Scalar};
+use duplication::{Functions, duplicated};
 use nalgebra::{Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
 use series::{Coefficients, coefficient};
-use turn::{ratio, turn, turn_in_parts, turn_of_tensor};
+use turn::{balanced, ratio, turn, turn_of_tensor};
 
+mod duplication;
 mod series;
 mod turn;
 
-/// The most parts that a motion is made of.
-const PARTS: u32 = 1024;
+/// The most duplications.
+const DUPLICATIONS: u32 = 10;
 
-/// What a motion keeps: d_i x of a part of the time, and the number of equal parts.
+/// What a motion keeps: d_i x over 2ⁿ, and 2⁻ⁿ, by which m is multiplied too; 0 where the motion is too long.
 pub type KeptRotation<T> = SVector<T, 4>;
 
 /// What no free motion of a body over a given time changes.
@@ -61,7 +64,7 @@ enum Axes<T> {
     /// The columns of this rotation, which are principal axes.
     Principal(SMatrix<T, 3, 3>),
     /// Those of the coordinates, with J/x and X = xJ⁻¹: numbers with derivatives know no principal axes.
-    Tensor { inertia: SMatrix<T, 3, 3>, reciprocal: SMatrix<T, 3, 3> },
+    Tensor { inertia: SMatrix<T, 3, 3>, reciprocal: SMatrix<T, 3, 3>, invariants: [T; 3] },
 }
 
 impl<T: Scalar> FreeRotation<T> {
@@ -81,9 +84,11 @@ impl<T: Scalar> FreeRotation<T> {
             axes: match first.axes {
                 Axes::Coordinates => Axes::Coordinates,
                 Axes::Principal(axes) => Axes::Principal(axes.map(everywhere)),
-                Axes::Tensor { inertia, reciprocal } => {
-                    Axes::Tensor { inertia: inertia.map(everywhere), reciprocal: reciprocal.map(everywhere) }
-                }
+                Axes::Tensor { inertia, reciprocal, invariants } => Axes::Tensor {
+                    inertia: inertia.map(everywhere),
+                    reciprocal: reciprocal.map(everywhere),
+                    invariants: invariants.map(everywhere),
+                },
             },
             series: first.series.map(|coefficients| coefficients.map(everywhere)),
             reach: first.reach.map(everywhere),
@@ -112,9 +117,13 @@ impl<T: Scalar> FreeRotation<T> {
         // the axes of the coordinates are those of the identity, by which nothing is rounded
         match (&mut self.axes, &other.axes) {
             (Axes::Coordinates, Axes::Coordinates) => {}
-            (Axes::Tensor { inertia, reciprocal }, Axes::Tensor { inertia: other, reciprocal: inverse }) => {
+            (
+                Axes::Tensor { inertia, reciprocal, invariants },
+                Axes::Tensor { inertia: other, reciprocal: inverse, invariants: symmetric },
+            ) => {
                 put_all(inertia.as_mut_slice(), other.as_slice());
                 put_all(reciprocal.as_mut_slice(), inverse.as_slice());
+                put_all(invariants, symmetric);
             }
             (before, other) => {
                 let mut axes = before.rotation();
@@ -135,8 +144,8 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// A multiple (w, x) of the quaternion of the rotation that starts with the momentum `momentum`: its Gibbs vector is x/w.
     ///
-    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and one rotation for
-    /// each 1.4 rad or so of the angle. Lanes are turned one after the other; those that fail beside others are NaN.
+    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and for long motions
+    /// some hundred operations each time that the angle doubles. Lanes are turned one after the other; those that fail beside others are NaN.
     ///
     /// # Errors
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
@@ -145,7 +154,7 @@ impl<T: Scalar> FreeRotation<T> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         let (w, x) = in_lanes(|lane| match self.modified_inertia(lane, &of_lane(&m, lane)) {
             Some(d) => Ok(self.turned(lane, &d, &of_lane(&m, lane))),
-            None => self.in_parts(lane, &of_lane(&m, lane)),
+            None => self.long_turn(lane, &of_lane(&m, lane)),
         })?;
         Ok((w, self.in_coordinates(x)))
     }
@@ -171,7 +180,7 @@ impl<T: Scalar> FreeRotation<T> {
             let m = [m[0], m[1], m[2]];
             match self.modified_inertia(lane, &m) {
                 Some(d) => Some(self.turned(lane, &d, &m)),
-                None => self.in_parts(lane, &m).ok(),
+                None => self.long_turn(lane, &m).ok(),
             }
             .map(|(w, x)| ratio((w, SVector::from(x))))
         };
@@ -190,8 +199,14 @@ impl<T: Scalar> FreeRotation<T> {
     /// d_i x of the whole time in a lane, or the coefficients of d; `None` where that is beyond the reach of the series.
     #[inline]
     fn modified_inertia(&self, lane: usize, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
+        let invariants = self.invariants(lane, m);
+        self.sum_of_series(lane, invariants).map(|sum| self.scaled(lane, sum))
+    }
+
+    /// α = |m|² and ε = m·Xm.
+    #[inline]
+    fn invariants(&self, lane: usize, m: &[T::Lane; 3]) -> [T::Lane; 2] {
         let squares = m.map(|component| component * component);
-        let alpha = squares[0] + squares[1] + squares[2];
         let epsilon = match &self.axes {
             Axes::Tensor { reciprocal, .. } if T::DERIVATIVES > 0 => {
                 let m = SVector::from(*m);
@@ -202,10 +217,16 @@ impl<T: Scalar> FreeRotation<T> {
                 a * squares[0] + b * squares[1] + c * squares[2]
             }
         };
+        [squares[0] + squares[1] + squares[2], epsilon]
+    }
+
+    /// x_i d_i, or the coefficients of X d, and τ²/4 ℘(τ/2), by the polynomial of the least degree that is enough.
+    #[inline]
+    fn sum_of_series(&self, lane: usize, [alpha, epsilon]: [T::Lane; 2]) -> Option<[T::Lane; 4]> {
         macro_rules! degrees {
             ($($number:literal $degree:literal),*) => {$(
                 if alpha <= self.reach[$number].lane(lane) {
-                    return Some(self.scaled(lane, self.polynomial::<$degree>(lane, alpha, epsilon)));
+                    return Some(self.polynomial::<$degree>(lane, alpha, epsilon));
                 }
             )*};
         }
@@ -244,7 +265,7 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline]
     fn turned(&self, lane: usize, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> (T::Lane, [T::Lane; 3]) {
         match &self.axes {
-            Axes::Tensor { inertia, reciprocal } if T::DERIVATIVES > 0 => {
+            Axes::Tensor { inertia, reciprocal, .. } if T::DERIVATIVES > 0 => {
                 // X d = c₀ + c₁X + c₂X²
                 let (inertia, reciprocal) = (lane_of(inertia, lane), lane_of(reciprocal, lane));
                 let tensor = inertia * d[0] + SMatrix::identity() * d[1] + reciprocal * d[2];
@@ -261,11 +282,11 @@ impl<T: Scalar> FreeRotation<T> {
         for lane in 0..T::LANES {
             let m = of_lane(&m, lane);
             let found = match self.modified_inertia(lane, &m) {
-                Some(inertia) => Ok((inertia, 1)),
-                None => self.parts(lane, &m),
+                Some(inertia) => Ok((inertia, <T::Lane as One>::one())),
+                None => self.long_motion(lane, &m),
             };
-            if let Ok(([a, b, c], parts)) = found {
-                set_lane(&mut kept, lane, &SVector::from([a, b, c, T::Lane::from_f64(f64::from(parts))]));
+            if let Ok(([a, b, c], part)) = found {
+                set_lane(&mut kept, lane, &SVector::from([a, b, c, part]));
             }
         }
         kept
@@ -288,57 +309,76 @@ impl<T: Scalar> FreeRotation<T> {
     pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         let (w, x) = in_lanes(|lane| {
-            let ([[a, b, c, parts]], m) = (lane_of(kept, lane).data.0, of_lane(&m, lane));
-            match parts == <T::Lane as One>::one() {
+            let ([[a, b, c, part]], m) = (lane_of(kept, lane).data.0, of_lane(&m, lane));
+            match part == <T::Lane as One>::one() {
                 true => Ok(self.turned(lane, &[a, b, c], &m)),
-                false => self.turned_in_parts(lane, &[a, b, c], parts.to_f64() as u32, &m),
+                false => self.long_turn_of(lane, &[a, b, c], part, &m),
             }
         })?;
         Ok((w, self.in_coordinates(x)))
     }
 
-    /// The same for a lane whose motion has several parts, or none as it is too long.
+    /// The same for a lane whose motion was made longer by duplication, or is too long for that.
     #[cold]
     #[inline(never)]
-    fn turned_in_parts(
+    fn long_turn_of(
         &self,
         lane: usize,
         d: &[T::Lane; 3],
-        parts: u32,
+        part: T::Lane,
         m: &[T::Lane; 3],
     ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        match parts {
-            0 => self.in_parts(lane, m),
-            _ => Ok(turn_in_parts(|part| self.turned(lane, d, part), m, parts)),
+        match part == <T::Lane as Zero>::zero() {
+            true => self.long_turn(lane, m),
+            false => Ok(balanced(self.turned(lane, d, &m.map(|component| component * part)))),
         }
     }
 
-    /// The same rotation as that of equal parts of the time, one after the other.
+    /// The turn of a motion beyond the reach of the series.
     #[cold]
     #[inline(never)]
-    fn in_parts(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        let (d, parts) = self.parts(lane, m)?;
-        Ok(turn_in_parts(|part| self.turned(lane, &d, part), m, parts))
+    fn long_turn(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
+        let (d, part) = self.long_motion(lane, m)?;
+        self.long_turn_of(lane, &d, part, m)
     }
 
-    /// d_i x of a part of the time that is in reach of the series, and how many parts there are.
+    /// d_i x over 2ⁿ, and 2⁻ⁿ, by n duplications: d ρ − m × ρ = ρ₀ m holds for multiples of d and m too.
     #[cold]
-    fn parts(&self, lane: usize, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], u32), Error> {
+    fn long_motion(&self, lane: usize, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], T::Lane), Error> {
         if m.iter().any(|component| !component.is_finite()) {
             return Err(Error::NotFinite { name: "the momentum" });
         }
-        let (mut parts, mut part) = (1, *m);
-        while parts < PARTS {
-            parts *= 2;
-            part = part.map(half);
-            if let Some(d) = self.modified_inertia(lane, &part) {
-                return Ok((d, parts));
+        let (mut size, mut part) = (<T::Lane as One>::one(), *m);
+        for times in 1..=DUPLICATIONS {
+            (size, part) = (half(size), part.map(half));
+            let invariants = self.invariants(lane, &part);
+            if let Some(sum) = self.sum_of_series(lane, invariants) {
+                return Ok((self.made_longer(lane, invariants, sum, times), size));
             }
         }
         let [.., reach] = of_lane(&self.reach, lane);
         let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
-        let fraction = T::Lane::from_f64(0.999 * f64::from(PARTS)) * (reach / square).sqrt();
+        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << DUPLICATIONS)) * (reach / square).sqrt();
         Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
+    }
+
+    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ.
+    fn made_longer(&self, lane: usize, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> [T::Lane; 3] {
+        let [a, b, c, p] = sum;
+        match &self.axes {
+            Axes::Tensor { invariants: symmetric, .. } if T::DERIVATIVES > 0 => {
+                let e @ [first, second, third] = of_lane(symmetric, lane);
+                // X⁻¹ = (X² − e₁X + e₂)/e₃
+                let top = a / third;
+                let d = [b + top * second, c - top * first, top];
+                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times);
+                [c * third, a - c * second, b + c * first]
+            }
+            _ => {
+                let functions = Functions::OnAxes(of_lane(&self.reciprocals, lane));
+                duplicated(functions, invariants, self.scaled(lane, sum), p, times)
+            }
+        }
     }
 
     #[inline]
@@ -405,7 +445,7 @@ impl<T: Real> FreeRotation<T> {
         // the symmetric functions of X are those of J over its determinant
         let inverse = columns[0].dot(&minors.column(0)).recip();
         let invariants = [minors.trace() * inverse, relative.trace() * inverse, inverse];
-        let axes = Axes::Tensor { inertia: relative, reciprocal: minors * inverse };
+        let axes = Axes::Tensor { inertia: relative, reciprocal: minors * inverse, invariants };
         let series = series::in_powers(&invariants);
         Some(Self { scale: half(h) * T::from_f64(least).recip(), inertia: values, reciprocals: x, axes, series, reach })
     }

@@ -1,4 +1,4 @@
-//! The coefficients of x_i d_i, and how far each number of them reaches.
+//! The coefficients of x_i d_i and of τ²/4 ℘(τ/2), and how far each number of them reaches.
 //!
 //! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed either of their values on one principal axis, or of the
 //! coefficients (c₀, c₁, c₂) of c₀ + c₁X + c₂X², which X³ = e₁X² − e₂X + e₃ leaves of any polynomial. The second way knows no axes, which have no
@@ -15,8 +15,7 @@ pub(super) const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 /// The degrees of polynomials that are evaluated: as many terms as α asks for.
 const DEGREES: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 14];
 
-/// The coefficients of α^i ε^j in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d, at [`place`]; the fourth of each is 0, as registers hold
-/// two or four.
+/// The coefficients of α^i ε^j in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d, and in τ²/4 ℘(τ/2), at [`place`].
 pub(super) type Coefficients<T> = [[T; 4]; MONOMIALS];
 
 /// A function of X: its value on one axis, or its three coefficients.
@@ -59,6 +58,7 @@ pub(super) fn on_axes<T: Scalar>(x: &[T; 3]) -> Coefficients<T> {
     // values on an axis are multiplied as they are
     let nothing = [T::zero(); 3];
     let mut all = [[T::zero(); 4]; MONOMIALS];
+    each_coefficient(&elliptic, &mut all, |entry, [value]| entry[3] = value);
     for i in 0..3 {
         let (j, k) = others(i);
         let differences = (x[i] - x[j]) * (x[i] - x[k]);
@@ -77,8 +77,7 @@ pub(super) fn in_powers<T: Scalar>(e: &[T; 3]) -> Coefficients<T> {
     let part = T::from_ratio(1, 3);
     // x_jx_k = X² − e₁X + e₂, and X, less their means
     let roots = [[second - part * second, -first, one], [-part * first, one, zero]];
-    // tr f of f = c₀ + c₁X + c₂X²
-    let trace = |f: [T; 3]| T::from_f64(3.0) * f[0] + first * f[1] + (first * first - two * second) * f[2];
+    let trace = |f: [T; 3]| trace(&f, e);
     let [a, b] = roots;
     let squares = [product(&a, &a, e), product(&a, &b, e), product(&b, &b, e)];
     let (aa, ab, bb) = (trace(squares[0]), trace(squares[1]), trace(squares[2]));
@@ -97,6 +96,7 @@ pub(super) fn in_powers<T: Scalar>(e: &[T; 3]) -> Coefficients<T> {
     let series = of_function(e, x, reciprocal, differences, roots, &elliptic);
     let mut all = [[zero; 4]; MONOMIALS];
     each_coefficient(&series, &mut all, |entry, [a, b, c]| *entry = [a, b, c, zero]);
+    each_coefficient(&elliptic, &mut all, |entry, [value]| entry[3] = value);
     all
 }
 
@@ -173,8 +173,14 @@ fn scaled<T: Scalar, const N: usize>(a: &Function<T, N>, factor: T) -> Function<
     a.map(|coefficient| factor * coefficient)
 }
 
+/// tr f of f = c₀ + c₁X + c₂X²: 3c₀ + e₁c₁ + (e₁² − 2e₂)c₂.
+pub(super) fn trace<T: Scalar>(f: &[T; 3], [first, second, _]: &[T; 3]) -> T {
+    let two = T::one() + T::one();
+    T::from_f64(3.0) * f[0] + *first * f[1] + (*first * *first - two * *second) * f[2]
+}
+
 /// The product of two functions: of their values, or of polynomials, the powers from X³ on reduced.
-fn product<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>, e: &[T; 3]) -> Function<T, N> {
+pub(super) fn product<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>, e: &[T; 3]) -> Function<T, N> {
     let mut all = [T::zero(); 5];
     for (i, a) in a.iter().enumerate() {
         for (entry, b) in all.iter_mut().skip(i).zip(b) {
@@ -300,7 +306,8 @@ fn sizes<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; DEGREE + 1] {
                 let coefficients = coefficient(series, n - j, j);
                 core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
             });
-            *size = crate::space::larger(*size, terms[0].abs() + terms[1].abs() + terms[2].abs());
+            let sum = terms.iter().fold(T::zero(), |sum, term| sum + term.abs());
+            *size = crate::space::larger(*size, sum);
         }
     }
     sizes

@@ -1,0 +1,245 @@
+//! d of twice the time from d: the formulas of duplication of Weierstrass' functions.
+//!
+//! With ℘ and ℘′ at half the time before, which is the unit of time, and α, ε in this unit, on each axis
+//!
+//! ```text
+//! d ↦ ((d² − α) N − 2 d α G)/(2 d N + (d² − α) G)
+//! N = ℘³ − 3v ℘² − A (℘ + v) − 2C,    G = −℘′ b,    (½℘′)² = ℘³ + A℘ + C
+//! b = P (ε − αx),    P_i = (x_i − x_j)(x_i − x_k),    v = e − αP
+//!
+//! ℘ − e ↦ (((℘ − e)² − Pβ)/℘′)²,    β_i = (ε − αx_j)(ε − αx_k)
+//! ```
+//! and from d_j on one axis follow the others,
+//!
+//! ```text
+//! d_i = (d_j − αT)/(1 + d_j T),    T = −(x_i − x_j)(℘ − e_k)/(½℘′)
+//! ```
+//! There is no division by differences of inertia.
+//!
+//! Derivation: d = |m| cot Ψ with exp 2iΨ(u) = e^{2cu} σ(w + u)/σ(w − u), where ℘(w) = v and ℘′(w) = 2i√α b. From
+//! σ(w + 2u) σ(w) = σ²(w + u) σ²(u) (℘(u) − ℘(w + u)) follows exp 2i(Ψ(2u) − 2Ψ(u)) = (℘(u) − ℘(w + u))/(℘(u) − ℘(w − u)), and the theorem
+//! of addition makes ℘(w ± u) rational in ℘ and ℘′. Powers of v beyond the first drop out by −αb² = v³ + Av + C; where v is large, as for a
+//! needle, they would cancel. The last formula is that of Ψ_i − Ψ_j with σσ_k/(σ_iσ_j) = −(℘ − e_k)/(½℘′).
+
+use super::series::{product, trace};
+use crate::Real;
+
+/// Functions of X = J⁻¹.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Functions<T> {
+    /// Their values at x₁, x₂ and x₃.
+    OnAxes([T; 3]),
+    /// The coefficients of c₀ + c₁X + c₂X², where (e₁, e₂, e₃) are the symmetric functions of the x_i.
+    InPowers([T; 3]),
+}
+
+/// What stays the same from one duplication to the next.
+struct Motion<T> {
+    functions: Functions<T>,
+    alpha: T,
+    e: [T; 3],
+    v: [T; 3],
+    b: [T; 3],
+    /// Pβ: (e_i − e_j)(e_i − e_k)
+    gaps: [T; 3],
+    /// A = −½ Σ e_k²
+    linear: T,
+    /// C = −e₁e₂e₃
+    constant: T,
+}
+
+/// (Q, Y, Z) with ℘ − e = Q/Z² and ½℘′ = Y/Z³: poles of ℘ are points as others.
+struct Point<T> {
+    q: [T; 3],
+    y: T,
+    z: T,
+}
+
+/// d of 2ⁿ times the time, over 2ⁿ, for n = `times`; `p` is ℘ at half the time before.
+#[cold]
+pub(super) fn duplicated<T: Real>(
+    functions: Functions<T>,
+    invariants: [T; 2],
+    mut d: [T; 3],
+    p: T,
+    times: u32,
+) -> [T; 3] {
+    let motion = Motion::new(functions, invariants);
+    let mut point = motion.start(p);
+    for _ in 1..times {
+        let (above, below) = motion.twice(&d, &point);
+        d = functions.quotient(&above, &below);
+        point = motion.settled(motion.point_twice(&point));
+    }
+    let (above, below) = motion.twice(&d, &point);
+    match functions {
+        Functions::OnAxes(x) => motion.from_best_axis(&x, &above, &below, &motion.point_twice(&point)),
+        Functions::InPowers(_) => functions.quotient(&above, &below),
+    }
+}
+
+impl<T: Real> Functions<T> {
+    fn product(&self, a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+        match self {
+            Self::OnAxes(_) => core::array::from_fn(|i| a[i] * b[i]),
+            Self::InPowers(e) => product(a, b, e),
+        }
+    }
+
+    /// `f` + `number`
+    fn plus(&self, f: &[T; 3], number: T) -> [T; 3] {
+        match self {
+            Self::OnAxes(_) => f.map(|value| value + number),
+            Self::InPowers(_) => [f[0] + number, f[1], f[2]],
+        }
+    }
+
+    /// The sum of the values on the axes.
+    fn trace(&self, f: &[T; 3]) -> T {
+        match self {
+            Self::OnAxes(_) => f[0] + f[1] + f[2],
+            Self::InPowers(e) => trace(f, e),
+        }
+    }
+
+    /// The values on the axes but one, multiplied: f² − tr f f + ½ (tr² f − tr f²).
+    fn adjugate(&self, f: &[T; 3]) -> [T; 3] {
+        match self {
+            Self::OnAxes(_) => [f[1] * f[2], f[2] * f[0], f[0] * f[1]],
+            Self::InPowers(_) => {
+                let (square, sum) = (self.product(f, f), self.trace(f));
+                let second = half(sum * sum - self.trace(&square));
+                self.plus(&core::array::from_fn(|i| square[i] - sum * f[i]), second)
+            }
+        }
+    }
+
+    /// The product of the values on the axes.
+    fn determinant(&self, f: &[T; 3]) -> T {
+        match self {
+            Self::OnAxes(_) => f[0] * f[1] * f[2],
+            Self::InPowers(_) => T::from_ratio(1, 3) * self.trace(&self.product(f, &self.adjugate(f))),
+        }
+    }
+
+    fn quotient(&self, a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+        match self {
+            Self::OnAxes(_) => core::array::from_fn(|i| quotient(a[i], b[i])),
+            Self::InPowers(_) => {
+                let inverse = self.determinant(b).recip();
+                self.product(a, &self.adjugate(b)).map(|entry| entry * inverse)
+            }
+        }
+    }
+
+    /// x, the x_jx_k, and P_i = (x_i − x_j)(x_i − x_k).
+    fn of_reciprocals(&self) -> [[T; 3]; 3] {
+        let (zero, one) = (T::zero(), T::one());
+        match self {
+            Self::OnAxes(x) => {
+                let differences = [0, 1, 2].map(|i| (x[i] - x[(i + 1) % 3]) * (x[i] - x[(i + 2) % 3]));
+                [*x, self.adjugate(x), differences]
+            }
+            // x_jx_k = X² − e₁X + e₂
+            Self::InPowers([first, second, _]) => {
+                let differences = [*second, -(*first + *first), T::from_f64(3.0)];
+                [[zero, one, zero], [*second, -*first, one], differences]
+            }
+        }
+    }
+}
+
+impl<T: Real> Motion<T> {
+    fn new(functions: Functions<T>, [alpha, epsilon]: [T; 2]) -> Self {
+        let f = functions;
+        let [x, products, differences] = f.of_reciprocals();
+        let raw = core::array::from_fn(|i| alpha * products[i] + epsilon * x[i]);
+        let e = f.plus(&raw, -(T::from_ratio(1, 3) * f.trace(&raw)));
+        let excess = f.plus(&x.map(|x| -(alpha * x)), epsilon);
+        Self {
+            functions,
+            alpha,
+            e,
+            v: core::array::from_fn(|i| e[i] - alpha * differences[i]),
+            b: f.product(&differences, &excess),
+            gaps: f.product(&differences, &f.adjugate(&excess)),
+            linear: -half(f.trace(&f.product(&e, &e))),
+            constant: -f.determinant(&e),
+        }
+    }
+
+    /// The point where ℘ is `p`; ℘′ is negative up to half a period, far beyond the reach of the series.
+    fn start(&self, p: T) -> Point<T> {
+        let q = self.functions.plus(&self.e.map(|e| -e), p);
+        Point { q, y: -self.functions.determinant(&q).sqrt(), z: T::one() }
+    }
+
+    /// d of twice the time: what is above and below the bar.
+    fn twice(&self, d: &[T; 3], point: &Point<T>) -> ([T; 3], [T; 3]) {
+        let f = self.functions;
+        let Point { y, z, .. } = *point;
+        let two = T::one() + T::one();
+        let (zz, x) = (z * z, self.abscissa(point));
+        let (linear, constant) = (self.linear * zz * zz, self.constant * zz * zz * zz);
+        let slope = zz * (T::from_f64(3.0) * x * x + linear);
+        let n = f.plus(&self.v.map(|v| -(slope * v)), x * (x * x - linear) - two * constant);
+        let g = self.b.map(|b| -two * y * (zz * z) * b);
+        let difference = f.plus(&f.product(d, d), -self.alpha);
+        let (cosine, sine) = (f.product(&difference, &n), f.product(&difference, &g));
+        let (dn, dg) = (f.product(d, &n), f.product(d, &g));
+        let above = core::array::from_fn(|i| cosine[i] - two * self.alpha * dg[i]);
+        (above, core::array::from_fn(|i| sine[i] + two * dn[i]))
+    }
+
+    /// The point at twice the time.
+    fn point_twice(&self, Point { q, y, z }: &Point<T>) -> Point<T> {
+        let f = self.functions;
+        let (squares, quartic) = (f.product(q, q), *z * *z * *z * *z);
+        let n = core::array::from_fn(|i| squares[i] - quartic * self.gaps[i]);
+        Point { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
+    }
+
+    /// The same point with numbers of the size of 1, and with the Q of which no digits cancel from their mean, X: by themselves the errors of their differences would grow fourfold each time.
+    fn settled(&self, Point { q, y, z }: Point<T>) -> Point<T> {
+        let size = (self.functions.trace(&q) + z * z).recip();
+        let scale = size.sqrt();
+        let point = Point { q: q.map(|entry| entry * size), y: y * size * scale, z: z * scale };
+        let (x, zz) = (self.abscissa(&point), point.z * point.z);
+        let from_mean = self.functions.plus(&self.e.map(|e| -(e * zz)), x);
+        let q = match self.functions {
+            Functions::OnAxes(_) => {
+                core::array::from_fn(|i| if from_mean[i] < half(x) { point.q[i] } else { from_mean[i] })
+            }
+            Functions::InPowers(_) => from_mean,
+        };
+        Point { q, ..point }
+    }
+
+    /// X = ⅓ Σ Q_i, as the sum of the roots vanishes.
+    fn abscissa(&self, point: &Point<T>) -> T {
+        T::from_ratio(1, 3) * self.functions.trace(&point.q)
+    }
+
+    /// All d_i from d_j on the axis where |x_j| is least, as the error of the angle is.
+    fn from_best_axis(&self, x: &[T; 3], above: &[T; 3], below: &[T; 3], Point { q, y, z }: &Point<T>) -> [T; 3] {
+        let best = (1..3).fold(0, |best, i| if x[i].abs() < x[best].abs() { i } else { best });
+        let (c, s) = (above[best], below[best]);
+        core::array::from_fn(|i| match i == best {
+            true => quotient(c, s),
+            false => {
+                let t = (x[best] - x[i]) * q[3 - best - i] * *z;
+                quotient(c * *y - self.alpha * s * t, s * *y + c * t)
+            }
+        })
+    }
+}
+
+/// a/b; where b cannot be seen beside a it is what can just be seen.
+fn quotient<T: Real>(a: T, b: T) -> T {
+    let least = T::EPSILON * a.abs();
+    a / if b.abs() < least { least } else { b }
+}
+
+fn half<T: Real>(x: T) -> T {
+    T::from_ratio(1, 2) * x
+}
