@@ -47,7 +47,7 @@ struct RungeKutta<F, const M: usize, const N: usize>(Equation<F, M, N>);
 
 impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize> Setting<N> for RungeKutta<F, M, N> {
     fn name(&self) -> Name {
-        Name { method: "RK4", order: 4, family: Family::Classical }
+        Name { method: "RK4", order: 4, family: Family::Classical, tolerance: None }
     }
 
     fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error> {
@@ -74,7 +74,7 @@ struct Embedded<F, const M: usize, const N: usize>(Equation<F, M, N>);
 
 impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize> Setting<N> for Embedded<F, M, N> {
     fn name(&self) -> Name {
-        Name { method: "DOP853", order: 8, family: Family::Classical }
+        Name { method: "DOP853", order: 8, family: Family::Classical, tolerance: None }
     }
 
     fn is_adaptive(&self) -> bool {

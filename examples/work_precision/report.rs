@@ -147,8 +147,11 @@ impl<'a> Csv<'a> {
     pub fn points(&mut self, scene: &str, points: &[Point]) -> Result<(), Failure> {
         for point in points {
             let Point { name, h, steps, error, time, energy: [first, second], momenta, constraint, front, .. } = point;
-            let tolerance =
-                if let Dial::Tolerance(tolerance) = point.dial { tolerance.to_string() } else { String::new() };
+            let tolerance = match (point.dial, name.tolerance) {
+                (Dial::Tolerance(tolerance), _) => tolerance.to_string(),
+                (_, Some(tolerance)) => format!("{tolerance:e}"),
+                _ => String::new(),
+            };
             self.line(format_args!(
                 "{scene},{},{},{h:e},{tolerance},{steps},{error:e},{time:e},{first:e},{second:e},{momenta:e},{constraint:e},{}",
                 name.method,

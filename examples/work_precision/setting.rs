@@ -33,7 +33,7 @@ pub enum Family {
 }
 
 /// A method, its attitude's form included, and the order that it declares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Name {
     /// Discretization, or the name of the classical method.
     pub method: &'static str,
@@ -41,13 +41,16 @@ pub struct Name {
     pub order: u32,
     /// Whose it is.
     pub family: Family,
+    /// The part of a step that it leaves out, where that was declared: errors end there, and energies may drift.
+    pub tolerance: Option<f64>,
 }
 
 impl std::fmt::Display for Name {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(&match self.family {
-            Family::Geometric => format!("{}, order {}", self.method, self.order),
-            Family::Classical => self.method.to_owned(),
+        f.pad(&match (self.family, self.tolerance) {
+            (Family::Geometric, None) => format!("{}, order {}", self.method, self.order),
+            (Family::Geometric, Some(tolerance)) => format!("{} to {tolerance:e}, order {}", self.method, self.order),
+            (Family::Classical, _) => self.method.to_owned(),
         })
     }
 }
@@ -86,6 +89,7 @@ pub struct Declared<S: Clebsch, const N: usize> {
     flat: Flat<S, N>,
     /// Whether momenta are read half a kick earlier, at the time of their configuration: steps of order 1 are of second order then.
     is_synchronized: bool,
+    tolerance: Option<f64>,
 }
 
 /// A declared system as a setting.
@@ -95,13 +99,18 @@ pub fn declared<S: Clebsch, const N: usize>(
     start: (S::Configuration, S::Momentum),
     flat: Flat<S, N>,
 ) -> Box<Declared<S, N>> {
-    Box::new(Declared { method, system, start, flat, is_synchronized: false })
+    Box::new(Declared { method, system, start, flat, is_synchronized: false, tolerance: None })
 }
 
 impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
     /// The same, read as [`Stepper::synchronized`] says.
     pub fn synchronized(self) -> Box<Self> {
         Box::new(Self { is_synchronized: true, ..self })
+    }
+
+    /// The same, whose declaration has this tolerance.
+    pub fn to(self, tolerance: f64) -> Box<Self> {
+        Box::new(Self { tolerance: Some(tolerance), ..self })
     }
 
     fn prepare(&self, h: f64) -> Result<(Stepper<S>, State<S>), Error> {
@@ -125,7 +134,7 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
 impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S, N> {
     fn name(&self) -> Name {
         let order = if self.is_synchronized { 2 } else { S::ORDER };
-        Name { method: self.method, order, family: Family::Geometric }
+        Name { method: self.method, order, family: Family::Geometric, tolerance: self.tolerance }
     }
 
     fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error> {

@@ -53,7 +53,7 @@ pub struct FreeRotation<T> {
     axes: Axes<T>,
     series: Coefficients<T>,
     /// Up to which α a polynomial of each degree is enough.
-    reach: [T; 8],
+    reach: [T; 9],
 }
 
 /// The axes in which vectors are written.
@@ -73,8 +73,18 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where a principal moment is 0, [`Error::NotFinite`].
     pub fn new(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
-        let of_lane =
-            |lane: usize| FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane));
+        Self::to_tolerance(inertia, h, 0.0)
+    }
+
+    /// The same with series that end before terms below `tolerance` of d: turns are of the group and momenta turn by them, but d, and with it
+    /// the energy, is off by so much.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn to_tolerance(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
+        let of_lane = |lane: usize| {
+            FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane), tolerance)
+        };
         let first = of_lane(0)?;
         let everywhere = |number: T::Lane| T::from_lanes(|_| number);
         let mut all = Self {
@@ -230,7 +240,7 @@ impl<T: Scalar> FreeRotation<T> {
                 }
             )*};
         }
-        degrees!(0 3, 1 4, 2 5, 3 6, 4 8, 5 10, 6 12, 7 14);
+        degrees!(0 2, 1 3, 2 4, 3 5, 4 6, 5 8, 6 10, 7 12, 8 14);
         None
     }
 
@@ -400,7 +410,7 @@ impl<T: Scalar> FreeRotation<T> {
 
 impl<T: Real> FreeRotation<T> {
     /// The constants of one body.
-    fn of_number(inertia: &SMatrix<T, 3, 3>, h: T) -> Result<Self, Error> {
+    fn of_number(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
         let is_diagonal = [(1, 0), (2, 0), (2, 1)].iter().all(|&place| inertia[place] == T::zero());
         let (moments, axes): ([T; 3], _) = match is_diagonal {
             true => ([0, 1, 2].map(|i| inertia[(i, i)]), Axes::Coordinates),
@@ -416,7 +426,7 @@ impl<T: Real> FreeRotation<T> {
             moments.iter().fold(moments[0], |least, &moment| if moment.abs() < least.abs() { moment } else { least });
         let singular = Error::SingularKineticEnergy { condition: f64::INFINITY };
         if T::DERIVATIVES > 0 {
-            return Self::of_tensor(inertia, h, moments.map(T::to_f64), least.to_f64()).ok_or(singular);
+            return Self::of_tensor(inertia, h, (moments.map(T::to_f64), least.to_f64()), tolerance).ok_or(singular);
         }
         let relative = moments.map(|moment| moment / least);
         if !relative.iter().all(|moment| moment.is_finite()) {
@@ -424,19 +434,19 @@ impl<T: Real> FreeRotation<T> {
         }
         let x = relative.map(T::recip);
         let series = series::on_axes(&x);
-        let reach = series::reach(&x, &series);
+        let reach = series::reach(&x, &series, tolerance);
         Ok(Self { scale: half(h) / least, inertia: relative, reciprocals: x, axes, series, reach })
     }
 
     /// Those with derivatives: by the values of the moments alone it is decided how far series reach.
     #[cold]
-    fn of_tensor(inertia: &SMatrix<T, 3, 3>, h: T, moments: [f64; 3], least: f64) -> Option<Self> {
+    fn of_tensor(inertia: &SMatrix<T, 3, 3>, h: T, (moments, least): ([f64; 3], f64), tolerance: f64) -> Option<Self> {
         let values = moments.map(|moment| T::from_f64(moment / least));
         if !values.iter().all(|moment| moment.is_finite()) {
             return None;
         }
         let x = values.map(T::recip);
-        let reach = series::reach(&x, &series::on_axes(&x));
+        let reach = series::reach(&x, &series::on_axes(&x), tolerance);
         let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| inertia[(i.max(j), i.min(j))]);
         let relative = symmetric * T::from_f64(least).recip();
         let columns: [SVector<T, 3>; 3] = core::array::from_fn(|i| relative.column(i).into_owned());

@@ -102,6 +102,34 @@ tops! {
     };
 }
 
+/// Exact drifts whose series end early.
+macro_rules! tolerant {
+    ($($name:ident $order:literal $tolerance:literal;)*) => {
+        mod tolerant {
+            $(tops!(@one $name, $order, {
+                action = |F: SO<3>, R: SO<3>| R * F,
+                lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+                potential = |R| self.weight * (R * self.center).z,
+                discretization = exact,
+                tolerance = $tolerance
+            });)*
+        }
+
+        fn tolerant(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec<Box<dyn Setting<12>>> {
+            let momentum = inertia * VELOCITY;
+            vec![$(
+                declared("exact", tolerant::$name::Top { inertia, weight, center }, (tilted(), momentum), pack)
+                    .to($tolerance),
+            )*]
+        }
+    };
+}
+tolerant! {
+    rough 4 1e-4;
+    fourth 4 1e-7;
+    sixth 6 1e-10;
+}
+
 fn tilted() -> Matrix3<f64> {
     *Rotation3::from_axis_angle(&Vector3::x_axis(), TILT).matrix()
 }
@@ -131,6 +159,7 @@ pub fn scene() -> Scene<12> {
         momentum.dot(&(inverse * momentum)) / 2.0 + weight * (attitude * center).z
     };
     let mut settings = declarations(inertia, weight, center);
+    settings.extend(tolerant(inertia, weight, center));
     let first = exact::first::Top { inertia, weight, center };
     settings.push(declared("exact synchronized", first, (tilted(), momentum), pack).synchronized());
     let start = compact(&tilted_quaternion(), &momentum);

@@ -73,7 +73,7 @@ pub(super) fn duplicated<T: Real>(
     }
     let (above, below) = motion.twice(&d, &point);
     match functions {
-        Functions::OnAxes(x) => motion.from_best_axis(&x, &above, &below, &motion.point_twice(&point)),
+        Functions::OnAxes(x) => motion.on_all_axes(&x, &above, &below, &motion.point_twice(&point)),
         Functions::InPowers(_) => functions.quotient(&above, &below),
     }
 }
@@ -221,7 +221,7 @@ impl<T: Real> Motion<T> {
     }
 
     /// All d_i from d_j on the axis where |x_j| is least, as the error of the angle is.
-    fn from_best_axis(&self, x: &[T; 3], above: &[T; 3], below: &[T; 3], Point { q, y, z }: &Point<T>) -> [T; 3] {
+    fn on_all_axes(&self, x: &[T; 3], above: &[T; 3], below: &[T; 3], Point { q, y, z }: &Point<T>) -> [T; 3] {
         let best = (1..3).fold(0, |best, i| if x[i].abs() < x[best].abs() { i } else { best });
         let (c, s) = (above[best], below[best]);
         core::array::from_fn(|i| match i == best {

@@ -4,6 +4,7 @@
 //! coefficients (c₀, c₁, c₂) of c₀ + c₁X + c₂X², which X³ = e₁X² − e₂X + e₃ leaves of any polynomial. The second way knows no axes, which have no
 //! derivatives where two moments are equal.
 
+use crate::space::larger;
 use crate::{Real, Scalar};
 
 /// The degree up to which the series are known.
@@ -13,7 +14,7 @@ const DEGREE: usize = 14;
 pub(super) const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
 /// The degrees of polynomials that are evaluated: as many terms as α asks for.
-const DEGREES: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 14];
+const DEGREES: [usize; 9] = [2, 3, 4, 5, 6, 8, 10, 12, 14];
 
 /// The coefficients of α^i ε^j in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d, and in τ²/4 ℘(τ/2), at [`place`].
 pub(super) type Coefficients<T> = [[T; 4]; MONOMIALS];
@@ -261,20 +262,15 @@ fn add_product<T: Scalar, const N: usize>(
     }
 }
 
-/// What cannot be seen beside 1.
-#[inline]
-fn negligible<T: Real>() -> T {
-    T::from_ratio(1, 8) * T::EPSILON
-}
-
 /// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α.
 ///
-/// Then the first terms that are left, those of one degree more and of the next, cannot be seen.
+/// Then the first terms that are left, those of one degree more and of the next, are below `tolerance` or cannot be seen.
 #[cold]
-pub(super) fn reach<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; 8] {
+pub(super) fn reach<T: Real>(x: &[T; 3], series: &Coefficients<T>, tolerance: f64) -> [T; 9] {
+    let negligible = larger(T::from_f64(tolerance), T::from_ratio(1, 8) * T::EPSILON);
     let sizes = sizes(x, series);
     let root = |size: T, n: usize| match size > T::zero() {
-        true => (negligible::<T>() / size).powf(T::from_ratio(1, n as i64)),
+        true => (negligible / size).powf(T::from_ratio(1, n as i64)),
         false => T::one(),
     };
     let size = |n: usize| sizes.get(n).copied().unwrap_or(T::one());
@@ -307,7 +303,7 @@ fn sizes<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; DEGREE + 1] {
                 core::array::from_fn(|k| sum[k] * epsilon + coefficients[k])
             });
             let sum = terms.iter().fold(T::zero(), |sum, term| sum + term.abs());
-            *size = crate::space::larger(*size, sum);
+            *size = larger(*size, sum);
         }
     }
     sizes

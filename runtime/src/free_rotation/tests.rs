@@ -256,6 +256,28 @@ proptest! {
         prop_assert!((later.norm_squared() / momentum.norm_squared() - 1.0).abs() < 5e-15);
     }
 
+    /// Series that end early are off by their tolerance, for long motions too; a tolerance below rounding is rounding.
+    #[test]
+    fn series_end_at_the_tolerance(
+        moments in prop::array::uniform3(0.3_f64..3.0),
+        momentum in prop::array::uniform3(-1.0_f64..1.0),
+        h in 0.1_f64..3.0,
+    ) {
+        let momentum = Vector3::from(momentum);
+        let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
+        let to = |tolerance: f64| {
+            let free = FreeRotation::to_tolerance(&inertia, h, tolerance).expect("regular");
+            quaternion(&free.gibbs_vector(&momentum).expect("solved"))
+        };
+        let exact = quaternion(&body(moments, h).gibbs_vector(&momentum).expect("solved"));
+        prop_assert_eq!(to(1e-20), exact);
+        for tolerance in [1e-3, 1e-6, 1e-9] {
+            // an angle of at most 18, in parts below one
+            let error = distance(to(tolerance), exact);
+            prop_assert!(error < 20.0 * tolerance, "{tolerance:e}: {error:e}");
+        }
+    }
+
     /// Series that converge agree with duplications of shorter ones.
     #[test]
     fn duplication_makes_the_whole(

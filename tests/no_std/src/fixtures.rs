@@ -47,7 +47,7 @@ modules! {
     annotated_body centred_body damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body principal_body4 promised_top quaternion_top regulator
-    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body tolerant_top tumbling_momentum two_bodies two_pendulums
+    relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body tolerant_exact_top tolerant_top tumbling_momentum two_bodies two_pendulums
     underwater_vehicle unicycle watched_top weighted_sl2
 }
 
@@ -90,6 +90,7 @@ steppers! {
     step_spherical_pendulum: spherical_pendulum::SphericalPendulum;
     step_spin_pair: spin_pair::SpinPair;
     step_split_top: split_top::SplitTop;
+    step_tolerant_exact_top: tolerant_exact_top::TolerantExactTop;
     step_tolerant_top: tolerant_top::TolerantTop;
     step_tumbling_momentum: tumbling_momentum::TumblingMomentum;
     step_two_bodies: two_bodies::TwoBodies;

@@ -2,17 +2,37 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::{ConservedMomentum, Formulas, Solution, Substep};
+use super::{ConservedMomentum, Equation, Formulas, Solution, Substep};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Model, Side};
 
-/// A tolerance ends an iteration.
+/// A tolerance ends an iteration, or the series of the free rotations between kicks.
 pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>]) -> Result<(), Diagnostics> {
-    let iterates =
-        substeps.iter().flat_map(|substep| &substep.equations).any(|equation| equation.solution == Solution::Newton);
-    let Some(tolerance) = model.tolerance.as_ref().filter(|_| !iterates) else { return Ok(()) };
-    let error = Diagnostic::new(tolerance.span, "the momentum equation of this step is solved without iteration");
-    Err(error.help("leave out `tolerance`").note("a tolerance says where an iteration ends").into())
+    let ends = |equation: &Equation<'_>| match equation.solution {
+        Solution::Newton => true,
+        // without kicks d is found once, to round-off
+        Solution::FreeRotation => model.potential.is_some(),
+        _ => false,
+    };
+    let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
+    if substeps.iter().flat_map(|substep| &substep.equations).any(ends) {
+        return Ok(());
+    }
+    let is_free = substeps
+        .iter()
+        .flat_map(|substep| &substep.equations)
+        .any(|equation| equation.solution == Solution::FreeRotation);
+    let (text, note) = match is_free {
+        true => (
+            "the free motion is found once for all steps, to round-off",
+            "the series of a free rotation are evaluated again after each kick",
+        ),
+        false => (
+            "the momentum equation of this step is solved without iteration",
+            "a tolerance says where an iteration ends",
+        ),
+    };
+    Err(Diagnostic::new(tolerance.span, text).help("leave out `tolerance`").note(note).into())
 }
 
 impl<'g> Formulas<'g> {

@@ -125,7 +125,13 @@ impl Emitter<'_, '_> {
         let rotations = self.free_rotations().map(|(name, solve)| {
             let inertia = self.block_of_inertia(solve);
             let kind = self.kind_of_free_rotation();
-            quote!(#name: #private::#kind::new(&#inertia, h)?,)
+            match &self.model.tolerance {
+                Some(tolerance) => {
+                    let part = Literal::f64_unsuffixed(tolerance.value);
+                    quote!(#name: #private::#kind::to_tolerance(&#inertia, h, #part)?,)
+                }
+                None => quote!(#name: #private::#kind::new(&#inertia, h)?,),
+            }
         });
         let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: h,));
         let documentation = docs::formulas(

@@ -277,8 +277,13 @@ fn tolerance(program: &Program<'_>) -> String {
         true => "No momentum is conserved to rounding".to_string(),
         false => format!("As N⁺ is Ad* of N, conserved to rounding all the same: the momentum {}", kept.join("; ")),
     };
+    let ends_series = |solve: &Solve| solve.solution == Solution::FreeRotation;
+    let (ends, x) = match program.steps.iter().flat_map(|step| &step.solves).any(ends_series) {
+        true => ("Series of d end before terms that are below", "d"),
+        false => ("Iterations end before a correction that is below", "x"),
+    };
     format!(
-        "Iterations end before a correction that is below {:e} of x, as asked for. F lies on its group whatever x is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
+        "{ends} {:e} of {x}, as asked for. F lies on its group whatever {x} is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
         tolerance.value
     )
 }
