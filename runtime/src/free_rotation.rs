@@ -285,7 +285,7 @@ impl<T: Scalar> FreeRotation<T> {
         }
     }
 
-    /// What the motion with the momentum `momentum` keeps, for many steps of it; where it is too long there are 0 parts.
+    /// What the motion with the momentum `momentum` keeps, for many steps of it.
     pub fn motion(&self, momentum: &SVector<T, 3>) -> KeptRotation<T> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
         let mut kept = KeptRotation::<T>::from_element(T::zero());

@@ -199,7 +199,8 @@ impl<T: Real> Motion<T> {
         Point { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
     }
 
-    /// The same point with numbers of the size of 1, and with the Q of which no digits cancel from their mean, X: by themselves the errors of their differences would grow fourfold each time.
+    /// The same point with numbers of the size of 1, and with the Q of which no digits cancel from their mean, X: by themselves the errors of
+    /// their differences would grow fourfold each time.
     fn settled(&self, Point { q, y, z }: Point<T>) -> Point<T> {
         let size = (self.functions.trace(&q) + z * z).recip();
         let scale = size.sqrt();
@@ -222,15 +223,30 @@ impl<T: Real> Motion<T> {
 
     /// All d_i from d_j on the axis where |x_j| is least, as the error of the angle is.
     fn on_all_axes(&self, x: &[T; 3], above: &[T; 3], below: &[T; 3], Point { q, y, z }: &Point<T>) -> [T; 3] {
-        let best = (1..3).fold(0, |best, i| if x[i].abs() < x[best].abs() { i } else { best });
-        let (c, s) = (above[best], below[best]);
-        core::array::from_fn(|i| match i == best {
-            true => quotient(c, s),
-            false => {
-                let t = (x[best] - x[i]) * q[3 - best - i] * *z;
-                quotient(c * *y - self.alpha * s * t, s * *y + c * t)
-            }
-        })
+        let [a, b, c] = x.map(|x| x.abs());
+        let best = match (b < a, c < a && c < b) {
+            (_, true) => 2,
+            (true, false) => 1,
+            (false, false) => 0,
+        };
+        let from_best = |[a, b, c]: [T; 3]| match best {
+            0 => [a, b, c],
+            1 => [b, c, a],
+            _ => [c, a, b],
+        };
+        let ([x, next, last], [_, q_next, q_last]) = (from_best(*x), from_best(*q));
+        let ([above, ..], [below, ..]) = (from_best(*above), from_best(*below));
+        // the d of the axis with `other`, where `third` is the Q of the third axis
+        let on = |other: T, third: T| {
+            let t = (x - other) * third * *z;
+            quotient(above * *y - self.alpha * below * t, below * *y + above * t)
+        };
+        let [a, b, c] = [quotient(above, below), on(next, q_last), on(last, q_next)];
+        match best {
+            0 => [a, b, c],
+            1 => [c, a, b],
+            _ => [b, c, a],
+        }
     }
 }
 
