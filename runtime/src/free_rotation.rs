@@ -362,8 +362,9 @@ impl<T: Scalar> FreeRotation<T> {
         for times in 1..=DUPLICATIONS {
             (size, part) = (half(size), part.map(half));
             let invariants = self.invariants(lane, &part);
-            if let Some(sum) = self.sum_of_series(lane, invariants) {
-                return Ok((self.made_longer(lane, invariants, sum, times), size));
+            let sum = self.sum_of_series(lane, invariants);
+            if let Some(d) = sum.and_then(|sum| self.made_longer(lane, invariants, sum, times)) {
+                return Ok((d, size));
             }
         }
         let [.., reach] = of_lane(&self.reach, lane);
@@ -372,8 +373,14 @@ impl<T: Scalar> FreeRotation<T> {
         Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
     }
 
-    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ.
-    fn made_longer(&self, lane: usize, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> [T::Lane; 3] {
+    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.
+    fn made_longer(
+        &self,
+        lane: usize,
+        invariants: [T::Lane; 2],
+        sum: [T::Lane; 4],
+        times: u32,
+    ) -> Option<[T::Lane; 3]> {
         let [a, b, c, p] = sum;
         match &self.axes {
             Axes::Tensor { invariants: symmetric, .. } if T::DERIVATIVES > 0 => {
@@ -381,8 +388,8 @@ impl<T: Scalar> FreeRotation<T> {
                 // X⁻¹ = (X² − e₁X + e₂)/e₃
                 let top = a / third;
                 let d = [b + top * second, c - top * first, top];
-                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times);
-                [c * third, a - c * second, b + c * first]
+                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times)?;
+                Some([c * third, a - c * second, b + c * first])
             }
             _ => {
                 let functions = Functions::OnAxes(of_lane(&self.reciprocals, lane));

@@ -55,7 +55,7 @@ struct Point<T> {
     z: T,
 }
 
-/// d of 2ⁿ times the time, over 2ⁿ, for n = `times`; `p` is ℘ at half the time before.
+/// d of 2ⁿ times the time, over 2ⁿ, for n = `times`; `p` is ℘ at half the time before. `None` where that may be beyond half a period.
 #[cold]
 pub(super) fn duplicated<T: Real>(
     functions: Functions<T>,
@@ -63,19 +63,19 @@ pub(super) fn duplicated<T: Real>(
     mut d: [T; 3],
     p: T,
     times: u32,
-) -> [T; 3] {
+) -> Option<[T; 3]> {
     let motion = Motion::new(functions, invariants);
-    let mut point = motion.start(p);
+    let mut point = motion.start(p)?;
     for _ in 1..times {
         let (above, below) = motion.twice(&d, &point);
         d = functions.quotient(&above, &below);
         point = motion.settled(motion.point_twice(&point));
     }
     let (above, below) = motion.twice(&d, &point);
-    match functions {
+    Some(match functions {
         Functions::OnAxes(x) => motion.on_all_axes(&x, &above, &below, &motion.point_twice(&point)),
         Functions::InPowers(_) => functions.quotient(&above, &below),
-    }
+    })
 }
 
 impl<T: Real> Functions<T> {
@@ -168,10 +168,13 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// The point where ℘ is `p`; ℘′ is negative up to half a period, far beyond the reach of the series.
-    fn start(&self, p: T) -> Point<T> {
+    /// The point where ℘ is `p`, before half a period: there ℘′ is negative.
+    ///
+    /// Half a period is at least π/2 over the root of the largest difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
+    fn start(&self, p: T) -> Option<Point<T>> {
         let q = self.functions.plus(&self.e.map(|e| -e), p);
-        Point { q, y: -self.functions.determinant(&q).sqrt(), z: T::one() }
+        let y = -self.functions.determinant(&q).sqrt();
+        (-self.linear < T::from_ratio(36, 100)).then_some(Point { q, y, z: T::one() })
     }
 
     /// d of twice the time: what is above and below the bar.

@@ -328,6 +328,26 @@ fn long_motions_are_those_of_their_parts() {
     }
 }
 
+/// ℘′ changes its sign at half a period of the momentum: parts are shorter than that, however loose the tolerance is.
+#[test]
+fn parts_are_shorter_than_half_a_period() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(2.232_505, 2.330_859_3, 0.318_828_32));
+    for h in 1..60 {
+        // about the third axis, by an angle of up to 16
+        let momentum = Vector3::new(0.0, 0.0, -0.85);
+        let angle = 0.1 * f64::from(h) * momentum.z / inertia.m33;
+        let expected = [(angle / 2.0).cos(), 0.0, 0.0, (angle / 2.0).sin()];
+        for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+            let free = FreeRotation::to_tolerance(&inertia, 0.1 * f64::from(h), tolerance).expect("regular");
+            let error = distance(quaternion(&free.gibbs_vector(&momentum).expect("solved")), expected);
+            assert!(error < 20.0 * tolerance, "{tolerance:e}, {angle}: {error:e}");
+        }
+        let free = FreeRotation::new(&inertia.map(|entry| entry as f32), 0.1 * h as f32).expect("regular");
+        let c = free.gibbs_vector(&momentum.map(|entry| entry as f32)).expect("solved").map(f64::from);
+        assert!(distance(quaternion(&c), expected) < 2e-6, "{angle}");
+    }
+}
+
 #[test]
 fn single_precision_is_as_good_as_it_can_be() {
     let errors: Vec<f64> = CASES
