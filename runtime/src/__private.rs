@@ -27,6 +27,7 @@ pub use crate::steered::{
     forced_step, no_endpoint, pair,
 };
 pub use crate::stumpff::stumpff;
+pub use crate::summation::accumulate;
 pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
 pub use core;
 pub use nalgebra::{Quaternion, SMatrix, SVector};

@@ -135,6 +135,14 @@ impl<T: Scalar, const M: usize> Impulse<T> for SMatrix<T, M, 1> {
     }
 }
 
+/// An impulse, and beside it what no step size changes.
+impl<T, I: Impulse<T>, R> Impulse<T> for (I, R) {
+    #[inline]
+    fn scaled(self, ratio: T) -> Self {
+        (self.0.scaled(ratio), self.1)
+    }
+}
+
 /// (q, N, impulse) after a composed step from the time `t`.
 ///
 /// # Errors

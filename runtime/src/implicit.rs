@@ -111,9 +111,9 @@ const QUICK: usize = 12;
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane the same as for a single number. Lanes without a
 /// solution are NaN.
 ///
-/// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last place
-/// unless the equation says otherwise, or the residual is round-off. It is that always where Newton's method alone does not decide. Work: at most 12 linearisations, and where they do not decide at most
-/// [`LINEARIZATIONS`] more (ten to two hundred in practice).
+/// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
+/// place unless the equation says otherwise, or the residual is round-off. It is always the latter where Newton's method alone does not
+/// decide. Work: at most 12 linearisations, and where they do not decide at most [`LINEARIZATIONS`] more (ten to two hundred in practice).
 ///
 /// # Errors
 /// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is

@@ -131,6 +131,7 @@ mod state;
 mod steered;
 mod stepper;
 mod stumpff;
+mod summation;
 mod system;
 mod tangent;
 mod time;

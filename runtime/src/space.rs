@@ -33,6 +33,9 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// The sum of all scalars, 0 for `()`: where it is finite, all of them are.
     fn sum(&self) -> T;
 
+    /// f(a, b) of all scalars a of it and b of another, in their places.
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self;
+
     /// The value in lane `lane` of all scalars; the value itself where they are single numbers.
     fn lane(&self, lane: usize) -> Self::Lane;
 
@@ -112,6 +115,10 @@ impl<T: Scalar> Space<T> for T {
         *self
     }
     #[inline]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
+        f(*self, *other)
+    }
+    #[inline]
     fn lane(&self, lane: usize) -> T::Lane {
         Scalar::lane(*self, lane)
     }
@@ -147,6 +154,10 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     #[inline]
     fn sum(&self) -> T {
         self.iter().fold(T::zero(), |sum, &x| sum + x)
+    }
+    #[inline]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
+        SMatrix::zip_map(self, other, f)
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
@@ -186,6 +197,10 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
         Space::sum(&self.coords)
     }
     #[inline]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
+        Quaternion { coords: Space::zip_map(&self.coords, &other.coords, f) }
+    }
+    #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
         Quaternion { coords: lane_of(&self.coords, lane) }
     }
@@ -221,6 +236,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     #[inline]
     fn sum(&self) -> T {
         self.iter().fold(T::zero(), |sum, part| sum + part.sum())
+    }
+    #[inline]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
+        core::array::from_fn(|i| self[i].zip_map(&other[i], f))
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
@@ -264,6 +283,11 @@ macro_rules! tuple {
             #[inline]
             fn sum(&self) -> T {
                 T::zero() $(+ self.$index.sum())*
+            }
+            #[inline]
+            #[allow(clippy::unused_unit)] // of the tuple without parts
+            fn zip_map(&self, _other: &Self, _f: impl Fn(T, T) -> T + Copy) -> Self {
+                ($(self.$index.zip_map(&_other.$index, _f),)*)
             }
             #[inline]
             #[allow(clippy::unused_unit)] // of the tuple without parts

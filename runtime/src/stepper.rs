@@ -158,7 +158,8 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
-        let anew = self.system.impulse(&self.constants, state.time.now(), &state.configuration, &state.momentum);
+        let State { time, configuration, momentum, impulse, .. } = state;
+        let anew = self.system.impulse_after(&self.constants, time.now(), configuration, momentum, impulse);
         if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
     }
 

@@ -29,7 +29,7 @@ pub trait Clebsch {
     /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
     type MomentumMatrix: Space<Self::Scalar>;
     /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps; `()` where
-    /// there is none.
+    /// there is none. With `summation = compensated`, that and what rounding has taken off q and N.
     type Impulse: Space<Self::Scalar>;
     /// What forces take from outside during a step, `()` where they take nothing; the `u` of `force`.
     type Input: Space<Self::Scalar>;
@@ -95,6 +95,20 @@ pub trait Clebsch {
         q: &Self::Configuration,
         mu: &Self::Momentum,
     ) -> Self::Impulse;
+
+    /// The impulse at q for steps that go on where others, of another size, have ended with the impulse `left`: what these leave that does not
+    /// depend on their size stays.
+    fn impulse_after(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+        left: &Self::Impulse,
+    ) -> Self::Impulse {
+        let _ = left;
+        self.impulse(constants, t, q, mu)
+    }
 
     /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½ J(q, ∂(U₁ − U₀)), where
     /// U₀(t, q) and U₁(t, q) are what ℓd adds at the start and at the end of a step.

@@ -202,7 +202,8 @@ where
             return Err(Error::NotFinite { name: "the state after the step" });
         }
         let time = state.time.after_step(self.step_size());
-        let impulse = self.system().impulse(self.constants(), time.now(), &q, &mu);
+        // of the same size, but at another configuration: what does not depend on either stays
+        let impulse = self.system().impulse_after(self.constants(), time.now(), &q, &mu, &state.impulse);
         Ok(State { time, configuration: q, momentum: mu, impulse, h: self.step_size() })
     }
 

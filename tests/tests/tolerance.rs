@@ -184,10 +184,10 @@ fn momenta_stay_and_energies_drift() {
         assert!(drifts.windows(2).all(|pair| pair[1] > pair[0] / 2.0), "{drifts:?}");
         assert!(drifts[5] > 1e3 * drifts[0], "{drifts:?}: a tolerance that costs nothing has not been used");
     }
-    // free rotations leave the energy within a bound that does not grow with the steps
+    // with exact drifts it goes astray beyond the bound of the splitting, by less than a thousandth of the tolerance a step
     let drifts: Vec<(f64, f64)> = energies(3).collect();
     for (tolerance, energy) in &drifts {
-        assert!(*energy < 1e-5 + 100.0 * tolerance, "{tolerance:e}: {energy:e}");
+        assert!(*energy < 1e-5 + 1e-3 * STEPS as f64 * tolerance, "{tolerance:e}: {energy:e}");
     }
     assert!(drifts[5].1 > 100.0 * drifts[0].1, "{drifts:?}: a tolerance that costs nothing has not been used");
 }

@@ -59,6 +59,13 @@ tops! {
         potential = |R| self.weight * (R * self.center).z,
         discretization = exact
     };
+    compensated, "exact compensated", tilted, pack, [sixth 6], {
+        action = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |R| self.weight * (R * self.center).z,
+        discretization = exact,
+        summation = compensated
+    };
     quaternion_exact, "quaternion exact", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6], {
         action = |F: SU<2>, Q: SU<2>| Q * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,

@@ -21,6 +21,7 @@
 //! of addition makes ℘(w ± u) rational in ℘ and ℘′. Powers of v beyond the first drop out by −αb² = v³ + Av + C; where v is large, as for a
 //! needle, they would cancel. The last formula is that of Ψ_i − Ψ_j with σσ_k/(σ_iσ_j) = −(℘ − e_k)/(½℘′).
 
+use super::half;
 use super::series::{product, trace};
 use crate::Real;
 
@@ -257,8 +258,4 @@ impl<T: Real> Motion<T> {
 fn quotient<T: Real>(a: T, b: T) -> T {
     let least = T::EPSILON * a.abs();
     a / if b.abs() < least { least } else { b }
-}
-
-fn half<T: Real>(x: T) -> T {
-    T::from_ratio(1, 2) * x
 }

@@ -14,8 +14,8 @@ const QUICK: usize = 32;
 /// h|ω|, and takes a residual in place of a Jacobian and a linear system. Where corrections do not shrink to a quarter each time,
 /// [`solve`] takes over from the start.
 ///
-/// Accuracy: what later corrections would add up to is below twice [`Equation::tolerance`] of ξ, half a unit in its last place unless the equation says
-/// otherwise.
+/// Accuracy: what later corrections would add up to is below twice [`Equation::tolerance`] of ξ, half a unit in its last place
+/// unless the equation says otherwise.
 ///
 /// # Errors
 /// Those of [`solve`].

@@ -1,6 +1,7 @@
 //! The gyroscopic step of game engines on the free body, and where it is after a million steps.
 
 use crate::hand::{Kernel, rotation};
+use crate::problems::CompensatedBody;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::principal_body::PrincipalBody;
 use nalgebra::{Matrix3, Vector3};
@@ -86,15 +87,13 @@ pub struct End {
 }
 
 /// A body that turns about its middle axis, after a million steps of 0.01.
-pub fn ends(inertia: [f64; 3], momentum: [f64; 3]) -> [End; 2] {
+pub fn ends(inertia: [f64; 3], momentum: [f64; 3]) -> [End; 3] {
     let (h, steps) = (0.01, 1_000_000);
-    let stepper = PrincipalBody { moments: inertia.into() }.into_stepper(h).expect("a body");
-    let mut state = stepper.state(Matrix3::identity(), momentum.into()).expect("a state");
     let mut engine = Gyroscopic::new(h, inertia, momentum);
-    for _ in 0..steps {
-        state = stepper.step(&state).expect("a step of moderate size");
-        engine.step();
-    }
+    (0..steps).for_each(|_| engine.step());
+    let (momenta, attitudes) = (momentum.into(), Matrix3::identity());
+    let plain = last(PrincipalBody { moments: inertia.into() }, (attitudes, momenta), h, steps);
+    let compensated = last(CompensatedBody { moments: inertia.into() }, (attitudes, momenta), h, steps);
     let of = |peer, body: [f64; 3], r: Matrix3<f64>| {
         let start = Vector3::from(momentum);
         let spatial = (r * Vector3::from(body) - start).norm() / start.norm();
@@ -105,9 +104,23 @@ pub fn ends(inertia: [f64; 3], momentum: [f64; 3]) -> [End; 2] {
     };
     let attitude = Matrix3::from_row_slice(&engine.configuration());
     [
-        of("clebsch", (*state.momentum()).into(), *state.configuration()),
+        of("clebsch", plain.1.into(), plain.0),
+        of("clebsch_compensated", compensated.1.into(), compensated.0),
         of("rust_gyroscopic", engine.momentum(), attitude),
     ]
+}
+
+/// Attitude and momentum after some steps.
+fn last<S>(body: S, start: (Matrix3<f64>, Vector3<f64>), h: f64, steps: usize) -> (Matrix3<f64>, Vector3<f64>)
+where
+    S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>,
+{
+    let stepper = body.into_stepper(h).expect("a body");
+    let mut state = stepper.state(start.0, start.1).expect("a state");
+    for _ in 0..steps {
+        state = stepper.step(&state).expect("a step of moderate size");
+    }
+    state.into_parts()
 }
 
 /// ½ L·J⁻¹L

@@ -8,6 +8,7 @@ use crate::runge_kutta::{RungeKutta, Swinging, Turning, Turning4};
 use crate::timing::interleaved;
 use crate::trial::{Drift, Trial, by_hand, derived};
 use clebsch::Clebsch;
+use clebsch_tests::fixtures::compensated_top::CompensatedTop;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::principal_body::PrincipalBody;
 use clebsch_tests::fixtures::rigid_body4::RigidBody4;
@@ -42,8 +43,21 @@ pub fn all() -> Vec<Result> {
     results
 }
 
+/// The free body of P1 with sums that keep their rests.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    discretization = moser_veselov,
+    summation      = compensated,
+)]
+pub struct CompensatedBody {
+    /// Principal moments of inertia, kg·m².
+    pub moments: Vector3<f64>,
+}
+
 /// The free body of P1 after a million steps.
-pub fn ends() -> [engine::End; 2] {
+pub fn ends() -> [engine::End; 3] {
     engine::ends(INERTIA, MOMENTUM)
 }
 
@@ -55,6 +69,8 @@ fn free_body(h: f64) -> Vec<Result> {
     let (inertia, momentum) = (INERTIA, MOMENTUM);
     let stepper = PrincipalBody { moments: inertia.into() }.into_stepper(h).expect("a body");
     let start = stepper.state(Matrix3::identity(), momentum.into()).expect("a state");
+    let compensated = CompensatedBody { moments: inertia.into() }.into_stepper(h).expect("a body");
+    let compensated_start = compensated.state(Matrix3::identity(), momentum.into()).expect("a state");
     let unit = [1.0, 0.0, 0.0, 0.0];
     let hand = Body::new(h, inertia, [0.0; 3], unit, momentum);
     let motion = Turning { inertia, moment: [0.0; 3] };
@@ -71,6 +87,7 @@ fn free_body(h: f64) -> Vec<Result> {
         by_hand("rust_hand_newton", hand),
         by_hand("rust_rk4", rk4),
         by_hand("rust_gyroscopic", engine),
+        derived(&compensated, compensated_start, 1.0).named("clebsch_compensated"),
     ];
     results("P1", h, 100, trials, work)
 }
@@ -93,7 +110,15 @@ fn heavy_top(h: f64) -> Vec<Result> {
         let state = |r: Matrix3<f64>, m| stepper.state(r.map(Counted), three(m)).expect("a state");
         work(&stepper, state(attitude, momentum), state(Matrix3::identity(), [0.0; 3]), 3, 1000)
     };
-    let trials = vec![derived(&stepper, start, 1.0), by_hand("rust_hand_newton", hand), by_hand("rust_rk4", rk4)];
+    let compensated =
+        CompensatedTop { mass_matrix, weight: 1.0, center: center.into() }.into_stepper(h).expect("a top");
+    let compensated_start = compensated.state(attitude, momentum.into()).expect("a state");
+    let trials = vec![
+        derived(&stepper, start, 1.0),
+        by_hand("rust_hand_newton", hand),
+        by_hand("rust_rk4", rk4),
+        derived(&compensated, compensated_start, 1.0).named("clebsch_compensated"),
+    ];
     results("P2", h, 50, trials, work)
 }
 

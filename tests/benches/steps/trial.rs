@@ -53,6 +53,13 @@ where
     Trial { name: "clebsch", run: Box::new(run), drift: Box::new(drift) }
 }
 
+impl Trial<'_> {
+    /// The same under another name.
+    pub fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+}
+
 /// Anything else.
 pub fn by_hand<'a, K: Kernel + 'a>(name: &'static str, start: K) -> Trial<'a> {
     let run = move |steps| {

@@ -14,6 +14,18 @@ pub struct Body<T: Scalar> {
     pub moments: Vector3<T>,
 }
 
+/// The same with sums that keep their rests.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    discretization = moser_veselov,
+    summation      = compensated,
+)]
+pub struct CompensatedBody<T: Scalar> {
+    pub moments: Vector3<T>,
+}
+
 /// The same with an iteration that ends early, at another number of steps in each lane.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(

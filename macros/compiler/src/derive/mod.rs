@@ -15,11 +15,13 @@ mod energy;
 mod equation;
 mod exact;
 mod force;
+mod increments;
 mod naming;
 mod print;
 mod reference;
 mod signature;
 mod structure;
+mod summation;
 mod symbols;
 mod symmetry;
 mod tolerance;
@@ -44,6 +46,7 @@ pub(crate) use equation::{chart_slope, is_diagonal};
 pub use exact::Splitting;
 pub(crate) use exact::inertia_inverse;
 pub use force::EdgeForce;
+pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
 pub use print::Formula;
 pub use reference::Reference;
 pub use structure::Structure;
@@ -119,7 +122,8 @@ pub struct Substep<'g> {
     pub begins: Expr<'g>,
     /// How much later than the start of the whole step it ends.
     pub ends: Expr<'g>,
-    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`; `None` if there is none.
+    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`, which is apart where sums are compensated; `None` if there is
+    /// none.
     pub start: Option<Vec<Expr<'g>>>,
     /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
     pub rest: Option<Vec<Expr<'g>>>,
@@ -211,7 +215,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let is_exact = potential_energy.is_zero() && exact::drifts_exactly(&model, &symbols, &substeps);
     closed_form::adopt_sine(&mut symbols, &mut substeps);
     tolerance::check(&model, &substeps)?;
-    Ok(Formulas {
+    let formulas = Formulas {
         splitting,
         is_exact,
         stagger,
@@ -238,7 +242,9 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         covector,
         steering,
         endpoint,
-    })
+    };
+    summation::check(&formulas)?;
+    Ok(formulas)
 }
 
 /// What is left without mechanics: the action, and what the choice of inputs needs.
@@ -356,7 +362,11 @@ fn substep<'g>(
         begins,
         ends,
         parts: sources.parts,
-        start: total(impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest))),
+        start: match summation::is_compensated(model) {
+            // what comes back after the move is added for the solve alone, and stays out of the sums
+            true => impulse(lagrangian.start),
+            false => total(impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest))),
+        },
         end: impulse(lagrangian.end),
         equations: equation::equations(&sources, &before, coupling.as_deref()),
         other: other.then(|| components(model, &after)),

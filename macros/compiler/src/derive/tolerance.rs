@@ -2,27 +2,21 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::{ConservedMomentum, Equation, Formulas, Solution, Substep};
+use super::{ConservedMomentum, Formulas, Solution, Substep};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Model, Side};
 
 /// A tolerance ends an iteration, or the series of the free rotations between kicks.
 pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>]) -> Result<(), Diagnostics> {
-    let ends = |equation: &Equation<'_>| match equation.solution {
-        Solution::Newton => true,
-        // without kicks d is found once, to round-off
-        Solution::FreeRotation => model.potential.is_some(),
-        _ => false,
-    };
     let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
-    if substeps.iter().flat_map(|substep| &substep.equations).any(ends) {
+    let solutions: Vec<Solution> =
+        substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
+    let turns_freely = solutions.contains(&Solution::FreeRotation);
+    // without kicks d is found once, to round-off
+    if solutions.contains(&Solution::Newton) || turns_freely && model.potential.is_some() {
         return Ok(());
     }
-    let is_free = substeps
-        .iter()
-        .flat_map(|substep| &substep.equations)
-        .any(|equation| equation.solution == Solution::FreeRotation);
-    let (text, note) = match is_free {
+    let (text, note) = match turns_freely {
         true => (
             "the free motion is found once for all steps, to round-off",
             "the series of a free rotation are evaluated again after each kick",

@@ -123,9 +123,19 @@ impl Emitter<'_, '_> {
 
     /// Steps of a splitting in the discrete Euler–Poincaré representation.
     fn split_steps(&self, steps: &TokenStream) -> Option<TokenStream> {
-        let kicked = |kick: &TokenStream| quote!(|t, weight, gradient, (q, mu)| (q, mu + #kick));
-        let split = self.split(steps, &quote!((*q, *mu)), &quote!(drift), &kicked)?;
-        Some(quote!(#split.map(|(q, mu)| (q, mu, ()))))
+        let state = self.state_of_drifts(&quote!(q), &quote!(mu));
+        let kicked = |kick: &TokenStream| match self.is_compensated() {
+            true => {
+                let pushed = self.pushed_by(kick.clone());
+                quote!(|t, weight, gradient, #state| { #pushed #state })
+            }
+            false => quote!(|t, weight, gradient, (q, mu)| (q, mu + #kick)),
+        };
+        let start = self.state_of_drifts(&quote!(*q), &quote!(*mu));
+        let split = self.split(steps, &start, &quote!(drift), &kicked)?;
+        let left = self.with_rests(quote!(()));
+        let rests = self.is_compensated().then(|| quote!(let (q_rest, mu_rest) = impulse.1;));
+        Some(quote!(#rests #split.map(|#state| (q, mu, #left))))
     }
 
     /// A splitting from a state: drifts by a method of `Step`, kicks by what is made of the impulse of one.

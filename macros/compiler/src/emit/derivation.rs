@@ -265,6 +265,9 @@ fn scheme(program: &Program<'_>) -> String {
     // both halves of a composed step tell the same
     let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
     text.extend(first.map(|(_, line)| line.as_str()));
+    if program.formulas.is_compensated() {
+        text += "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
+    }
     text + &tolerance(program)
 }
 

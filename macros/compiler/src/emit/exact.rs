@@ -101,7 +101,10 @@ impl Emitter<'_, '_> {
         });
         let step = &self.program.steps[0];
         let (found, advanced) = (self.found_by_kept(step), self.advanced(step));
-        let updated = step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);));
+        let updated = step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d))));
+        let (left, rests) = (self.left_type(), self.rests_taken(&format_ident!("kept")));
+        let state = self.state_of_drifts(&quote!(q), &quote!(mu));
+        let (start, kept_on) = (self.state_of_drifts(&quote!(*q), &quote!(*mu)), self.with_rests(quote!(*kept)));
         quote! {
             /// What the free motions with this momentum keep.
             fn kept_motions(&self, mu: &#momentum) -> #kept {
@@ -113,17 +116,19 @@ impl Emitter<'_, '_> {
                 steps: ::core::primitive::usize,
                 q: &#configuration,
                 mu: &#momentum,
-                kept: &#kept,
-            ) -> ::core::result::Result<(#configuration, #momentum, #kept), #krate::Error> {
-                let mut state = (*q, *mu);
+                kept: &#left,
+            ) -> ::core::result::Result<(#configuration, #momentum, #left), #krate::Error> {
+                #rests
+                let mut state = #start;
                 for _ in 0..steps {
-                    let (q, mu) = state;
+                    let #state = state;
                     #found
                     #advanced
                     #updated
-                    state = (q, mu);
+                    state = #state;
                 }
-                ::core::result::Result::Ok((state.0, state.1, *kept))
+                let #state = state;
+                ::core::result::Result::Ok((q, mu, #kept_on))
             }
         }
     }
@@ -166,7 +171,13 @@ impl Emitter<'_, '_> {
         let step = &self.program.steps[0];
         let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
         let (advanced, updated) =
-            (self.advanced(step), step.update.as_ref().map(|_| quote!(let mu = self.update(&mu, &d);)));
+            (self.advanced(step), step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d)))));
+        let (state, advanced_plainly) = (self.state_of_drifts(&quote!(q), &quote!(mu)), self.advanced_plainly(step));
+        let rests = self.rests_type();
+        let state_type = match self.is_compensated() {
+            true => quote!((#configuration, #momentum, #rests)),
+            false => quote!((#configuration, #momentum)),
+        };
         let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
         let formula = Formula::of_splitting(&self.program.formulas);
         let kick = self.part("A kick.", &formula, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
@@ -185,13 +196,13 @@ impl Emitter<'_, '_> {
             fn drift(
                 &self,
                 part: #scalar,
-                (q, mu): (#configuration, #momentum),
-            ) -> ::core::result::Result<(#configuration, #momentum), #krate::Error> {
+                #state: #state_type,
+            ) -> ::core::result::Result<#state_type, #krate::Error> {
                 let x = self.solve(&(mu * part))?;
                 #increment
                 #advanced
                 #updated
-                ::core::result::Result::Ok((q, mu))
+                ::core::result::Result::Ok(#state)
             }
             /// (q, p) ↦ (q⁺, p⁺) by the same.
             fn drift_symmetric(
@@ -202,10 +213,15 @@ impl Emitter<'_, '_> {
                 let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
                 let x = self.solve(&(mu * part))?;
                 let d = self.increment(&x);
-                #advanced
+                #advanced_plainly
                 let p = self.lift(&q, &p, &d);
                 ::core::result::Result::Ok((q, p))
             }
         }
+    }
+
+    /// What drifts move: q and N, and what rounding has taken off where sums keep it.
+    pub(super) fn state_of_drifts(&self, q: &TokenStream, mu: &TokenStream) -> TokenStream {
+        if self.is_compensated() { quote!((#q, #mu, (q_rest, mu_rest))) } else { quote!((#q, #mu)) }
     }
 }

@@ -15,6 +15,7 @@ mod opaque;
 mod path;
 mod step;
 mod stub;
+mod summation;
 mod system;
 mod variation;
 

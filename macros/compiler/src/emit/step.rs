@@ -122,7 +122,11 @@ impl Emitter<'_, '_> {
             let (signature, formulas) = (name("update"), self.program.formulas.titled("momentum update"));
             let from = if step.couples { quote!(#time q: &#configuration) } else { quote!(mu: &#momentum) };
             let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
-            self.part("The momentum after the move, F = I + D.", &formulas, signature, kernel, None)
+            let title = match self.is_compensated() {
+                true => "What the move, F = I + D, adds to the momentum: M⁺ − μ, in which μ has cancelled.",
+                false => "The momentum after the move, F = I + D.",
+            };
+            self.part(title, &formulas, signature, kernel, None)
         });
         let solve_kept = self.keeps_motions().then(|| self.solve(name("solve_kept"), suffix, step, true));
         let (solve, solve_kept) = match self.program.formulas.turns_whole() {
@@ -237,14 +241,20 @@ impl Emitter<'_, '_> {
         ));
         let advance = match &step.displace {
             Some(displace) => self.part(
-                "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
+                match self.is_compensated() {
+                    true => "What F, with chart coordinates x, adds to q: α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
+                    false => "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
+                },
                 &self.program.formulas.titled("action"),
                 quote!(displace(&self, q: &#configuration, x: &#momentum) -> #configuration),
                 displace,
                 Some(Nesting::Configuration),
             ),
             None => self.part(
-                "The configuration that F = I + D moves q to.",
+                match self.is_compensated() {
+                    true => "What F = I + D adds to q: Φ_F(q) − q, in which q has cancelled.",
+                    false => "The configuration that F = I + D moves q to.",
+                },
                 &self.program.formulas.titled("action"),
                 quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
                 &step.advance,
@@ -269,7 +279,7 @@ impl Emitter<'_, '_> {
         // the declared Lagrangian itself stands last, behind the halves of a composed step
         let whole = self.program.steps.len() - 1;
         let (inverse, first) = (self.inverse_legendre(), self.program.suffix(whole));
-        let (solve, kicked) = (format_ident!("solve{first}"), self.kicked(whole, &self.program.steps[whole], false));
+        let (solve, kicked) = (format_ident!("solve{first}"), self.kicked_plainly(whole, &self.program.steps[whole]));
         let (time, place) = (self.time_parameter(), self.place_arguments(&self.program.steps[whole]));
         let found = self.found_increment(quote!(self.#solve(#place &mu)?));
         quote! {
@@ -291,10 +301,11 @@ impl Emitter<'_, '_> {
             return self.splitting(splitting);
         }
         let (krate, configuration, momentum, impulse) =
-            (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.impulse_type());
+            (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.left_type());
         let (time, input, inline) = (self.time_parameter(), self.input_parameter(), self.inline_of_steps());
         let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
         let (next_impulse, symmetric, kept) = (self.next_impulse(), self.symmetric(), self.kept_steps());
+        let (rests, left) = (self.rests_taken(&format_ident!("impulse")), self.with_rests(quote!(impulse)));
         quote! {
             #kept
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
@@ -308,9 +319,10 @@ impl Emitter<'_, '_> {
                 #input
             ) -> ::core::result::Result<(#configuration, #momentum, #impulse), #krate::Error> {
                 let (q, mu) = (*q, *mu);
+                #rests
                 #(#euler_poincare)*
                 #next_impulse
-                ::core::result::Result::Ok((q, mu, impulse))
+                ::core::result::Result::Ok((q, mu, #left))
             }
             #symmetric
         }
@@ -332,51 +344,65 @@ impl Emitter<'_, '_> {
     }
 
     /// The kick at the start of a substep; that of the first is the impulse that the last step has left.
-    pub(super) fn kicked(&self, index: usize, step: &StepKernels, with_impulse: bool) -> TokenStream {
-        let start = format_ident!("start_kick{}", self.program.suffix(index));
-        let time = self.time_argument();
-        match (&step.start, with_impulse && index == 0 && self.shares_impulse()) {
-            (None, _) => quote!(),
-            (Some(_), true) => quote!(let mu = mu + *impulse;),
-            (Some(_), false) => quote!(let mu = mu + self.#start(#time &q);),
+    fn kicked(&self, index: usize, step: &StepKernels) -> TokenStream {
+        match step.start {
+            Some(_) if index == 0 && self.shares_impulse() => self.pushed_by_impulse(),
+            Some(_) => self.pushed_by(self.start_kick(index)),
+            None => quote!(),
         }
     }
 
+    /// What the cost gives at F = I, where it is no part of the kick.
+    fn rest_apart(&self, index: usize, step: &StepKernels) -> Option<TokenStream> {
+        let (rest, time) = (format_ident!("rest_kick{}", self.program.suffix(index)), self.time_argument());
+        step.rest.as_ref().filter(|_| self.is_compensated()).map(|_| quote!(self.#rest(#time &q)))
+    }
+
+    /// The same from a configuration alone, where no rests are kept.
+    pub(super) fn kicked_plainly(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let kick = step.start.as_ref().map(|_| self.start_kick(index));
+        let kicks = kick.into_iter().chain(self.rest_apart(index, step));
+        quote!(#(let mu = mu + #kicks;)*)
+    }
+
+    fn start_kick(&self, index: usize) -> TokenStream {
+        let (start, time) = (format_ident!("start_kick{}", self.program.suffix(index)), self.time_argument());
+        quote!(self.#start(#time &q))
+    }
+
     /// The impulse of the force at the start of a substep.
-    pub(super) fn pushed(&self, index: usize, step: &StepKernels) -> TokenStream {
-        if step.start_force.is_none() {
-            return TokenStream::new();
-        }
+    pub(super) fn start_force(&self, index: usize, step: &StepKernels) -> Option<TokenStream> {
         let start_force = format_ident!("start_force{}", self.program.suffix(index));
         let (time, input) = (self.time_argument(), self.input_argument());
-        quote!(let mu = mu + self.#start_force(#time &q, #input);)
+        step.start_force.as_ref().map(|_| quote!(self.#start_force(#time &q, #input)))
     }
 
     fn euler_poincare(&self, index: usize, step: &StepKernels) -> TokenStream {
         let suffix = self.program.suffix(index);
         let (solve, update) = (format_ident!("solve{suffix}"), format_ident!("update{suffix}"));
-        let kicked = self.kicked(index, step, true);
+        let kicked = self.kicked(index, step);
         let (time, place) = (self.time_argument(), self.place_arguments(step));
         let updated = step.update.as_ref().map(|_| match step.couples {
-            true => quote!(let mu = self.#update(#time &from, &d);),
-            false => quote!(let mu = self.#update(&mu, &d);),
+            true => self.updated(quote!(self.#update(#time &from, &d))),
+            false => self.updated(quote!(self.#update(&mu, &d))),
         });
         let from = step.couples.then(|| quote!(let from = q;));
-        let (input, start_force) = (self.input_argument(), self.pushed(index, step));
+        let input = self.input_argument();
+        let start_force = self.start_force(index, step).map(|force| self.pushed_by(force));
         let end_force = step.end_force.as_ref().map(|_| {
             let end_force = format_ident!("end_force{suffix}");
-            quote!(let mu = mu + self.#end_force(#time &q, &x, #input);)
+            self.pushed_by(quote!(self.#end_force(#time &q, &x, #input)))
         });
         let moving_force = step.start_moving.as_ref().map(|_| {
             let moving_force = format_ident!("moving_force{suffix}");
-            quote!(let mu = mu + self.#moving_force(#time &q, &x, #input);)
+            self.pushed_by(quote!(self.#moving_force(#time &q, &x, #input)))
         });
         let last = index + 1 == self.program.formulas.parts;
         let end = match (&step.end, last && self.shares_impulse()) {
             (None, _) | (Some(_), true) => quote!(),
             (Some(_), false) => {
                 let end = format_ident!("{}{suffix}", if step.end_is_start { "start_kick" } else { "end_kick" });
-                quote!(let mu = mu + self.#end(#time &q);)
+                self.pushed_by(quote!(self.#end(#time &q)))
             }
         };
         // where the step moves by the coordinates alone, it makes no matrix
@@ -386,7 +412,11 @@ impl Emitter<'_, '_> {
                 let found = self.found_by_kept(step);
                 quote!(let kept = impulse; #found)
             }
-            false => quote!(let x = self.#solve(#place &mu)?; #increment),
+            false => {
+                // what is solved for is M − r(I), and what the move carries is M
+                let mu = self.rest_apart(index, step).map_or(quote!(mu), |rest| quote!((mu + #rest)));
+                quote!(let x = self.#solve(#place &#mu)?; #increment)
+            }
         };
         let advanced = self.advanced(step);
         quote! {
@@ -402,14 +432,6 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The move, by the increments or by the chart coordinates.
-    pub(super) fn advanced(&self, step: &StepKernels) -> TokenStream {
-        match step.displace {
-            Some(_) => quote!(let q = self.displace(&q, &x);),
-            None => quote!(let q = self.advance(&q, &d);),
-        }
-    }
-
     /// The last kick, kept for the next step where it is the same.
     fn next_impulse(&self) -> TokenStream {
         // where time matters, the kick at the end of the last substep is the one that knows its time
@@ -420,10 +442,10 @@ impl Emitter<'_, '_> {
         };
         let time = self.time_argument();
         match self.shares_impulse() {
-            true => quote! {
-                let impulse = self.#kick(#time &q);
-                let mu = mu + impulse;
-            },
+            true => {
+                let pushed = self.pushed_by(quote!(impulse));
+                quote!(let impulse = self.#kick(#time &q); #pushed)
+            }
             false if self.keeps_motions() => quote!(let impulse = *impulse;),
             false => quote!(let impulse = ();),
         }
@@ -464,7 +486,7 @@ impl Emitter<'_, '_> {
                 let name = format_ident!("rest_kick{suffix}");
                 quote!(let mu = mu + self.#name(#time &q);)
             });
-            let advanced = self.advanced(step);
+            let advanced = self.advanced_plainly(step);
             let found = self.found_increment(quote!(self.#solve(#place &mu)?));
             quote! {
                 #start

@@ -18,7 +18,7 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (impulse, input) = (self.impulse_type(), self.input_type());
+        let (impulse, input) = (self.left_type(), self.input_type());
         let private = &self.paths.private;
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
@@ -322,6 +322,7 @@ impl Emitter<'_, '_> {
             false if self.keeps_motions() => quote!(#step::kept_motions(&#step { system: self, #first }, mu)),
             false => quote!(()),
         };
+        let (impulse, impulse_after) = (self.without_rests(impulse), self.impulse_after());
         let (title, inline_of_impulse) = match self.keeps_motions() {
             true => ("What the free motion with this momentum keeps.", quote!()),
             false => ("The kick that the end of a step and the start of the next share.", quote!(#[inline])),
@@ -349,6 +350,7 @@ impl Emitter<'_, '_> {
             ) -> Self::Impulse {
                 #impulse
             }
+            #impulse_after
             /// One step of the discrete Euler–Poincaré representation.
             #inline
             fn step(

@@ -60,13 +60,7 @@ impl Emitter<'_, '_> {
             Some(Nesting::Element),
             quote!(),
         );
-        let advance = method(
-            "The configuration that F = I + D moves q to.",
-            quote!(advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration),
-            &self.program.steps[0].advance,
-            Some(Nesting::Configuration),
-            quote!(),
-        );
+        let advance = self.advance_of_motions();
         let motion = method(
             "The infinitesimal motion ξ_Q(q).",
             quote!(infinitesimal_motion(&self, q: &Self::Configuration, x: &Self::Momentum) -> Self::Configuration),
@@ -95,6 +89,27 @@ impl Emitter<'_, '_> {
             #[inline]
             fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum {
                 #krate::Clebsch::momentum_map(self, q, &(#difference))
+            }
+        }
+    }
+
+    /// The move by an increment. Where sums keep their rests, the kernel has what is added.
+    fn advance_of_motions(&self) -> TokenStream {
+        let kernel = &self.program.steps[0].advance;
+        let documentation = docs::formulas("The configuration that F = I + D moves q to.", &[], Some(kernel));
+        let moved = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
+        let moved = match self.is_compensated() {
+            true => {
+                let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
+                quote!(let added = { #moved }; #sum)
+            }
+            false => moved,
+        };
+        quote! {
+            #documentation
+            #[inline]
+            fn advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration {
+                #moved
             }
         }
     }
@@ -292,7 +307,8 @@ impl Emitter<'_, '_> {
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let (time, place) = (self.time_parameter(), self.place_arguments(step));
         let (kicked, pushed, input) =
-            (self.kicked(index, step, false), self.pushed(index, step), self.input_parameter());
+            (self.kicked_plainly(index, step), self.start_force(index, step), self.input_parameter());
+        let pushed = pushed.map(|force| quote!(let mu = mu + #force;));
         quote! {
             /// The increment of the group element whose momentum is μ at q.
             #[inline]

@@ -3,10 +3,9 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::kernel::kernel;
-use super::stepping::increments;
 use super::variation::{columns, elements, orbit_metric};
 use super::{Hoisting, Kernel, Scalar, Scalars, grids, plain};
-use crate::derive::{Bend, Formulas, InputStep, Jet, Steering};
+use crate::derive::{Bend, Formulas, InputStep, Jet, Steering, increments};
 
 /// The kernels of a choice of inputs.
 pub struct ControlKernels {

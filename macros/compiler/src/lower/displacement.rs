@@ -5,7 +5,7 @@ use clebsch_symbolic::{Chart, Expr, identity};
 use crate::derive::Formulas;
 use crate::model::Isotropy;
 
-/// q⁺ for each leaf from q and the chart coordinates; `None` where a leaf is no vector or does not move like that.
+/// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not move like that.
 ///
 /// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
 pub(super) fn displaced<'g>(formulas: &Formulas<'g>) -> Option<Vec<Expr<'g>>> {
@@ -19,7 +19,7 @@ fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> 
         return None;
     }
     let mut movers = (0..model.factors.len()).filter(|&k| image.depends_on(model.factors[k].symbol));
-    let Some(k) = movers.next() else { return Some(image) };
+    let Some(k) = movers.next() else { return Some(if formulas.is_compensated() { image - q } else { image }) };
     if movers.next().is_some() {
         return None;
     }
@@ -37,10 +37,11 @@ fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> 
     if !identity::equal(&[turned], &[q + free[0] * once + free[1] * twice]) {
         return None;
     }
-    match is_perpendicular(formulas, k, leaf, twice) {
-        true => Some(q + alpha * once - (beta * x.norm_squared()) * q),
-        false => Some(q + alpha * once + beta * twice),
-    }
+    let added = match is_perpendicular(formulas, k, leaf, twice) {
+        true => alpha * once - (beta * x.norm_squared()) * q,
+        false => alpha * once + beta * twice,
+    };
+    Some(if formulas.is_compensated() { added } else { q + added })
 }
 
 /// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.

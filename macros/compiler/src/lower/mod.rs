@@ -20,7 +20,7 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
-use crate::derive::Formulas;
+use crate::derive::{Formulas, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Factor, Isotropy, Space};
 
@@ -186,7 +186,7 @@ fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
 /// F⁻¹ of each factor, by the formula that its group has for it, and log F.
 fn inverses<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let explicit = |(factor, y): (&Factor<'g>, &Expr<'g>)| {
-        let mut replacements = stepping::inverse_by(factor.group, factor.symbol, factor.symbol);
+        let mut replacements = inverse_by(factor.group, factor.symbol, factor.symbol);
         replacements.push((*y, factor.group.logarithm(factor.symbol)));
         replacements
     };
@@ -289,7 +289,7 @@ fn gyroscopic(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
 /// The values of the conserved momenta, in one vector. Inverses are those of configurations, by the formulas of their groups.
 fn conserved(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
     let leaves = formulas.model.configurations.iter().filter_map(|leaf| match leaf.space {
-        Space::Group(group) => Some(stepping::inverse_by(group, leaf.symbol, leaf.symbol)),
+        Space::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
         _ => None,
     });
     let inverses: Vec<_> = leaves.flatten().collect();

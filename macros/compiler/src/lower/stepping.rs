@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape, Zero, identity};
+use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, Zero, identity};
 
 use super::displacement;
 use super::fixed_point;
 use super::kernel::kernel;
 use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
-use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, is_diagonal};
-use crate::model::{Factor, Side};
+use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, increments, is_diagonal};
+use crate::model::Factor;
 
 /// The kernels of one substep.
 pub struct StepKernels {
@@ -404,50 +404,18 @@ fn chart_elements<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     formulas.model.factors.iter().enumerate().flat_map(element).collect()
 }
 
-/// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
-pub(super) fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let symbols = &formulas.symbols;
-    let factors = formulas.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
-    let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
-        let element = from_increment(factor.group, *increment);
-        let mut replacements = inverse_by(factor.group, factor.symbol, element);
-        replacements.push((*y, factor.group.logarithm(element)));
-        replacements.push((factor.symbol, element));
-        replacements
-    };
-    let coordinates = symbols.increments.iter().enumerate();
-    let coordinates = coordinates.filter_map(|(k, d)| crate::derive::cayley_coordinates(&formulas.model, k, *d));
-    factors.flat_map(element).chain(coordinates).collect()
-}
-
-/// The replacement of the letters F⁻¹ and F⁻ᵀ by the explicit inverse of an element.
-pub(super) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    if group.is_translation() || group.is_orthogonal() || group == Group::UnitQuaternions {
-        return Vec::new();
-    }
-    let inverse = group.explicit_inverse(element);
-    vec![(symbol.inverse(), inverse), (symbol.transpose().inverse(), inverse.transpose())]
-}
-
-pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
-    if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
-}
-
-/// An expression with I + D put in for F. Products are distributed, so that what cancels does so; but not around an inverse, where that
-/// only makes them many times longer: there F occurs as F − I and F + I.
-pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-    let inserted = expression.substitute(elements);
-    if inserted.has_inverse() { inserted } else { inserted.expand() }
-}
-
-/// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation.
+/// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
 fn advance(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+    if formulas.is_compensated() {
+        return plain(scalars, &formulas.displacements());
+    }
     let elements = increments(formulas);
     let images: Vec<_> = formulas.model.action.iter().map(|image| image.substitute(&elements).expand()).collect();
     plain(scalars, &images)
 }
 
-/// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one; the other trivialisation of ∂_F K where the cost couples.
+/// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one; the other trivialisation of ∂_F K where the cost couples. Where sums
+/// keep their rests, what is added to what was solved for.
 fn update(
     formulas: &Formulas<'_>,
     substep: &Substep<'_>,
@@ -459,26 +427,11 @@ fn update(
         let updates: Vec<_> = other.iter().map(|update| update.substitute(&elements).expand()).collect();
         return Some(stack(scalars, hoisted, &updates));
     }
-    if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {
-        return None;
+    if formulas.is_compensated() {
+        return formulas.momentum_increments(substep).map(|increments| super::stack(scalars, &increments));
     }
-    // what is solved for is M − r(I)
-    let momenta = formulas.symbols.momenta.iter().enumerate();
-    let momenta = momenta.map(|(k, mu)| substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]));
-    let updates: Vec<_> = formulas
-        .model
-        .factors
-        .iter()
-        .zip(momenta)
-        .zip(&substep.unchanged)
-        .map(|((factor, mu), unchanged)| match (unchanged, factor.side) {
-            (true, _) => mu,
-            (false, Side::Left) => {
-                factor.group.coadjoint(factor.group.inverse(factor.symbol), mu).substitute(&elements).expand()
-            }
-            (false, Side::Right) => factor.group.coadjoint(factor.symbol, mu).substitute(&elements).expand(),
-        })
-        .collect();
+    let updates = formulas.carried_on(substep)?;
+    let updates: Vec<_> = updates.into_iter().map(|update| update.substitute(&elements).expand()).collect();
     Some(super::stack(scalars, &updates))
 }
 

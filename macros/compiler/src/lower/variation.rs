@@ -3,9 +3,8 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::kernel::kernel;
-use super::stepping::{from_increment, increments, inserted, inverse_by};
 use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, plain};
-use crate::derive::{Formulas, Variation};
+use crate::derive::{Formulas, Variation, from_increment, increments, inserted, inverse_by};
 use crate::model::Side;
 
 /// The kernels that variations need beside those of the step.

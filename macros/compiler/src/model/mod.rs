@@ -32,7 +32,9 @@ mod value;
 mod vectors;
 mod velocity;
 
-pub use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Opaque, Order, Promise, Solver};
+pub use crate::parse::{
+    ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
+};
 pub use outline::{Outline, outline};
 pub use structure::Structure;
 pub use types::*;
@@ -107,6 +109,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         symmetries: formulas.symmetries,
         solver: dials.solver.as_ref().map(|solver| solver.value),
         tolerance: dials.tolerance.clone(),
+        summation: dials.summation.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),

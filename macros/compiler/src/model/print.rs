@@ -7,7 +7,7 @@ use clebsch_symbolic::Expr;
 use super::scalar::spell_scalar;
 use super::{
     ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter,
-    Promise, Side, Solver, Space,
+    Promise, Side, Solver, Space, Summation,
 };
 
 impl fmt::Display for Model<'_> {
@@ -56,6 +56,9 @@ impl fmt::Display for Model<'_> {
         }
         if let Some(tolerance) = &self.tolerance {
             writeln!(f, "  tolerance  {:e}", tolerance.value)?;
+        }
+        if let Some(summation) = &self.summation {
+            writeln!(f, "  summation  {}", summation.value)?;
         }
         if let Some(chart) = self.chart {
             writeln!(f, "  chart      {chart}")?;
@@ -159,6 +162,15 @@ impl fmt::Display for Solver {
         f.write_str(match self {
             Solver::Newton => "newton",
             Solver::FixedPoint => "fixed_point",
+        })
+    }
+}
+
+impl fmt::Display for Summation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Summation::Plain => "plain",
+            Summation::Compensated => "compensated",
         })
     }
 }

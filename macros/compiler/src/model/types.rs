@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::Structure;
-use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver};
+use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -54,8 +54,11 @@ pub struct Model<'g> {
     pub chart: Option<ChartChoice>,
     /// The solver that the user chooses.
     pub solver: Option<Solver>,
-    /// The part of a step by which its implicit equations may be missed; `None` for round-off.
+    /// The part of a step by which its implicit equations, or the series of free rotations between kicks, may be missed; `None` for
+    /// round-off.
     pub tolerance: Option<Located<f64>>,
+    /// How a step adds to q and N; `None` for plain sums.
+    pub summation: Option<Located<Summation>>,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.

@@ -109,8 +109,18 @@ fn refuse(keys: &Keys, motion: &Ident, diagnostics: &mut Diagnostics) {
         format!("leave it out, or leave out `{motion}`"),
         "the inputs move the configuration directly, without mass, momentum or force",
     );
-    for name in ["lagrangian", "potential", "force", "force_on", "symmetry", "order", "tolerance", "isotropy", "chart"]
-    {
+    for name in [
+        "lagrangian",
+        "potential",
+        "force",
+        "force_on",
+        "symmetry",
+        "order",
+        "tolerance",
+        "summation",
+        "isotropy",
+        "chart",
+    ] {
         if let Some(span) = keys.place_of(name) {
             let error = Diagnostic::new(span, format!("a system with `{motion}` has no `{name}`")).help(&kept);
             diagnostics.push(error.note(why));

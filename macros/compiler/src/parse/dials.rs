@@ -44,6 +44,15 @@ pub enum Solver {
     FixedPoint,
 }
 
+/// How a step adds to q and N.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Summation {
+    /// As numbers are added.
+    Plain,
+    /// What rounding takes off is kept, and added in the next step.
+    Compensated,
+}
+
 /// What becomes of motions of the group that move no configuration.
 #[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
 pub enum Isotropy {

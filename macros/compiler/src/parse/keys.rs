@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span};
 
-use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Solver};
+use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Solver, Summation};
 use super::{Closure, DeclaredGroup, Potential};
 
 /// A value and where it was written.
@@ -28,6 +28,7 @@ pub(super) enum Kind {
     Chart,
     Solver,
     Tolerance,
+    Summation,
     Isotropy,
     Emit,
     Scalar,
@@ -37,7 +38,7 @@ pub(super) enum Kind {
 }
 
 /// All keys.
-pub(super) const KEYS: [(&str, Kind); 24] = [
+pub(super) const KEYS: [(&str, Kind); 25] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
@@ -56,6 +57,7 @@ pub(super) const KEYS: [(&str, Kind); 24] = [
     ("chart", Kind::Chart),
     ("solver", Kind::Solver),
     ("tolerance", Kind::Tolerance),
+    ("summation", Kind::Summation),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
     ("crate", Kind::Crate),
@@ -80,6 +82,10 @@ pub(super) const CHARTS: [(&str, Option<ChartChoice>); 2] =
 /// Solvers by name.
 pub(super) const SOLVERS: [(&str, Option<Solver>); 2] =
     [("newton", Some(Solver::Newton)), ("fixed_point", Some(Solver::FixedPoint))];
+
+/// Kinds of summation by name.
+pub(super) const SUMMATIONS: [(&str, Option<Summation>); 2] =
+    [("plain", Some(Summation::Plain)), ("compensated", Some(Summation::Compensated))];
 
 /// What becomes of motions that move nothing, by name.
 pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
@@ -110,6 +116,8 @@ pub struct Dials {
     pub solver: Option<Located<Solver>>,
     /// `tolerance = 1e-8`.
     pub tolerance: Option<Located<f64>>,
+    /// `summation = compensated`.
+    pub summation: Option<Located<Summation>>,
     /// `isotropy = fixed`.
     pub isotropy: Option<Located<Isotropy>>,
     /// `emit = [generated]`.

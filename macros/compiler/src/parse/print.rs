@@ -59,6 +59,9 @@ impl fmt::Display for Declaration {
         if let Some(tolerance) = &dials.tolerance {
             writeln!(f, "  tolerance  = {:e}", tolerance.value)?;
         }
+        if let Some(summation) = &dials.summation {
+            writeln!(f, "  summation  = {}", summation.value)?;
+        }
         if let Some(isotropy) = &dials.isotropy {
             writeln!(f, "  isotropy   = {}", isotropy.value)?;
         }

@@ -8,7 +8,7 @@ use syn::punctuated::Punctuated;
 use syn::{Expr, ExprClosure, Lit, LitInt, Path, Token, bracketed, parenthesized};
 
 use super::dials::{Emit, Order};
-use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS};
+use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS, SUMMATIONS};
 use super::{Closure, Potential, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
 
@@ -23,6 +23,7 @@ pub(super) fn example(kind: Kind) -> &'static str {
         Kind::Chart => "exponential",
         Kind::Solver => "fixed_point",
         Kind::Tolerance => "1e-8",
+        Kind::Summation => "compensated",
         Kind::Isotropy => "free",
         Kind::Emit => "[generated]",
         Kind::Scalar => "f64",
@@ -78,6 +79,7 @@ pub(super) fn read(
             let literal: Lit = stream.parse().map_err(|_| expected("a number"))?;
             keys.dials.tolerance = read_tolerance(&literal, diagnostics);
         }
+        Kind::Summation => keys.dials.summation = read_name(key, kind, stream, &SUMMATIONS, diagnostics)?,
         Kind::Isotropy => keys.dials.isotropy = read_name(key, kind, stream, &ISOTROPIES, diagnostics)?,
         Kind::Emit => {
             if !stream.peek(syn::token::Bracket) {

@@ -1,0 +1,167 @@
+//! Compensated summation: what a step adds to q and N, so that the sums can keep what rounding takes off.
+//!
+//! ```text
+//! q⁺ = q + (Φ_{I+D}(q) − q),    M⁺ = M + (Ad*_{I+D} M − M)
+//! ```
+//! The increments are of the size of a step. They are right to rounding of their own only if q and M cancel in them as formulas do; where
+//! F⁻¹ occurs, I − D F⁻¹ stands for it.
+//!
+//! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §VIII.5 (compensated summation, Kahan 1965, Møller 1965).
+
+use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
+
+use super::{Formulas, Substep, increments, inverse_by};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Factor, Located, Model, Summation};
+
+impl<'g> Formulas<'g> {
+    /// Whether the sums of a step keep the rests of their rounding.
+    pub fn is_compensated(&self) -> bool {
+        is_compensated(&self.model)
+    }
+
+    /// Φ_{I+D}(q) − q for each leaf of the configuration.
+    pub fn displacements(&self) -> Vec<Expr<'g>> {
+        let (inverses, added) = (self.inverses(), self.displacements_by_letters());
+        added.into_iter().map(|added| added.substitute(&inverses)).collect()
+    }
+
+    /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
+    pub fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        let inverses = self.inverses();
+        let added = self.momentum_increments_by_letters(substep)?;
+        Some(added.into_iter().map(|added| added.substitute(&inverses)).collect())
+    }
+
+    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
+    pub fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {
+            return None;
+        }
+        // what is solved for is M − r(I)
+        let momenta = self.symbols.momenta.iter().enumerate();
+        let momenta = momenta.map(|(k, mu)| substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]));
+        let carried = momenta.enumerate().map(|(k, m)| if substep.unchanged[k] { m } else { self.carried(k, m) });
+        Some(carried.collect())
+    }
+
+    /// Φ_{I+D}(q) − q, where letters stand for F⁻¹.
+    fn displacements_by_letters(&self) -> Vec<Expr<'g>> {
+        let leaves = self.model.configurations.iter().zip(&self.model.action);
+        leaves.map(|(leaf, image)| self.beside(*image, leaf.symbol)).collect()
+    }
+
+    /// M⁺ − M in the same way.
+    fn momentum_increments_by_letters(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        let momenta = self.symbols.momenta.iter().zip(&substep.unchanged).enumerate();
+        let added = |(k, (m, unchanged)): (usize, (&Expr<'g>, &bool))| match unchanged {
+            true => self.model.graph.zero(m.shape()),
+            false => self.beside(self.carried(k, *m), *m),
+        };
+        substep.unchanged.contains(&false).then(|| momenta.map(added).collect())
+    }
+
+    /// `moved` − `from` with F = I + D and I − D S for F⁻¹.
+    fn beside(&self, moved: Expr<'g>, from: Expr<'g>) -> Expr<'g> {
+        let mut near = increments(self);
+        let has_letter = |factor: &Factor<'_>| !inverse_by(factor.group, factor.symbol, factor.symbol).is_empty();
+        for (k, factor) in self.model.factors.iter().enumerate().filter(|(_, factor)| has_letter(factor)) {
+            let written = factor.group.identity(self.model.graph) - self.symbols.increments[k] * self.inverse_letter(k);
+            let inverse = factor.symbol.inverse();
+            for (letter, replacement) in &mut near {
+                match *letter {
+                    letter if letter == inverse => *replacement = written,
+                    letter if letter == inverse.transpose() => *replacement = written.transpose(),
+                    _ => {}
+                }
+            }
+        }
+        (moved.substitute(&near).expand() - from).expand()
+    }
+
+    /// A letter for F⁻¹ until all products are distributed: then F⁻¹ itself would take D F⁻¹ to I − F⁻¹ again.
+    fn inverse_letter(&self, k: usize) -> Expr<'g> {
+        let shape = self.model.factors[k].group.element_shape();
+        self.model.graph.symbol("S", shape, Role::Following(k), Property::General)
+    }
+
+    /// What the letters stand for.
+    fn inverses(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let near = increments(self);
+        let inverse = |k: usize| {
+            let inverse = self.model.factors[k].symbol.inverse();
+            let found = near.iter().find(|(letter, _)| *letter == inverse)?;
+            Some((self.inverse_letter(k), found.1))
+        };
+        (0..self.model.factors.len()).filter_map(inverse).collect()
+    }
+}
+
+/// Whether the sums of a step keep the rests of their rounding.
+pub(super) fn is_compensated(model: &Model<'_>) -> bool {
+    place(model).is_some()
+}
+
+/// Where compensated summation is asked for.
+fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
+    model.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
+}
+
+/// Compensated sums need increments.
+///
+/// # Errors
+/// A step in which q or N is no sum.
+pub(super) fn check(formulas: &Formulas<'_>) -> Result<(), Diagnostics> {
+    let Some(summation) = place(&formulas.model) else { return Ok(()) };
+    let refused = |text: &str, note: &str| -> Result<(), Diagnostics> {
+        let error = Diagnostic::new(summation.span, text.to_string());
+        Err(error.help("leave out `summation`").note(note).into())
+    };
+    if formulas.turns_whole() {
+        return refused(
+            "the free motion on `SO<4>` finds the next momentum from the group element, so there is no sum to compensate",
+            "it takes steps of any size: with longer ones there are fewer to round",
+        );
+    }
+    if formulas.substeps.iter().take(formulas.parts).any(|substep| substep.other.is_some()) {
+        return refused(
+            "this cost makes the momentum anew in each step, so there is no sum to compensate",
+            "where a cost couples the configuration and the group element, N⁺ is the other trivialisation of its slope, and not N with something added",
+        );
+    }
+    let near = formulas.symbols.increments.as_slice();
+    let leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
+    if let Some((leaf, _)) = leaves.into_iter().find(|(leaf, added)| !cancels(*added, leaf.symbol, near)) {
+        return refused(
+            &format!("the action does not add to `{}`, so there is no sum to compensate", leaf.name),
+            "with F = I + D an action has to be a polynomial in D, as linear and affine ones are",
+        );
+    }
+    let momenta = formulas
+        .substeps
+        .iter()
+        .take(formulas.parts)
+        .filter_map(|s| formulas.momentum_increments_by_letters(s))
+        .flatten();
+    if momenta.zip(formulas.symbols.momenta.iter().cycle()).any(|(added, mu)| !cancels(added, *mu, near)) {
+        return refused(
+            "Ad* does not add to the momentum of this group, so there is no sum to compensate",
+            "with F = I + D and D small, Ad*_F μ − μ has to be small term by term",
+        );
+    }
+    Ok(())
+}
+
+/// Whether `from` is in no term without D, or cancels in their sum.
+fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool {
+    let graph = added.graph();
+    let term = |term: WordTerm<'g>| -> Expr<'g> {
+        let word = term.word.iter().copied().reduce(|product, letter| product * letter);
+        let scale = term.scale(graph);
+        word.map_or(scale, |word| scale * word)
+    };
+    let terms = added.word_terms().into_iter().map(term);
+    let left = terms.filter(|term| !increments.iter().any(|d| term.depends_on(*d)));
+    let left = left.fold(graph.zero(added.shape()), |sum, term| sum + term);
+    identity::equal(&[left], &[left.substitute(&[(from, graph.zero(from.shape()))])])
+}
