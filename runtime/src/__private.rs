@@ -4,7 +4,9 @@
 //! this file is the module of paths in the compiler's `emit` stage.
 
 pub use crate::composition::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17, compose, compose_symmetric};
-pub use crate::element::{below_right_angle, from_increment, inverse, quaternion, quaternion_from_increment};
+pub use crate::element::{
+    below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,
+};
 pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
 pub use crate::exponential::{exponential, phi};
 pub use crate::free_rotation::{

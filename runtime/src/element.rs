@@ -56,6 +56,32 @@ pub fn below_right_angle<T: Scalar, const M: usize>(x: SVector<T, M>, sine_squar
     Err(beyond_right_angle(sine_squared))
 }
 
+/// 1/(1 + cos θ) = 1/(1 + √(1 − t)) of t = sin²θ ≤ 1, for |θ| ≤ π/2.
+///
+/// Below t = 2⁻⁷, angles of 5°, seven terms of the power series
+///
+/// ```text
+/// 1/2 + t/8 + t²/16 + 5t³/128 + 7t⁴/256 + 21t⁵/1024 + 33t⁶/2048 + …,    the next of which is below 5·10⁻¹⁷ of the sum
+/// ```
+/// are half as long a chain of operations as a root and a division. Numbers of more digits, and with derivatives, have the quotient
+/// for all angles. The relative error is below 1.5 ε.
+#[inline]
+pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
+    let quotient = || (T::one() + (T::one() - sine_squared).sqrt()).recip();
+    let is_plain = T::DERIVATIVES == 0 && T::EPSILON.to_f64() >= f64::EPSILON;
+    let is_small = if is_plain { sine_squared.below(T::from_ratio(1, 1 << 7)) } else { T::Mask::nowhere() };
+    if !is_small.any() {
+        return quotient();
+    }
+    let (t, square) = (sine_squared, sine_squared * sine_squared);
+    let two = |a: T, b: T| a + b * t;
+    let low = two(T::from_ratio(1, 2), T::from_ratio(1, 8));
+    let middle = two(T::from_ratio(1, 16), T::from_ratio(5, 128));
+    let high = two(T::from_ratio(7, 256), T::from_ratio(21, 1024)) + T::from_ratio(33, 2048) * square;
+    let series = (low + square * middle) + (square * square) * high;
+    if is_small.all() { series } else { T::select(is_small, series, quotient()) }
+}
+
 /// The error of the first lane whose momentum is finite, as the others have none of their own.
 #[cold]
 fn beyond_right_angle<T: Scalar>(sine_squared: T) -> Error {
@@ -67,7 +93,7 @@ fn beyond_right_angle<T: Scalar>(sine_squared: T) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::{below_right_angle, inverse, quaternion_from_increment};
+    use super::{below_right_angle, inverse, per_one_plus_cosine, quaternion_from_increment};
     use crate::Error;
     use nalgebra::{Matrix3, Matrix4, Quaternion, Vector1};
 
@@ -77,6 +103,30 @@ mod tests {
         assert_eq!(check(0.99), Ok(Vector1::new(1.0)));
         assert_eq!(check(4.0), Err(Error::Unsolvable { solvable_fraction: 0.5, step_size: None }));
         assert_eq!(check(f64::NAN), Err(Error::NotFinite { name: "momentum" }));
+    }
+
+    /// Against the series to many more terms and the quotient in twice the precision, on both sides of where they meet.
+    #[test]
+    fn the_cosine_is_that_of_its_angle() {
+        // 1 − √(1 − t) = t/2 + t²/8 + …: the ratio of two terms is (2k − 1)/(2k + 2)
+        let series = |t: f64| {
+            let (mut term, mut terms) = (0.5, std::vec::Vec::new());
+            for k in 1..60 {
+                terms.push(term);
+                term *= t * f64::from(2 * k - 1) / f64::from(2 * k + 2);
+            }
+            terms.iter().rev().sum::<f64>()
+        };
+        for i in 0..20_000 {
+            let t = 0.25 * (f64::from(i) / 2e4).powi(3);
+            let (found, exact) = (per_one_plus_cosine(t), series(t));
+            assert!((found / exact - 1.0).abs() <= 1.5 * f64::EPSILON, "{t}: {found} for {exact}");
+            let single = per_one_plus_cosine(t as f32);
+            assert!((f64::from(single) / series(f64::from(t as f32)) - 1.0).abs() <= 1.5 * f64::from(f32::EPSILON));
+        }
+        assert_eq!(per_one_plus_cosine(1.0), 1.0);
+        assert_eq!(per_one_plus_cosine(0.0), 0.5);
+        assert!(per_one_plus_cosine(f64::NAN).is_nan() && per_one_plus_cosine(2.0_f64).is_nan());
     }
 
     #[test]

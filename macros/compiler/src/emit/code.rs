@@ -196,6 +196,10 @@ impl Scope<'_, '_> {
             }
             Code::Reciprocal(x) => tokens.extend(self.reciprocal(x, tight)),
             Code::Root(x, exponent) => tokens.extend(self.root(x, *exponent)),
+            Code::PerOnePlusCosine(x) => {
+                let (private, x) = (&self.paths.private, self.code(x, false));
+                tokens.extend(quote!(#private::per_one_plus_cosine(#x)));
+            }
             Code::Call(callee, arguments) => tokens.extend(self.call(callee, arguments)),
             Code::Output(local, callee, output) => tokens.extend(self.output(*local, callee, *output)),
             Code::Function(function, x) => tokens.extend(self.function(*function, x)),

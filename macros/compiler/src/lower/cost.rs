@@ -59,6 +59,11 @@ impl Cost {
                 self.roots += 1;
                 self.count(x);
             }
+            // at worst: next to θ = 0 it is a polynomial
+            Code::PerOnePlusCosine(x) => {
+                (self.additions, self.divisions, self.roots) = (self.additions + 2, self.divisions + 1, self.roots + 1);
+                self.count(x);
+            }
             Code::Function(_, x) => {
                 self.calls += 1;
                 self.count(x);

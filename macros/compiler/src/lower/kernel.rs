@@ -31,6 +31,8 @@ pub enum Code {
     Reciprocal(Box<Code>),
     /// x^(numerator/denominator).
     Root(Box<Code>, (i64, i64)),
+    /// 1/(1 + √(1 − t)), which is 1/(1 + cos θ) with t = sin²θ.
+    PerOnePlusCosine(Box<Code>),
     /// An elementary function.
     Function(Function, Box<Code>),
     /// A call of a function of matrices: always a shared term.
@@ -66,6 +68,30 @@ impl Code {
         (!below.is_empty()).then_some((above, below))
     }
 
+    /// 1/x
+    fn reciprocal(x: Code) -> Code {
+        match x.sine_squared() {
+            Some(sine_squared) => Code::PerOnePlusCosine(Box::new(sine_squared)),
+            None => Code::Reciprocal(Box::new(x)),
+        }
+    }
+
+    /// The t of 1 + √(1 − t).
+    fn sine_squared(&self) -> Option<Code> {
+        let one = integer(1);
+        let one_and = |code: &Code| match code {
+            Code::Sum(constant, terms) if *constant == one => Some(terms.clone()),
+            _ => None,
+        };
+        let [(coefficient, Code::Root(square, (1, 2)))] = &one_and(self)?[..] else { return None };
+        let mut terms = one_and(square).filter(|_| *coefficient == one)?;
+        terms.iter_mut().for_each(|(coefficient, _)| *coefficient = -coefficient.clone());
+        match &terms[..] {
+            [(coefficient, term)] if *coefficient == one => Some(term.clone()),
+            _ => Some(Code::Sum(integer(0), terms)),
+        }
+    }
+
     fn divisor(&self) -> Option<&Code> {
         match self {
             Code::Reciprocal(x) => Some(x),
@@ -78,7 +104,7 @@ impl Code {
             Code::Read(input) => inputs.push(input),
             Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.read(inputs)),
             Code::Product(factors) => factors.iter().for_each(|factor| factor.read(inputs)),
-            Code::Reciprocal(x) | Code::Root(x, _) | Code::Function(_, x) => x.read(inputs),
+            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => x.read(inputs),
             Code::Call(_, arguments) => {
                 arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| entry.read(inputs));
             }
@@ -540,7 +566,7 @@ impl Builder<'_, '_> {
                 let factors = self.operands(id);
                 Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
             }
-            Operation::Reciprocal(x) => Code::Reciprocal(Box::new(self.reference(x, names))),
+            Operation::Reciprocal(x) => Code::reciprocal(self.reference(x, names)),
             Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
             Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
             Operation::Call(callee, arguments) => {

@@ -237,6 +237,10 @@ impl Program<'_> {
             Code::Reciprocal(x) if place == 0 => format!("1/{}", self.text(x, 2)),
             Code::Reciprocal(x) => format!("(1/{})", self.text(x, 2)),
             Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
+            Code::PerOnePlusCosine(x) => {
+                let text = format!("1/(1 + sqrt(1 - {}))", self.text(x, 1));
+                if place == 0 { text } else { format!("({text})") }
+            }
             Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
             Code::Call(callee, arguments) => {
                 let argument = |(_, entries): &(clebsch_symbolic::Shape, Vec<Code>)| {
@@ -267,6 +271,7 @@ fn inlined(kernel: &Kernel, code: &Code) -> Code {
         Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
         Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
         Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
+        Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
         Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
         other => other.clone(),
     }
