@@ -86,25 +86,29 @@ pub fn split<T: Scalar, S, const K: usize>(
     drift: impl Fn(T, S) -> Result<S, Error>,
     kick: impl Fn(T, T, T, S) -> S,
 ) -> Result<S, Error> {
-    let Some((first, others)) = kicks.split_first().filter(|_| steps > 0) else { return Ok(start) };
+    let Some(first) = kicks.first().filter(|_| steps > 0) else { return Ok(start) };
     // the same forwards and backwards: the last drift is as long as the first
     let end = T::from_f64(first.drift);
-    let kicked = |state: S, passed: T, begun: T, part: &Kick| {
-        kick(begun + passed * h, T::from_f64(part.weight), T::from_f64(part.gradient), state)
-    };
-    let (mut state, mut begun) = (drift(end, start)?, Clock::at(t));
-    for left in (0..steps).rev() {
-        let mut passed = end;
-        state = kicked(state, passed, begun.now(), first);
-        for part in others {
-            let size = T::from_f64(part.drift);
-            passed += size;
-            state = kicked(drift(size, state)?, passed, begun.now(), part);
+    let (mut state, mut begun, mut left) = (start, Clock::at(t), steps);
+    let (mut parts, mut size, mut passed) = (kicks.iter(), end, end);
+    // drift and kick are called in one place each, so that both stand in the loop and no state goes through memory
+    loop {
+        state = drift(size, state)?;
+        let Some(part) = parts.next().filter(|_| left > 0) else { return Ok(state) };
+        let (weight, gradient) = (T::from_f64(part.weight), T::from_f64(part.gradient));
+        state = kick(begun.now() + passed * h, weight, gradient, state);
+        match parts.as_slice().first() {
+            Some(next) => {
+                size = T::from_f64(next.drift);
+                passed += size;
+            }
+            None => {
+                left -= 1;
+                (begun, parts) = (begun.after_step(h), kicks.iter());
+                (size, passed) = (if left == 0 { end } else { end + end }, end);
+            }
         }
-        begun = begun.after_step(h);
-        state = drift(if left == 0 { end } else { end + end }, state)?;
     }
-    Ok(state)
 }
 
 #[cfg(test)]

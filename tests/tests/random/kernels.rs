@@ -80,6 +80,7 @@ impl Run<'_> {
             Code::Product(factors) => factors.iter().map(|factor| self.code(factor)).product(),
             Code::Reciprocal(x) => 1.0 / self.code(x),
             Code::Root(x, (numerator, denominator)) => self.code(x).powf(*numerator as f64 / *denominator as f64),
+            Code::PerOnePlusCosine(t) => 1.0 / (1.0 + (1.0 - self.code(t)).sqrt()),
             Code::Function(function, x) => Number::function(self.code(x), *function),
             Code::Call(callee, _) => panic!("{callee:?} returns a matrix"),
             Code::Output(local, _, output) => self.output(*local, *output),

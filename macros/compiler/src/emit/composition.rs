@@ -51,8 +51,9 @@ impl Emitter<'_, '_> {
     pub(super) fn step_taken(&self) -> TokenStream {
         let (private, step) = (&self.paths.private, &self.names.step);
         let (time, input) = (self.time_argument(), self.input_argument());
-        if let Some(split) = self.split_steps(&quote!(1)) {
-            return split;
+        if self.program.formulas.splitting.is_some() {
+            let krate = &self.paths.krate;
+            return quote!(#krate::Clebsch::steps(self, constants, (t, constants.step_size), 1, q, mu, impulse, u));
         }
         if self.program.formulas.stages().is_none() {
             return quote!(#step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input));
