@@ -69,6 +69,22 @@ impl From<f64> for DoubleDouble {
     }
 }
 
+/// As its two numbers.
+#[cfg(feature = "serde")]
+impl serde::Serialize for DoubleDouble {
+    fn serialize<W: serde::Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
+        self.parts().serialize(writer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for DoubleDouble {
+    fn deserialize<R: serde::Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
+        let [large, small] = <[f64; 2]>::deserialize(reader)?;
+        Ok(Self::new(large, small))
+    }
+}
+
 /// Both numbers, as their sum.
 impl Display for DoubleDouble {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {

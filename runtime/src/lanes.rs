@@ -137,6 +137,21 @@ macro_rules! lanes {
             }
         }
 
+        /// As an array of its numbers.
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for $lanes {
+            fn serialize<W: serde::Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
+                self.to_array().serialize(writer)
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for $lanes {
+            fn deserialize<R: serde::Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
+                Ok(<[$number; $count]>::deserialize(reader)?.into())
+            }
+        }
+
         impl From<$number> for $lanes {
             #[inline]
             fn from(value: $number) -> Self {

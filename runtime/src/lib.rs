@@ -66,6 +66,7 @@
 //! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
+//! | `serde` | states that are written, and go on bit for bit where they are read back, by `Stepper::resume` |
 //!
 //! # Many bodies
 //!
@@ -124,6 +125,8 @@ mod opaque;
 mod orbit;
 mod parameters;
 mod root;
+#[cfg(feature = "serde")]
+mod saved;
 mod scalar;
 mod space;
 mod splitting;
@@ -153,6 +156,8 @@ pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
+#[cfg(feature = "serde")]
+pub use saved::SavedState;
 pub use scalar::{Mask, Real, Scalar};
 pub use space::Space;
 pub use state::{Body, CotangentState, State};

@@ -38,6 +38,7 @@ impl<T: Scalar> Time<T> for () {
 ///
 /// Source: Knuth, *The Art of Computer Programming* 2, section 4.2.2, theorem B (the error of a sum).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Clock<T> {
     now: T,
     /// What rounding has taken from `now`.

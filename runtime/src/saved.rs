@@ -1,0 +1,105 @@
+//! States that are written and read back, with the feature `serde`.
+
+use crate::stepper::{check_configuration, check_momentum};
+use crate::{Clebsch, Error, Space, State, Stepper, Time};
+use core::fmt::{self, Debug, Formatter};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// What is written of a state: the numbers of its time, of q and N, what its next step takes from the last, and the step size that this is for.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "State")]
+struct Record<Time, Configuration, Momentum, Impulse, Scalar> {
+    time: Time,
+    configuration: Configuration,
+    momentum: Momentum,
+    impulse: Impulse,
+    step_size: Scalar,
+}
+
+impl<S: Clebsch> Serialize for State<S>
+where
+    S::Time: Serialize,
+    S::Configuration: Serialize,
+    S::Momentum: Serialize,
+    S::Impulse: Serialize,
+    S::Scalar: Serialize,
+{
+    fn serialize<W: Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
+        let Self { time, configuration, momentum, impulse, h } = self;
+        Record { time, configuration, momentum, impulse, step_size: h }.serialize(writer)
+    }
+}
+
+/// A state as it was read, which no stepper has seen yet: [`Stepper::resume`] makes it a [`State`].
+pub struct SavedState<S: Clebsch>(State<S>);
+
+impl<'de, S: Clebsch> Deserialize<'de> for SavedState<S>
+where
+    S::Time: Deserialize<'de>,
+    S::Configuration: Deserialize<'de>,
+    S::Momentum: Deserialize<'de>,
+    S::Impulse: Deserialize<'de>,
+    S::Scalar: Deserialize<'de>,
+{
+    fn deserialize<R: Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
+        let Record { time, configuration, momentum, impulse, step_size: h } = Record::deserialize(reader)?;
+        Ok(Self(State { time, configuration, momentum, impulse, h }))
+    }
+}
+
+impl<S: Clebsch> Clone for SavedState<S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Clebsch> Copy for SavedState<S> {}
+
+impl<S: Clebsch> Debug for SavedState<S> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("SavedState").field(&self.0).finish()
+    }
+}
+
+impl<S: Clebsch> Stepper<S> {
+    /// The state that was written, after the checks of [`state`](Self::state): the next steps have the bits that they would have had.
+    ///
+    /// All that a step takes from the last one is written and read back: the impulse at q, what a free motion keeps, what compensated sums have
+    /// left. It is taken as it is, so that states of *other* systems or of other versions of a declaration have to be made anew, by
+    /// [`state`](Self::state). Formats have to give back every bit of a number: `serde_json` does with its feature `float_roundtrip`, and
+    /// binary ones do.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, SavedState};
+    /// # use nalgebra::Vector3;
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    ///     cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    ///     potential = |q| q.z,
+    /// )]
+    /// struct Pendulum;
+    ///
+    /// let stepper = Pendulum.stepper(0.01)?;
+    /// let state = stepper.step(&stepper.state(Vector3::x(), Vector3::new(0.0, 0.6, 0.2))?)?;
+    /// let text = serde_json::to_string(&state).expect("numbers");
+    /// let saved: SavedState<Pendulum> = serde_json::from_str(&text).expect("the same numbers");
+    /// assert_eq!(stepper.step(&stepper.resume(saved)?)?, stepper.step(&state)?);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`state`](Self::state); [`Error::NotFinite`] for what is left of the last step, and for the time.
+    pub fn resume(&self, saved: SavedState<S>) -> Result<State<S>, Error> {
+        let SavedState(state) = saved;
+        check_configuration(&self.system, &state.configuration)?;
+        check_momentum(&self.system, &state.configuration, &state.momentum)?;
+        if !state.time.now().is_finite() {
+            return Err(Error::NotFinite { name: "the time" });
+        }
+        if !(state.impulse.is_finite() && state.h.is_finite()) {
+            return Err(Error::NotFinite { name: "what is left of the last step" });
+        }
+        Ok(state)
+    }
+}
