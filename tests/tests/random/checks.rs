@@ -2,9 +2,10 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use clebsch_compiler::derive::{Solution, Structure};
+use clebsch_compiler::derive::{self, Solution, Structure};
 use clebsch_compiler::lower::{Program, Solve};
 use clebsch_compiler::{Graph, compile};
+use clebsch_symbolic::Chart;
 use clebsch_tests::oracle::precise::double_double::DoubleDouble;
 use clebsch_tests::oracle::precise::energy::energy;
 use clebsch_tests::oracle::precise::equation::Equation;
@@ -15,7 +16,7 @@ use clebsch_tests::oracle::precise::step::{State, composed_trajectory, step, tra
 use clebsch_tests::oracle::random::Random;
 use proc_macro2::TokenStream;
 
-use crate::problem::{Declared, Kind};
+use crate::problem::{Declared, Discretization, Kind, Kinetic};
 use crate::stepping::{Seen, Stepper};
 
 /// The step.
@@ -31,6 +32,7 @@ pub struct Found {
     pub conserved: usize,
     pub couples: bool,
     pub iterates: bool,
+    pub compensated: bool,
     pub specialised: bool,
     pub deviation: f64,
     pub energy: f64,
@@ -47,7 +49,11 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
         let tokens: TokenStream = text.parse().map_err(|error| format!("no tokens: {error}"))?;
         let graph = Graph::new();
         let program = compile(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
-        compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))
+        let found = compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))?;
+        match (seed / 2).is_multiple_of(2) && !found.couples {
+            true => Ok(Found { compensated: compensated(problem, seed)?, ..found }),
+            false => Ok(found),
+        }
     };
     let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().cloned();
@@ -98,6 +104,67 @@ fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> R
         time_symmetry(problem, &first, composed)?;
     }
     Ok(found)
+}
+
+/// The same problem with compensated sums: the same steps, and increments that are right to their own last digits, however short a step is.
+fn compensated(problem: &Declared, seed: u64) -> Result<bool, String> {
+    let mut problem = problem.clone();
+    problem.dials.push("summation = compensated");
+    let tokens: TokenStream = problem.text().parse().map_err(|error| format!("no tokens: {error}"))?;
+    let graph = Graph::new();
+    let program = match compile(&graph, tokens) {
+        Ok(program) => program,
+        Err(errors) if errors.to_string().contains("there is no sum to compensate") => return Ok(false),
+        Err(errors) => return Err(format!("refused with compensated sums:\n{errors}")),
+    };
+    compiled(&problem, &program, &mut Random::new(seed ^ 0x5eed)).map_err(|error| format!("compensated: {error}"))?;
+    increments(problem, &mut Random::new(seed ^ 0x5eed))?;
+    Ok(true)
+}
+
+/// A short step without the potential, its increments beside those of the oracle.
+fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
+    free.potential = None;
+    let tokens: TokenStream = free.text().parse().map_err(|error| format!("no tokens: {error}"))?;
+    let graph = Graph::new();
+    let program = compile(&graph, tokens).map_err(|errors| format!("refused without a potential:\n{errors}"))?;
+    // where the equation has inverses or exponentials of matrices, its residual is a difference, and x not right to its own last digits
+    let formulas = &program.formulas;
+    let is_difference = |equation: &derive::Equation<'_>| {
+        let has = |chart| equation.factors.iter().any(|&k| formulas.symbols.charts[k] == chart);
+        let by_logarithm = matches!(free.kinetic, Kinetic::Lagrangian(_, Discretization::Exponential));
+        let is_cost = matches!(free.kinetic, Kinetic::Cost(_));
+        let iterates = equation.solution == Solution::Newton;
+        // a shift that is put in, where it shares inertia with the turn
+        let shift_from_turn = has(Chart::Product) && !iterates && is_cost;
+        iterates && (has(Chart::Cayley) && !equation.cleared || has(Chart::Exponential) && !by_logarithm)
+            || shift_from_turn
+    };
+    // a cost may have a potential in it
+    let is_free = formulas.parts == 1 && formulas.potential_energy.is_zero();
+    if !is_free || formulas.substeps.iter().flat_map(|substep| &substep.equations).any(is_difference) {
+        return Ok(());
+    }
+    let (state, h) = (start(&free, random), 2.0_f64.powi(-30));
+    let fields: Vec<Vec<f64>> = free.fields.iter().map(|field| field.value.entries().to_vec()).collect();
+    let found = Stepper::new(&program, &fields, h).increments(0.0, &seen(&free, &state))?;
+    let first = state.lift::<DoubleDouble>();
+    let lost = |lost| format!("the oracle has no short step: {lost:?}");
+    let last = step(&free, DoubleDouble::of(h), DoubleDouble::zero(), &first).map_err(lost)?;
+    let moved = State {
+        q: last.q.iter().zip(&first.q).map(|(last, first)| last - first).collect(),
+        n: last.n.iter().zip(&first.n).map(|(&last, &first)| last - first).collect(),
+    };
+    let exact = seen(&free, &rounded(&moved));
+    let size = |numbers: &[f64]| numbers.iter().fold(0.0, |most, x: &f64| x.abs().max(most));
+    let apart = |a: &[f64], b: &[f64]| size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+    let (q, exact_q) = (found.q.concat(), exact.q.concat());
+    // a momentum that changes at the second order in h alone has increments of the size of h²
+    // a momentum may stay as it is, or nearly
+    let changed = size(&exact.mu).max(1e-3 * h * size(&state.n));
+    let off = (apart(&q, &exact_q) / size(&exact_q)).max(apart(&found.mu, &exact.mu) / changed);
+    // NaN is none of these
+    if off < 1e-9 { Ok(()) } else { Err(format!("increments of a step of {h:.0e} are off by {off:.1e} of themselves")) }
 }
 
 /// A configuration and a momentum that its motions can have.

@@ -24,6 +24,15 @@ pub struct Seen {
     pub mu: Vec<f64>,
 }
 
+impl Seen {
+    /// The state with increments added.
+    pub fn with(&self, increments: &Seen) -> Seen {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        let leaves = self.q.iter().zip(&increments.q).map(|(a, b)| sum(a, b)).collect();
+        Seen { q: leaves, mu: sum(&self.mu, &increments.mu) }
+    }
+}
+
 impl<'a, 'g> Stepper<'a, 'g> {
     /// What `stepper(h)` does; parameters in the order of the fields.
     pub fn new(program: &'a Program<'g>, fields: &[Vec<f64>], h: f64) -> Stepper<'a, 'g> {
@@ -83,20 +92,47 @@ impl<'a, 'g> Stepper<'a, 'g> {
         let mut state = state.clone();
         self.place(t, &state);
         self.kick(step.start.as_ref(), &mut state.mu);
-        for solve in &step.solves {
-            self.solve(solve, &state.mu)?;
+        let mut solved_for = state.mu.clone();
+        if self.program.formulas.is_compensated() {
+            self.kick(step.rest.as_ref(), &mut solved_for);
         }
+        for solve in &step.solves {
+            self.solve(solve, &solved_for)?;
+        }
+        self.impel(&state.mu);
         let increments = self.run(&step.increment);
         for (symbol, increment) in self.program.formulas.symbols.increments.iter().zip(&increments) {
             self.values.set(*symbol, increment);
         }
         let updated = step.update.as_ref().map(|update| self.run(update).remove(0));
-        let moved = step.displace.as_ref().unwrap_or(&step.advance);
-        state = Seen { q: self.run(moved), mu: updated.unwrap_or(state.mu) };
+        let moved = self.run(step.displace.as_ref().unwrap_or(&step.advance));
+        state = match self.program.formulas.is_compensated() {
+            true => state.with(&Seen { q: moved, mu: updated.unwrap_or_else(|| vec![0.0; state.mu.len()]) }),
+            false => Seen { q: moved, mu: updated.unwrap_or(state.mu) },
+        };
         self.place(t, &state);
         let end = if step.end_is_start { step.start.as_ref() } else { step.end.as_ref() };
         self.kick(end.filter(|_| step.end.is_some()), &mut state.mu);
         Ok(state)
+    }
+
+    /// What the move of a step without kicks adds to (q, N), where sums are compensated; a step of one part.
+    pub fn increments(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
+        let (program, step) = (self.program, &self.program.steps[0]);
+        self.place(t, state);
+        let mut mu = state.mu.clone();
+        self.kick(step.rest.as_ref(), &mut mu);
+        for solve in &step.solves {
+            self.solve(solve, &mu)?;
+        }
+        self.impel(&state.mu);
+        let increments = self.run(&step.increment);
+        for (symbol, increment) in program.formulas.symbols.increments.iter().zip(&increments) {
+            self.values.set(*symbol, increment);
+        }
+        let q = self.run(step.displace.as_ref().unwrap_or(&step.advance));
+        let mu = step.update.as_ref().map_or(vec![0.0; mu.len()], |update| self.run(update).remove(0));
+        Ok(Seen { q, mu })
     }
 
     fn kick(&mut self, kernel: Option<&Kernel>, mu: &mut [f64]) {

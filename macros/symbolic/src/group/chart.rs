@@ -94,7 +94,7 @@ impl Chart {
 
     /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
     /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², p the Pfaffian of Z and Z̃ its
-    /// dual for n = 4, and 2(I − Z)⁻¹Z for other Cayley charts.
+    /// dual for n = 4, 2(I − Z)⁻¹Z for other Cayley charts, and Zφ(Z) for exponentials.
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
         let graph = x[0].graph();
         let one = graph.integer(1);
@@ -134,13 +134,34 @@ impl Chart {
                 let shape = group.element_shape();
                 ((turn / denominator).embed(shape, 0, 0) + x[1].embed(shape, 0, n), one)
             }
+            (Chart::Product, Group::Similarity(n)) => {
+                // eᵈ(I + T) − I = g(I + T) + T with g = eᵈ − 1 = 2 sinh(d/2) e^{d/2}
+                let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
+                let (half, shape) = (x[1] / 2, group.element_shape());
+                let growth = 2 * half.function(Function::Sinh) * half.function(Function::Exp);
+                let turn = turn / denominator;
+                let linear = growth * (graph.identity(n) + turn) + turn;
+                (linear.embed(shape, 0, 0) + x[2].embed(shape, 0, n), one)
+            }
             (Chart::Identity, _) => (x[0], one),
-            (Chart::Exponential, _) if group != Group::UnitQuaternions => {
-                let element = self.element(group, x);
-                match &*element.node() {
-                    Node::Analytic(Analytic::Exponential, inner) => {
+            (Chart::Exponential, Group::UnitQuaternions) => {
+                // cos − 1 = −s c₂(s)
+                let quarter = x[0].norm_squared() / 4;
+                let [sine, versine] = [1, 2].map(|k| quarter.function(Function::Stumpff(k)));
+                let shape = Shape::vector(4);
+                ((sine / 2 * x[0]).embed(shape, 0, 0) - quarter * versine * graph.unit(shape, 3, 0), one)
+            }
+            (Chart::Exponential, _) => {
+                let z = combination(group, x);
+                let element = exponential(z);
+                match (&*element.node(), in_one_plane(z)) {
+                    (Node::Analytic(Analytic::Exponential, inner), _) => {
                         let z = graph.expr(*inner);
                         (z * z.analytic(Analytic::Phi), one)
+                    }
+                    (_, Some(s)) => {
+                        let [sine, versine] = [1, 2].map(|k| s.function(Function::Stumpff(k)));
+                        (sine * z - s * versine * group.identity(graph), one)
                     }
                     _ => (element - group.identity(graph), one),
                 }
@@ -203,7 +224,7 @@ fn exponential(z: Expr<'_>) -> Expr<'_> {
     let stumpff = |k: u8| s.function(Function::Stumpff(k));
     let identity = graph.identity(z.shape().rows);
     let square = z * z;
-    if identity::vanishes(square + s * identity) {
+    if in_one_plane(z).is_some() {
         return stumpff(0) * identity + stumpff(1) * z;
     }
     if identity::vanishes(square * z + s * z) {
@@ -216,6 +237,12 @@ fn exponential(z: Expr<'_>) -> Expr<'_> {
         true => double_turn(z),
         false => z.exponential(),
     }
+}
+
+/// s where Z² = −s I.
+fn in_one_plane(z: Expr<'_>) -> Option<Expr<'_>> {
+    let s = -(z * z).trace() / 2;
+    identity::vanishes(z * z + s * z.graph().identity(z.shape().rows)).then_some(s)
 }
 
 /// exp Z = exp Z₊ exp Z₋ of an antisymmetric 4×4 matrix, Z± = (Z ± Z̃)/2, whose squares are −s±I and which commute.
