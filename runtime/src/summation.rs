@@ -2,6 +2,17 @@
 
 use crate::{Scalar, Space};
 
+/// a + b as the rounded sum and what rounding took from it, whichever is the larger.
+///
+/// Source: Knuth, *The Art of Computer Programming* 2, §4.2.2, theorem B (the error of a sum, due to Møller).
+#[inline]
+pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
+    let sum = a + b;
+    let of_b = sum - a;
+    let of_a = sum - of_b;
+    (sum, (a - of_a) + (b - of_b))
+}
+
 /// (s⁺, r⁺) with s⁺ = s + y rounded, where y = d + r is what is added and what earlier sums have left, and r⁺ what that takes off:
 /// s⁺ + r⁺ = s + y without an error.
 ///
@@ -12,18 +23,11 @@ use crate::{Scalar, Space};
 /// ```
 /// seven additions, of which two stand between s and s⁺. Valid for any sizes of s and y, as long as s + y does not overflow.
 ///
-/// Source: Knuth, *The Art of Computer Programming* 2, §4.2.2, theorem B (the error of a sum, due to Møller); Kahan, *Further remarks on
-/// reducing truncation errors*, Comm. ACM 8 (1965).
+/// Source: Kahan, *Further remarks on reducing truncation errors*, Comm. ACM 8 (1965).
 #[inline]
 pub fn accumulate<T: Scalar, S: Space<T>>(sum: &S, rest: &S, increment: &S) -> (S, S) {
     let increment = increment.zip_map(rest, |d, r| d + r);
-    let next = sum.zip_map(&increment, |s, y| s + y);
-    let rest = sum.zip_map(&increment, |s, y| {
-        let next = s + y;
-        let added = next - s;
-        (s - (next - added)) + (y - added)
-    });
-    (next, rest)
+    (sum.zip_map(&increment, |s, y| exact_sum(s, y).0), sum.zip_map(&increment, |s, y| exact_sum(s, y).1))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The time of a state: nothing for autonomous systems, a clock for the others.
 
+use crate::summation::exact_sum;
 use crate::{Scalar, Space};
 use core::fmt::Debug;
 
@@ -83,15 +84,6 @@ impl<T: PartialEq> PartialEq for Clock<T> {
     fn eq(&self, other: &Self) -> bool {
         self.now == other.now
     }
-}
-
-/// a + b as the rounded sum and what rounding took from it, whichever is the larger.
-#[inline]
-fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
-    let sum = a + b;
-    let of_b = sum - a;
-    let of_a = sum - of_b;
-    (sum, (a - of_a) + (b - of_b))
 }
 
 #[cfg(test)]
