@@ -56,14 +56,14 @@ impl Emitter<'_, '_> {
 
     /// The same where no rests are kept.
     pub(super) fn advanced_plainly(&self, step: &StepKernels) -> TokenStream {
-        let moved = self.moved(step);
-        match self.is_compensated() {
-            true => {
-                let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
-                quote!(let added = #moved; let q = #sum;)
-            }
-            false => quote!(let q = #moved;),
-        }
+        let moved = self.moved_to(self.moved(step));
+        quote!(let q = #moved;)
+    }
+
+    /// q⁺ of what the kernel of the move gives: itself, or what is added to q.
+    pub(super) fn moved_to(&self, moved: TokenStream) -> TokenStream {
+        let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
+        if self.is_compensated() { quote!({ let added = #moved; #sum }) } else { moved }
     }
 
     fn moved(&self, step: &StepKernels) -> TokenStream {

@@ -98,13 +98,7 @@ impl Emitter<'_, '_> {
         let kernel = &self.program.steps[0].advance;
         let documentation = docs::formulas("The configuration that F = I + D moves q to.", &[], Some(kernel));
         let moved = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
-        let moved = match self.is_compensated() {
-            true => {
-                let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
-                quote!(let added = { #moved }; #sum)
-            }
-            false => moved,
-        };
+        let moved = if self.is_compensated() { self.moved_to(quote!({ #moved })) } else { moved };
         quote! {
             #documentation
             #[inline]

@@ -5,7 +5,8 @@ use clebsch_symbolic::{Chart, Expr, identity};
 use crate::derive::Formulas;
 use crate::model::Isotropy;
 
-/// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not move like that.
+/// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not
+/// move like that.
 ///
 /// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
 pub(super) fn displaced<'g>(formulas: &Formulas<'g>) -> Option<Vec<Expr<'g>>> {

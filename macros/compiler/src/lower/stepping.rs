@@ -33,11 +33,12 @@ pub struct StepKernels {
     pub solves: Vec<Solve>,
     /// The increment F − I of each factor, from the chart coordinates.
     pub increment: Kernel,
-    /// q⁺, from q and the increments.
+    /// q⁺, from q and the increments; q⁺ − q where sums keep their rests.
     pub advance: Kernel,
-    /// q⁺, from q and the chart coordinates, where that costs less than by the increments.
+    /// The same from q and the chart coordinates, where that costs less than by the increments.
     pub displace: Option<Kernel>,
-    /// M⁺, from M and the increments; from q and the increments where the cost couples them; `None` if M does not change.
+    /// M⁺, from M and the increments, or M⁺ − M where sums keep their rests; from q and the increments where the cost couples them; `None` if
+    /// M does not change.
     pub update: Option<Kernel>,
     /// Whether M⁺ is made from q and the increments.
     pub couples: bool,
