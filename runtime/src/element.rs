@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(check(f64::NAN), Err(Error::NotFinite { name: "momentum" }));
     }
 
-    /// Against the series to many more terms and the quotient in twice the precision, on both sides of where they meet.
+    /// Against the series to many more terms, on both sides of where it ends, and in single precision against the quotient in double.
     #[test]
     fn the_cosine_is_that_of_its_angle() {
         // 1 − √(1 − t) = t/2 + t²/8 + …: the ratio of two terms is (2k − 1)/(2k + 2)
@@ -123,6 +123,12 @@ mod tests {
             assert!((found / exact - 1.0).abs() <= 1.5 * f64::EPSILON, "{t}: {found} for {exact}");
             let single = per_one_plus_cosine(t as f32);
             assert!((f64::from(single) / series(f64::from(t as f32)) - 1.0).abs() <= 1.5 * f64::from(f32::EPSILON));
+        }
+        for i in 0..=20_000 {
+            let t = i as f32 / 2e4;
+            let exact = 1.0 / (1.0 + (1.0 - f64::from(t)).sqrt());
+            let single = f64::from(per_one_plus_cosine(t));
+            assert!((single / exact - 1.0).abs() <= 1.5 * f64::from(f32::EPSILON), "{t}: {single} for {exact}");
         }
         assert_eq!(per_one_plus_cosine(1.0), 1.0);
         assert_eq!(per_one_plus_cosine(0.0), 0.5);

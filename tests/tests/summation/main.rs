@@ -106,7 +106,7 @@ fn errors() -> Vec<(&'static str, [f64; 2])> {
     }
 }
 
-/// What rounding does in 20 000 steps of 1/128 of a turn or so.
+/// What rounding does in 20 000 steps of 1/128 s, of bodies that turn by about a radian a second.
 #[test]
 fn errors_are_those_of_increments() {
     let found = errors();
@@ -174,7 +174,7 @@ fn rests_outlive_a_change_of_the_step_size() -> Result<(), Error> {
     Ok(())
 }
 
-/// Several steps at once are the same steps; drifts in one are not, but their sums are.
+/// Several steps at once are the same steps, bit for bit where nothing is merged, and hand their rests on.
 #[test]
 fn several_steps_keep_their_rests() -> Result<(), Error> {
     let (moments, spin) = (v::<f32, 3>([1.0, 1.5, 2.0]), v::<f32, 3>([0.25, 1.0, -0.5]));
@@ -193,7 +193,7 @@ fn several_steps_keep_their_rests() -> Result<(), Error> {
     Ok(())
 }
 
-/// A tangent map or a variation is of the step: rests go on beside it, and a step of (q, p) has none.
+/// Steps with tangent maps and steps of (q, p) sum plainly, and are the same but for rounding.
 #[test]
 fn tangent_maps_and_covectors_are_those_of_the_step() -> Result<(), Error> {
     let stepper = Watched { gravity: 1.5 }.into_stepper(0.05)?;
