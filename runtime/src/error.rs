@@ -134,7 +134,7 @@ pub enum Error {
     NotConverged {
         /// Size of the residual that was left, relative to the terms of the equation.
         residual: f64,
-        /// Number of linearisations that were made.
+        /// Number of linearisations or sweeps that were made.
         iterations: u32,
     },
     /// The step of a lane failed, where the scalar has several: [`Stepper::failure`](crate::Stepper::failure) says why, and
@@ -276,7 +276,7 @@ impl Display for Error {
             ),
             Self::NotConverged { residual, iterations } => write!(
                 f,
-                "the implicit equation was not solved in {iterations} linearisations (relative residual {residual:.1e}): \
+                "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
                  reduce the step size"
             ),
             Self::InLane { lane } => write!(

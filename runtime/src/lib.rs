@@ -98,6 +98,7 @@ pub mod __private;
 mod boundary;
 mod bracket;
 mod cofactors;
+mod collocation;
 mod composition;
 mod conserved;
 mod control;

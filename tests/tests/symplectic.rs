@@ -78,6 +78,43 @@ pub struct ComposedBody<T: Scalar> {
     pub skew: T,
 }
 
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    potential  = |R| self.weight * (R * self.center).z,
+    order      = 16,
+)]
+pub struct CollocatedBody<T: Scalar> {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<T>,
+    pub weight: T,
+    pub center: Vector3<T>,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| self.inertia * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.gravity * q.z + q.x.powi(3) / 3,
+    order     = 16,
+)]
+pub struct CollocatedPendulum<T: Scalar> {
+    pub inertia: T,
+    pub gravity: T,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |x, v| v.norm_squared() / 2 + self.field * (x.x * v.y - x.y * v.x) / 2,
+    potential  = |x| 1 / x.norm(),
+    order      = 16,
+)]
+pub struct CollocatedCharge<T: Scalar> {
+    pub field: T,
+}
+
 fn constant<const K: usize, const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> SMatrix<Dual<K>, R, C> {
     a.map(Dual::constant)
 }
@@ -143,6 +180,12 @@ fn steps_on_the_cotangent_bundle_are_symplectic() {
         assert_symplectic(&first, &random.attitude(), &random.matrix());
         let composed = ComposedBody { mass_matrix, weight, center, skew: Dual::constant(0.1) };
         assert_symplectic(&composed, &random.attitude(), &random.matrix());
+        let collocated = CollocatedBody { inertia: mass_matrix, weight, center };
+        assert_symplectic(&collocated, &random.attitude(), &random.matrix());
+        let pendulum = CollocatedPendulum::<Dual<6>> { inertia: Dual::constant(1.2), gravity: Dual::constant(3.0) };
+        assert_symplectic(&pendulum, &random.unit::<3>(), &random.vector());
+        let charge = CollocatedCharge::<Dual<6>> { field: Dual::constant(1.5) };
+        assert_symplectic(&charge, &(random.vector::<3>() + Vector3::x() * 2.0), &random.vector());
     }
 }
 
@@ -183,7 +226,9 @@ fn steps_of_a_body_keep_the_symplectic_form_of_its_momentum() {
         let (r, pi) = (random.attitude::<3>(), random.vector::<3>());
         let GenericBody { mass_matrix, weight, center } = body::<6>(random);
         let composed = ComposedBody { mass_matrix, weight, center, skew: Dual::constant(0.1) };
+        let collocated = CollocatedBody { inertia: mass_matrix, weight, center };
         let steps = [
+            trivialised(collocated, &r, &pi),
             trivialised(GenericBody { mass_matrix, weight, center }, &r, &pi),
             trivialised(FirstOrderBody { mass_matrix, weight, center }, &r, &pi),
             trivialised(composed, &r, &pi),

@@ -44,7 +44,7 @@ pub extern "C" fn step_between(
 }
 
 modules! {
-    annotated_body centred_body compensated_top damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    annotated_body centred_body collocated_top compensated_top damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body principal_body4 promised_top quaternion_top regulator
     relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body tolerant_exact_top tolerant_top tumbling_momentum two_bodies two_pendulums
@@ -56,6 +56,7 @@ steppers! {
     step_centred_body: centred_body::CentredBody;
     step_compensated_top: compensated_top::CompensatedTop;
     step_first_order_top: first_order_top::FirstOrderTop;
+    step_collocated_top: collocated_top::CollocatedTop;
     step_exact_body: exact_body::ExactBody;
     step_exact_body4: exact_body4::ExactBody4;
     step_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid;

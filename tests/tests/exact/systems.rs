@@ -131,3 +131,4 @@ systems!(second, 2);
 systems!(fourth, 4);
 systems!(sixth, 6);
 systems!(eighth, 8);
+systems!(sixteenth, 16);

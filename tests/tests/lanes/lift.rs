@@ -1,7 +1,7 @@
 //! Numbers, vectors and matrices in another scalar.
 
 use clebsch::Scalar;
-use nalgebra::SMatrix;
+use nalgebra::{Quaternion, SMatrix};
 
 /// What can be written in another scalar.
 pub trait Lift {
@@ -20,6 +20,13 @@ impl<const R: usize, const C: usize> Lift for SMatrix<f64, R, C> {
     type In<T: Scalar> = SMatrix<T, R, C>;
     fn lift<T: Scalar>(self, number: impl Fn(f64) -> T + Copy) -> SMatrix<T, R, C> {
         self.map(number)
+    }
+}
+
+impl Lift for Quaternion<f64> {
+    type In<T: Scalar> = Quaternion<T>;
+    fn lift<T: Scalar>(self, number: impl Fn(f64) -> T + Copy) -> Quaternion<T> {
+        Quaternion { coords: self.coords.map(number) }
     }
 }
 

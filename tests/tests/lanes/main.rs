@@ -11,8 +11,8 @@ use lift::Lift;
 use nalgebra::{Matrix3, Matrix4, SVector, Vector3};
 use side_by_side::{Count, same};
 use systems::{
-    Body, Body4, CompensatedBody, ExactBody, ExactBody4, FixedBody, Flyer, Pendulum, Satellite, SixthTop, SplitTop,
-    TolerantBody, Top,
+    Body, Body4, CollocatedTop, CompensatedBody, ExactBody, ExactBody4, FixedBody, Flyer, Pendulum, Satellite,
+    SixthTop, SplitTop, TolerantBody, Top,
 };
 
 const H: f64 = 0.1;
@@ -140,6 +140,17 @@ fn exact_drifts() {
         momentum::<3>(&mut random, 1e4 / H)
     ));
     assert!(count.stepped > STATES && count.failed > 0, "{count:?}");
+}
+
+/// Some lanes need more sweeps than others, and some never settle.
+#[test]
+fn stages_of_sixteenth_order() {
+    let top = |random: &mut Random| {
+        let q = random.unit::<4>();
+        (nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]), momentum::<3>(random, 1e2 / H))
+    };
+    assert_mixed(compare!(F64x8, CollocatedTop { moments: moments(), weight: 3.0 }, H, |random| top(&mut random)));
+    assert_mixed(compare!(F32x8, CollocatedTop { moments: moments(), weight: 3.0 }, H, |random| top(&mut random)));
 }
 
 /// Motions that each lane knows, with as many parts as each needs.

@@ -120,6 +120,19 @@ pub struct SplitTop<T: Scalar> {
     pub center: Vector3<T>,
 }
 
+/// Sweeps over the stages of order 16, as many as each lane needs.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SU<2>, Q: SU<2>| Q * F,
+    lagrangian = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    potential  = |Q| self.weight * (Q * Vector3::z()).z,
+    order      = 16,
+)]
+pub struct CollocatedTop<T: Scalar> {
+    pub moments: Vector3<T>,
+    pub weight: T,
+}
+
 /// A closed form with a limit, sin θ < 1.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(

@@ -9,6 +9,7 @@ mod action;
 mod cayley;
 mod clearing;
 mod closed_form;
+mod collocation;
 mod control;
 mod discrete_lagrangian;
 mod energy;
@@ -38,6 +39,7 @@ use crate::model::{Model, Order};
 
 pub(crate) use action::generator_columns;
 pub(crate) use cayley::of_increment as cayley_coordinates;
+pub use collocation::Collocation;
 pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
@@ -100,6 +102,8 @@ pub struct Formulas<'g> {
     pub parts: usize,
     /// The drifts and kicks that make a step of higher order, where drifts are exact and there is a potential.
     pub splitting: Option<Splitting<'g>>,
+    /// Hamilton's equations, where a step collocates them.
+    pub collocation: Option<Collocation<'g>>,
     /// Whether a step is exact for lack of a potential, so that its order says nothing.
     pub is_exact: bool,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
@@ -213,10 +217,16 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     check_offers(&model, &symmetries)?;
     let splitting = exact::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && exact::drifts_exactly(&model, &symbols, &substeps);
+    let is_free = action::is_free(&model, &symbols, &generator);
+    let collocation = match is_exact {
+        true => None,
+        false => collocation::collocation(&sources(1), &energy, potential_energy, &generator, is_free)?,
+    };
     closed_form::adopt_sine(&mut symbols, &mut substeps);
-    tolerance::check(&model, &substeps)?;
+    tolerance::check(&model, &substeps, collocation.is_some())?;
     let formulas = Formulas {
         splitting,
+        collocation,
         is_exact,
         stagger,
         is_staggered,
@@ -224,7 +234,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         legendre_next,
         legendre_kick,
         listing: OnceCell::new(),
-        is_free: action::is_free(&model, &symbols, &generator),
+        is_free,
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
         inertia,
@@ -272,6 +282,7 @@ fn steered<'g>(
         substeps: Vec::new(),
         parts: 0,
         splitting: None,
+        collocation: None,
         is_exact: false,
         stagger: None,
         is_staggered: false,

@@ -61,6 +61,24 @@ impl Formula {
         )];
         vec![kick]
     }
+
+    /// Hamilton's equations, which a step of order 16 collocates.
+    pub fn of_collocation(formulas: &Formulas<'_>) -> Vec<Formula> {
+        let Some(collocation) = &formulas.collocation else { return Vec::new() };
+        let (q, xi) = (formulas.q(), formulas.letter(&formulas.symbols.algebra));
+        let p = formulas.letter(&formulas.symbols.covectors);
+        let mut slope = Formula::new("Hamilton's equations", format!("({q}′, {p}′)"), &collocation.velocity);
+        let slopes = !formulas.energy.gyroscopic.is_zero();
+        let (a, less) = if slopes { (" − A", format!(" − A·{xi}")) } else { ("", String::new()) };
+        let v = if formulas.potential_energy.is_zero() { "" } else { " + V" };
+        slope.text = vec![format!("({xi}_Q({q}), −∂_{q}(⟨{p}, {xi}_Q({q})⟩{less}{v})), {xi} = Σ⁻¹(J({q}, {p}){a})")];
+        slope.latex = vec![format!(
+            "({xi}_Q({q}),\\, -\\partial_{{{q}}}(\\langle {p}, {xi}_Q({q})\\rangle{} {v})),\\quad {xi} = \\Sigma^{{-1}}(J({q}, {p}){})",
+            if slopes { format!(" - A\\cdot {xi}") } else { String::new() },
+            if slopes { " - A" } else { "" },
+        )];
+        vec![slope]
+    }
 }
 
 impl fmt::Display for Formula {
@@ -144,6 +162,7 @@ impl<'g> Formulas<'g> {
         }
         formulas.extend(self.formula_of_stagger());
         formulas.extend(Formula::of_splitting(self));
+        formulas.extend(Formula::of_collocation(self));
         formulas.retain(|formula| formula.text.iter().any(|text| text != "0"));
         formulas
     }

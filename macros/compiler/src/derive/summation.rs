@@ -105,7 +105,8 @@ fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
 /// # Errors
 /// A step in which q or N is no sum.
 pub(super) fn check(formulas: &Formulas<'_>) -> Result<(), Diagnostics> {
-    let Some(summation) = place(&formulas.model) else { return Ok(()) };
+    // collocation adds changes to q and N whatever they are
+    let Some(summation) = place(&formulas.model).filter(|_| formulas.collocation.is_none()) else { return Ok(()) };
     let refused = |text: &str, note: &str| -> Result<(), Diagnostics> {
         let error = Diagnostic::new(summation.span, text.to_string());
         Err(error.help("leave out `summation`").note(note).into())

@@ -7,13 +7,13 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Model, Side};
 
 /// A tolerance ends an iteration, or the series of the free rotations between kicks.
-pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>]) -> Result<(), Diagnostics> {
+pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
     let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
     let solutions: Vec<Solution> =
         substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
     let turns_freely = solutions.contains(&Solution::FreeRotation);
     // without kicks d is found once, to round-off
-    if solutions.contains(&Solution::Newton) || turns_freely && model.potential.is_some() {
+    if collocates || solutions.contains(&Solution::Newton) || turns_freely && model.potential.is_some() {
         return Ok(());
     }
     let (text, note) = match turns_freely {

@@ -18,7 +18,7 @@ impl Emitter<'_, '_> {
         let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let kind = self.kind_of_free_rotation();
         let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::#kind<#scalar>,));
-        let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: #scalar,));
+        let step_size = self.needs_step_size().then(|| quote!(step_size: #scalar,));
         let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
         quote! {
@@ -32,6 +32,11 @@ impl Emitter<'_, '_> {
                 #inverse
             }
         }
+    }
+
+    /// Whether the size of a step is a constant by itself.
+    fn needs_step_size(&self) -> bool {
+        self.program.splitting.is_some() || self.program.collocation.is_some()
     }
 
     /// Whether the orientation of an equation is a constant, made of Σ.
@@ -133,7 +138,7 @@ impl Emitter<'_, '_> {
                 None => quote!(#name: #private::#kind::new(&#inertia, h)?,),
             }
         });
-        let step_size = self.program.splitting.as_ref().map(|_| quote!(step_size: h,));
+        let step_size = self.needs_step_size().then(|| quote!(step_size: h,));
         let documentation = docs::formulas(
             "Checks the parameters and computes what no step changes.",
             &[],

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clebsch_symbolic::Chart;
 
-use crate::derive::{Equation, Solution, Structure, Substep};
+use crate::derive::{Collocation, Equation, Solution, Structure, Substep};
 use crate::lower::{Program, Solve};
 use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side};
 
@@ -201,6 +201,9 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
     told
 }
 
+/// How sums are compensated.
+const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
+
 /// How a step goes and how accurate it is.
 fn scheme(program: &Program<'_>) -> String {
     let model = &program.formulas.model;
@@ -242,6 +245,9 @@ fn scheme(program: &Program<'_>) -> String {
             if program.formulas.potential_energy.is_zero() { "" } else { "; kicks between them are merged" }
         );
     }
+    if let Some(collocation) = &program.formulas.collocation {
+        return collocated(program, collocation);
+    }
     if let Some(splitting) = &program.formulas.splitting {
         text = split(model.order, splitting.has_gradient);
     }
@@ -266,7 +272,7 @@ fn scheme(program: &Program<'_>) -> String {
     let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
     text.extend(first.map(|(_, line)| line.as_str()));
     if program.formulas.is_compensated() {
-        text += "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
+        text += COMPENSATED;
     }
     text + &tolerance(program)
 }
@@ -289,6 +295,30 @@ fn tolerance(program: &Program<'_>) -> String {
         "{ends} {:e} of {x}, as asked for. F lies on its group whatever {x} is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
         tolerance.value
     )
+}
+
+/// How a step of order 16 goes.
+fn collocated(program: &Program<'_>, collocation: &Collocation<'_>) -> String {
+    let mut text = String::from(
+        "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic, and \
+         what is quadratic in (q, p) is kept, the momenta of symmetries and the orbit of q among it. A step starts from a covector p with J(q, p) = N; N⁺ − N = J(q⁺, p⁺) − J(q, p).\n",
+    );
+    if collocation.is_affine {
+        text += "The action moves the origin: J is affine in q.\n";
+    }
+    text += match &program.formulas.model.tolerance {
+        None => "Slopes are found by sweeps over all stages, 64 at most, until only rounding changes.\n".to_string(),
+        Some(tolerance) => format!(
+            "Slopes are found by sweeps over all stages, 64 at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
+             energy, momenta and the orbit drift with it.\n",
+            tolerance.value
+        ),
+    }
+    .as_str();
+    if program.formulas.is_compensated() {
+        text += COMPENSATED;
+    }
+    text
 }
 
 /// How a splitting goes.

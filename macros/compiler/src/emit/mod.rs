@@ -2,6 +2,7 @@
 
 mod call;
 mod code;
+mod collocation;
 mod composition;
 mod constants;
 mod control;
@@ -260,7 +261,11 @@ impl<'a, 'g> Emitter<'a, 'g> {
             &self.program.formulas.substeps[0].start,
             &self.program.formulas.substeps[self.program.formulas.parts - 1].end,
         );
-        start == end && first.start.is_some() && last.end.is_some() && self.program.splitting.is_none()
+        start == end
+            && first.start.is_some()
+            && last.end.is_some()
+            && self.program.splitting.is_none()
+            && self.program.collocation.is_none()
     }
 
     fn impulse_type(&self) -> TokenStream {

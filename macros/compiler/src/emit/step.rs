@@ -300,6 +300,9 @@ impl Emitter<'_, '_> {
         if let Some(splitting) = &self.program.splitting {
             return self.splitting(splitting);
         }
+        if let Some(collocation) = &self.program.collocation {
+            return self.collocated(collocation);
+        }
         let (krate, configuration, momentum, impulse) =
             (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.left_type());
         let (time, input, inline) = (self.time_parameter(), self.input_parameter(), self.inline_of_steps());
@@ -330,7 +333,9 @@ impl Emitter<'_, '_> {
 
     /// How a step is inlined: a short one always, as a call hands states through memory.
     pub(super) fn inline_of_steps(&self) -> TokenStream {
-        let is_single = self.program.formulas.parts == 1 && self.program.formulas.stages().is_none();
+        let is_single = self.program.formulas.parts == 1
+            && self.program.formulas.stages().is_none()
+            && self.program.collocation.is_none();
         let cost = self.program.steps.first().filter(|_| is_single).and_then(StepKernels::explicit_cost);
         match cost {
             Some(cost) if cost.total() <= SHORT_STEP => quote!(#[inline(always)]),

@@ -29,7 +29,7 @@ pub use cost::Cost;
 pub use grid::{Grid, Lowering};
 pub use kernel::{Code, Hoisted, Hoisting, Kernel};
 pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
-pub use stepping::{Solve, SplittingKernels, StepKernels};
+pub use stepping::{CollocationKernels, Solve, SplittingKernels, StepKernels};
 pub use variation::{EdgeKernels, VariationKernels};
 
 /// More operations than this in one expansion are refused: unrolled code of that size helps nobody.
@@ -78,6 +78,8 @@ pub struct Program<'g> {
     pub steps: Vec<StepKernels>,
     /// The kicks of a splitting, where a step is one.
     pub splitting: Option<SplittingKernels>,
+    /// Hamilton's equations, where a step collocates them.
+    pub collocation: Option<CollocationKernels>,
     /// What variations need, where they are asked for.
     pub variations: Option<VariationKernels>,
     /// What the choice of inputs needs, where there is one.
@@ -109,6 +111,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let splitting = stepping::splitting(&formulas, &mut scalars, &mut hoisted);
+    let collocation = stepping::collocation(&formulas, &mut scalars, &mut hoisted);
     let lift = stepping::cotangent_lift(&formulas, &mut scalars);
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
@@ -143,6 +146,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
             .then(|| generator(&formulas, &mut scalars)),
         cotangent_lift: lift,
         splitting,
+        collocation,
         variations,
         control,
         endpoint,

@@ -64,6 +64,13 @@ impl Program<'_> {
         kernels.extend(self.splitting.iter().flat_map(|splitting| {
             [("kick".to_string(), &splitting.kick), ("kick_gradient".to_string(), &splitting.gradient)]
         }));
+        kernels.extend(self.collocation.iter().flat_map(|collocation| {
+            [
+                ("slope".to_string(), &collocation.slope),
+                ("covector".to_string(), &collocation.lift),
+                ("whole_guess".to_string(), &collocation.guess),
+            ]
+        }));
         kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
         kernels.extend(self.kernels_of_control());
         for (index, step) in self.steps.iter().enumerate() {

@@ -56,6 +56,16 @@ pub struct SplittingKernels {
     pub gradient: Kernel,
 }
 
+/// What a step of order 16 collocates.
+pub struct CollocationKernels {
+    /// q′ and p′ for each leaf, from t, q and p.
+    pub slope: Kernel,
+    /// A covector for each leaf, from q and μ.
+    pub lift: Kernel,
+    /// The chart coordinates of the motion by the velocity of the start, to first order in h, from t, q and μ.
+    pub guess: Kernel,
+}
+
 /// The kernels of a momentum equation.
 pub struct Solve {
     /// The number of unknowns.
@@ -138,6 +148,27 @@ pub(super) fn splitting(
     Some(SplittingKernels {
         kick: stack(scalars, hoisted, &splitting.kick),
         gradient: separate(scalars, hoisted, &gradients),
+    })
+}
+
+/// Hamilton's equations, and the covector of a momentum.
+pub(super) fn collocation(
+    formulas: &Formulas<'_>,
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> Option<CollocationKernels> {
+    let collocation = formulas.collocation.as_ref()?;
+    let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
+    let h = formulas.model.step_size;
+    let entries = collocation.algebra.iter().flat_map(|xi| (0..xi.shape().rows).map(|i| xi.entry(i, 0)));
+    let guess: Vec<_> = entries
+        .enumerate()
+        .map(|(component, velocity)| slope_of_chart(formulas, component, 1) * h * velocity)
+        .collect();
+    Some(CollocationKernels {
+        guess: stack(scalars, hoisted, &guess),
+        slope: separate(scalars, hoisted, &slopes),
+        lift: separate(scalars, hoisted, &collocation.lift),
     })
 }
 
@@ -352,13 +383,21 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
             (0..count).map(row).collect()
         }
     };
-    let slope = |component: usize| {
-        let block = formulas.symbols.blocks_of(&[component])[0];
-        let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, block);
-        graph.rational(numerator, denominator * substep.parts)
-    };
     let h = formulas.model.step_size;
-    Some(velocity.into_iter().zip(components).map(|(velocity, component)| slope(component) * h * velocity).collect())
+    Some(
+        velocity
+            .into_iter()
+            .zip(components)
+            .map(|(velocity, component)| slope_of_chart(formulas, component, substep.parts) * h * velocity)
+            .collect(),
+    )
+}
+
+/// dx/dξ at the identity for a component of one of so many parts of a step.
+fn slope_of_chart<'g>(formulas: &Formulas<'g>, component: usize, parts: i64) -> Expr<'g> {
+    let block = formulas.symbols.blocks_of(&[component])[0];
+    let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, block);
+    formulas.model.graph.rational(numerator, denominator * parts)
 }
 
 /// A component of the momentum, counted through all factors.

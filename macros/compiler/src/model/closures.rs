@@ -230,7 +230,8 @@ pub(super) fn spans(declaration: &Declaration) -> Spans {
         }
         None => None,
     };
-    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), potential }
+    let order = declaration.dials.order.as_ref().map(|order| order.span);
+    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), potential, order }
 }
 
 /// A closure's body as it was written.

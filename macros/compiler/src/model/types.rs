@@ -295,6 +295,8 @@ pub struct Spans {
     pub kinetic: Written,
     /// The potential's.
     pub potential: Option<Written>,
+    /// The order's, where it is written.
+    pub order: Option<Span>,
 }
 
 /// An expression as the user wrote it.

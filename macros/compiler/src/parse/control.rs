@@ -6,7 +6,7 @@ use syn::ext::IdentExt;
 use syn::{Type, parse_quote, parse_quote_spanned};
 
 use super::keys::Keys;
-use super::{Argument, Closure, Kinetic, Pattern};
+use super::{Argument, Closure, Kinetic, Order, Pattern};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 
 /// What a choice of inputs costs, and what it is bound by.
@@ -90,16 +90,16 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics
 
 /// What is looked for by its action is a path of steps of second order: some of those of a composition run back in time.
 pub(super) fn check_order(keys: &Keys, diagnostics: &mut Diagnostics) {
-    let Some(order) = keys.dials.order.as_ref().filter(|order| order.value.stages().is_some()) else { return };
+    let is_one_step = |order: Order| matches!(order, Order::First | Order::Second);
+    let Some(order) = keys.dials.order.as_ref().filter(|order| !is_one_step(order.value)) else { return };
     let asked = [(keys.dials.emit.boundary, "emit = [boundary]"), (keys.was_given("effort"), "effort")];
     for (_, word) in asked.into_iter().filter(|(asked, _)| *asked) {
         let error =
             Diagnostic::new(order.span, format!("`{word}` is for steps of order 2, not of order {}", order.value));
-        diagnostics.push(
-            error
-                .help("write `order = 2`")
-                .note("a composed step runs back in some of its parts, where the least action is the greatest"),
-        );
+        diagnostics.push(error.help("write `order = 2`").note(match order.value {
+            Order::Sixteenth => "a step of order 16 collocates Hamilton's equations and has no discrete Lagrangian",
+            _ => "a composed step runs back in some of its parts, where the least action is the greatest",
+        }));
     }
 }
 

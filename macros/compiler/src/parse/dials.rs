@@ -63,7 +63,7 @@ pub enum Isotropy {
     Free,
 }
 
-/// The order of accuracy: where the potential is placed in a step, and of how many steps it is composed.
+/// The order of accuracy: where the potential is placed in a step, and of how many steps it is composed; or collocation.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Order {
     /// −h V(Φ_F q).
@@ -76,6 +76,8 @@ pub enum Order {
     Sixth,
     /// Seventeen steps of second order.
     Eighth,
+    /// Collocation at eight nodes.
+    Sixteenth,
 }
 
 impl Order {
@@ -87,13 +89,14 @@ impl Order {
             Order::Fourth => 4,
             Order::Sixth => 6,
             Order::Eighth => 8,
+            Order::Sixteenth => 16,
         }
     }
 
     /// Of how many steps of second order a step is composed, where it is.
     pub fn stages(self) -> Option<usize> {
         match self {
-            Order::First | Order::Second => None,
+            Order::First | Order::Second | Order::Sixteenth => None,
             Order::Fourth => Some(5),
             Order::Sixth => Some(9),
             Order::Eighth => Some(17),

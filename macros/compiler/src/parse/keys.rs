@@ -101,7 +101,8 @@ pub(super) const EMITTED: [(&str, Option<Emit>); 5] = [
 ];
 
 /// Orders by number.
-pub(super) const ORDERS: [Order; 5] = [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth];
+pub(super) const ORDERS: [Order; 6] =
+    [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
 
 /// The keys that are no closures; each has a default.
 #[derive(Clone, Default, Debug)]

@@ -156,7 +156,7 @@ fn read_order(literal: &LitInt, diagnostics: &mut Diagnostics) -> Option<Located
     if found.is_none() {
         let error = Diagnostic::new(span, format!("there is no step of order {literal}"));
         diagnostics.push(
-            error.help("write `order = 2`; 4, 6 or 8 for more digits, or 1 for the papers' step, drift then kick"),
+            error.help("write `order = 2`; 4, 6, 8 or 16 for more digits, or 1 for the papers' step, drift then kick"),
         );
     }
     found.map(|value| Located { value, span })

@@ -1,0 +1,232 @@
+//! Steps of order 16: Hamilton's equations on T*Q in the form of the Clebsch problem, to be collocated at the nodes of Gauss and Legendre.
+
+use clebsch_symbolic::{Expr, Property, Role, identity};
+
+use super::equation::{Sources, is_diagonal, is_moving};
+use super::exact::inertia_inverse;
+use super::{Energy, Symbols};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Isotropy, Kinetic, Model, Order};
+
+/// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
+///
+/// With the velocity ξ = Σ⁻¹(J − A) they are q′ = ξ_Q(q) and p′ = −∂_q(⟨p, ξ_Q(q)⟩ − A·ξ + V), ξ fixed: the extremals of the continuous Clebsch
+/// problem. Their flow keeps J where nothing acts, and the equations of the orbit of q.
+pub struct Collocation<'g> {
+    /// q′ for each leaf of the configuration.
+    pub velocity: Vec<Expr<'g>>,
+    /// p′ for each leaf.
+    pub force: Vec<Expr<'g>>,
+    /// ξ for each factor, as a function of t, q and μ.
+    pub algebra: Vec<Expr<'g>>,
+    /// A covector p for each leaf with J(q, p) = μ, as a function of q and μ.
+    pub lift: Vec<Expr<'g>>,
+    /// Whether J(0, p) is not zero: the action moves the origin.
+    pub is_affine: bool,
+}
+
+/// The scales of covectors that are tried: λ of p = λ μ_Q(q), one over the square of the length of a basis element that moves q.
+const SCALES: [(i64, i64); 9] = [(1, 1), (1, 2), (1, 4), (2, 1), (4, 1), (1, 3), (1, 6), (1, 8), (8, 1)];
+
+/// What a step of order 16 collocates; `None` where another order is asked for.
+///
+/// # Errors
+/// What such a step cannot do, at the order that asks for it.
+pub(super) fn collocation<'g>(
+    sources: &Sources<'_, 'g>,
+    energy: &Energy<'g>,
+    potential: Expr<'g>,
+    generator: &[Expr<'g>],
+    is_free: bool,
+) -> Result<Option<Collocation<'g>>, Diagnostics> {
+    let (model, symbols) = (sources.model, sources.symbols);
+    if model.order != Order::Sixteenth {
+        return Ok(None);
+    }
+    check(sources, energy, is_free)?;
+    let general: Vec<_> =
+        model.configurations.iter().enumerate().map(|(i, leaf)| (leaf.symbol, off_orbit(model, i))).collect();
+    check_linear(model, symbols, &general, generator)?;
+    let lift = lift(model, symbols, sources.momentum_map, generator)?;
+    // stages lie off the orbit of q, where what simplifies on it does not hold
+    let everywhere = |expr: &Expr<'g>| expr.substitute(&general);
+    let momentum: Vec<_> = sources.momentum_map.iter().map(everywhere).collect();
+    let slope = symbols.slope(everywhere(&energy.gyroscopic));
+    let velocities = velocities(sources, &momentum, slope);
+    let pairing = symbols.algebra.iter().zip(&momentum).map(|(xi, momentum)| xi.dot(*momentum));
+    let pairing = pairing.fold(model.graph.integer(0), |sum, part| sum + part);
+    let hamiltonian = pairing - everywhere(&energy.gyroscopic) + everywhere(&potential);
+    let moving = |expr: Expr<'g>| expr.substitute(&velocities);
+    let at_start = self::velocities(sources, &symbols.momenta, symbols.slope(energy.gyroscopic));
+    Ok(Some(Collocation {
+        algebra: at_start.into_iter().map(|(_, velocity)| velocity).collect(),
+        velocity: generator.iter().map(|velocity| moving(everywhere(velocity))).collect(),
+        force: general.iter().map(|(_, q)| moving(-hamiltonian.gradient(*q))).collect(),
+        is_affine: is_affine(model, sources.momentum_map),
+        lift,
+    }))
+}
+
+/// A leaf of the configuration that need not lie on its orbit.
+fn off_orbit<'g>(model: &Model<'g>, i: usize) -> Expr<'g> {
+    let leaf = &model.configurations[i];
+    model.graph.symbol(&leaf.name, leaf.shape, Role::Configuration(i), Property::General)
+}
+
+/// ξ = Σ⁻¹(J − A) for each factor.
+fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let (model, inertia) = (sources.model, sources.inertia);
+    let graph = model.graph;
+    let entries = momentum.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0)));
+    let free: Vec<_> = entries.enumerate().map(|(i, entry)| entry - slope.entry(i, 0)).collect();
+    let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
+        true => free.iter().enumerate().map(|(i, entry)| *entry / inertia.entry(i, i).expand()).collect(),
+        false => {
+            let inverse = inertia_inverse(graph, inertia.shape());
+            let row = |i: usize| {
+                free.iter().enumerate().fold(graph.integer(0), |sum, (j, entry)| sum + inverse.entry(i, j) * *entry)
+            };
+            (0..free.len()).map(row).collect()
+        }
+    };
+    let mut entries = velocity.into_iter();
+    let parts = sources.symbols.algebra.iter();
+    parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).collect()))).collect()
+}
+
+/// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity: J(q, p) = μ where the columns of the generator of each factor are
+/// orthogonal and of the same length.
+fn lift<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    momentum_map: &[Expr<'g>],
+    generator: &[Expr<'g>],
+) -> Result<Vec<Expr<'g>>, Diagnostics> {
+    let graph = model.graph;
+    let along = |velocities: &[Expr<'g>]| -> Vec<(Expr<'g>, Expr<'g>)> {
+        let replaced: Vec<_> = symbols.algebra.iter().copied().zip(velocities.iter().copied()).collect();
+        let covectors = generator.iter().map(|velocity| velocity.substitute(&replaced));
+        symbols.covectors.iter().copied().zip(covectors).collect()
+    };
+    let zeros: Vec<_> = symbols.algebra.iter().map(|xi| graph.zero(xi.shape())).collect();
+    let scale = |k: usize| {
+        let mut alone = zeros.clone();
+        SCALES.into_iter().map(|(n, d)| graph.rational(n, d)).find(|scale| {
+            alone[k] = *scale * momentum_map[k];
+            identity::equal(&[momentum_map[k].substitute(&along(&alone))], &[momentum_map[k]])
+        })
+    };
+    let scales: Option<Vec<_>> = (0..model.factors.len()).map(scale).collect();
+    let lifted = scales.and_then(|scales| {
+        let scaled = |parts: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            scales.iter().zip(parts).map(|(scale, part)| *scale * *part).collect()
+        };
+        let back = along(&scaled(momentum_map));
+        let returned: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&back)).collect();
+        identity::equal(&returned, momentum_map).then(|| along(&scaled(&symbols.momenta)))
+    });
+    match lifted {
+        Some(covectors) => Ok(covectors.into_iter().map(|(_, covector)| covector).collect()),
+        None => {
+            let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(graph)).collect();
+            Err(refused(
+                model,
+                &format!("`order = 16` knows no covector of a momentum for this action of `{}`", groups.join(" × ")),
+                "write `order = 8`",
+                "it knows p = λ μ_Q(q), for rotations and translations of what each factor moves by itself",
+            ))
+        }
+    }
+}
+
+/// Whether J(0, p) is not zero.
+fn is_affine<'g>(model: &Model<'g>, momentum_map: &[Expr<'g>]) -> bool {
+    let origin: Vec<_> = model.configurations.iter().map(|leaf| (leaf.symbol, model.graph.zero(leaf.shape))).collect();
+    momentum_map.iter().any(|momentum| !identity::vanishes(momentum.substitute(&origin)))
+}
+
+fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> Result<(), Diagnostics> {
+    let model = sources.model;
+    let second = "write `order = 8`";
+    if model.configurations.is_empty() {
+        return Err(refused(
+            model,
+            "`order = 16` moves a configuration, and there is none",
+            "leave out `momentum` from `emit`, or write `order = 8`",
+            "its stages are pairs (q, p)",
+        ));
+    }
+    if model.force.is_some() {
+        return Err(refused(
+            model,
+            "`order = 16` knows no forces",
+            "write `order = 2`",
+            "forces act at both ends of a step, of second order",
+        ));
+    }
+    if model.has_variations() {
+        return Err(refused(
+            model,
+            "a step of order 16 cannot be differentiated by `emit`",
+            "write `order = 8`; a struct that is generic over its scalar can be stepped with dual numbers",
+            "derivatives are derived for steps of a discrete Lagrangian and for what is composed of them",
+        ));
+    }
+    if energy.general.is_some() || is_moving(model, sources.inertia) {
+        return Err(refused(
+            model,
+            "`order = 16` needs a kinetic energy with a constant inertia",
+            second,
+            "its equations are those of ½ (J − A)·Σ⁻¹(J − A) + V, with Σ⁻¹ made once",
+        ));
+    }
+    if let Some(factor) = model.factors.iter().find(|factor| !factor.moves) {
+        let name = &factor.name;
+        return Err(refused(
+            model,
+            &format!("`order = 16` moves what a momentum is made of, and `{name}` moves nothing"),
+            second,
+            "its stages are pairs (q, p), and J(q, p) has no part for this factor",
+        ));
+    }
+    if !is_free && model.isotropy == Isotropy::Free {
+        return Err(refused(
+            model,
+            "with `isotropy = free` momenta are not those of a covector, which `order = 16` moves",
+            "write `order = 8`, or declare the whole attitude",
+            "its stages are pairs (q, p), and no p has a momentum J(q, p) about an axis that q does not show",
+        ));
+    }
+    if let Kinetic::Controls { .. } | Kinetic::Dynamics(_) = model.kinetic {
+        return Err(refused(model, "`order = 16` is for mechanics", second, "inputs move this configuration"));
+    }
+    Ok(())
+}
+
+/// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
+fn check_linear<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    general: &[(Expr<'g>, Expr<'g>)],
+    generator: &[Expr<'g>],
+) -> Result<(), Diagnostics> {
+    let directions: Vec<_> =
+        general.iter().zip(&symbols.covectors).map(|((_, q), direction)| (*q, *direction)).collect();
+    let slope = |velocity: &Expr<'g>| velocity.substitute(general).differential(&directions).expand();
+    let bends = |velocity: &Expr<'g>| general.iter().any(|(_, q)| slope(velocity).depends_on(*q));
+    match generator.iter().any(bends) {
+        false => Ok(()),
+        true => Err(refused(
+            model,
+            "`order = 16` needs an action that is linear in the configuration, or affine",
+            "write `order = 8`",
+            "collocation keeps what is quadratic in (q, p), as the momentum of a linear action is",
+        )),
+    }
+}
+
+fn refused(model: &Model<'_>, text: &str, help: &str, note: &str) -> Diagnostics {
+    // by construction: no other order is there without being written
+    let span = model.spans.order.unwrap_or_else(proc_macro2::Span::call_site);
+    Diagnostic::new(span, text.to_string()).help(help).note(note).into()
+}
