@@ -1,7 +1,7 @@
 //! Error against time, a line for each setting, the front ringed.
 
 use crate::measure::{Front, Point, by_setting};
-use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor};
+use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
 use clebsch_examples::scene::Failure;
 use std::path::Path;
 
@@ -35,7 +35,8 @@ fn curve<'a>(points: &[Point], label: &'a str) -> Curve<'a> {
         (true, 2) => BLUE,
         (true, 4) => GREEN,
         (true, 6) => ORANGE,
-        (true, _) => RED,
+        (true, 8) => RED,
+        (true, _) => TEAL,
     };
     let ringed = points.iter().map(|point| point.front != Front::Behind).collect();
     let width = if points[0].is_geometric() { 1.0 } else { 2.0 };

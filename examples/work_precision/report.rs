@@ -11,7 +11,7 @@ use std::path::Path;
 /// The error at which settings are compared in the first table.
 const COMPARED: f64 = 1e-6;
 /// The errors for which there is advice.
-const WISHED: [f64; 3] = [1e-3, COMPARED, 1e-9];
+const WISHED: [f64; 4] = [1e-3, COMPARED, 1e-9, 1e-12];
 /// The classical method that times are compared with.
 const PEER: &str = "RK4";
 

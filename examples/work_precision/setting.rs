@@ -45,6 +45,13 @@ pub struct Name {
     pub tolerance: Option<f64>,
 }
 
+impl Name {
+    /// Whether momenta and the orbit are kept by each step: by those of order 16 only where sweeps go on until they settle.
+    pub fn is_settled(&self) -> bool {
+        self.tolerance.is_none() || self.order < 16
+    }
+}
+
 impl std::fmt::Display for Name {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(&match (self.family, self.tolerance) {

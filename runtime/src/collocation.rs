@@ -88,8 +88,9 @@ impl<const H: usize> Gauss<H> {
 /// y⁺ − y of a step of the size h that starts at the time t in y = (q, p), N numbers of which the first half are those of q; S = 2H stages, of
 /// which the second half are mirrored.
 ///
-/// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change the step by less than `tolerance`, relative to q and to p, or where
-/// rounding is all that changes.
+/// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change the step by less than
+/// `tolerance`, relative to q and to p, or where rounding is all that changes: ended one sweep earlier, by the rate of the last two, they leave energies that drift
+/// ten times as fast.
 ///
 /// # Errors
 /// [`Error::NotFinite`] where a slope is not, [`Error::NotConverged`] where sweeps do not contract: the step is too long. With several lanes these
@@ -110,24 +111,22 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     table.guess(&guess, &mut stages);
     let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
     table.sweep((t, h), &stages, open, &mut slopes, &slope);
-    let mut before = None;
-    let mut left = T::zero();
+    let mut before = T::zero();
     let mut count = 0;
     while count < SWEEPS && open.any() {
         table.stages(start, &slopes, &mut stages);
         let changes = table.sweep((t, h), &stages, open, &mut slopes, &slope);
         count += 1;
         let sizes = sizes(h, start, &slopes);
-        let within = |bound: T| changes[0].at_most(bound * sizes[0]) & changes[1].at_most(bound * sizes[1]);
         let change = changes[0] / positive(sizes[0]) + changes[1] / positive(sizes[1]);
-        let stays = before.map_or(T::Mask::nowhere(), |before: T| before.at_most(change));
+        let stays = if count == 1 { T::Mask::nowhere() } else { before.at_most(change) };
         open = open & change.finite();
-        let arrived = open & (within(tolerance * tolerance) | stays & within(rounding()));
+        let arrived = open & (change.at_most(tolerance * tolerance) | stays & change.at_most(rounding()));
         (solved, open) = (solved | arrived, open & !arrived);
-        (before, left) = (Some(change), change);
+        before = change;
     }
     if !solved.any() {
-        return Err(match (count < SWEEPS, left.sqrt().to_f64()) {
+        return Err(match (count < SWEEPS, before.sqrt().to_f64()) {
             (true, _) => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
             (false, residual) => Error::NotConverged { residual, iterations: count },
         });

@@ -16,4 +16,6 @@ pub use interval::Interval;
 pub use panel::{Panel, Series};
 pub use plane::{Arrow, Path, Plane};
 pub use plotters::style::RGBColor;
-pub use theme::{BLUE, GREEN, INK, ORANGE, PIECES, PURPLE, RED, along, caption, colour_bar, columns, pieces, rows};
+pub use theme::{
+    BLUE, GREEN, INK, ORANGE, PIECES, PURPLE, RED, TEAL, along, caption, colour_bar, columns, pieces, rows,
+};

@@ -17,6 +17,8 @@ pub const GREEN: RGBColor = RGBColor(45, 134, 72);
 /// Curves.
 pub const RED: RGBColor = RGBColor(190, 44, 52);
 /// Curves.
+pub const TEAL: RGBColor = RGBColor(0, 128, 138);
+/// Curves.
 pub const PURPLE: RGBColor = RGBColor(118, 78, 160);
 
 pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);

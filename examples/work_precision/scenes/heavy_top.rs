@@ -101,12 +101,33 @@ tops! {
         cost = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
         potential = |Q| self.weight * (Q * self.center).z
     };
+    collocated, "collocation", tilted, pack, [sixteenth 16], {
+        action = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |R| self.weight * (R * self.center).z
+    };
+    quaternion_collocated, "quaternion collocation", tilted_quaternion, pack_quaternion, [sixteenth 16], {
+        action = |F: SU<2>, Q: SU<2>| Q * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |Q| self.weight * (Q * self.center).z
+    };
     quaternion, "quaternion cayley", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
         action = |F: SU<2>, Q: SU<2>| Q * F,
         lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
         potential = |Q| self.weight * (Q * self.center).z,
         discretization = cayley
     };
+}
+
+/// Steps of order 16 whose sweeps end early.
+#[rustfmt::skip]
+mod loose {
+    tops!(@one sixteenth, 16, {
+        action = |F: SU<2>, Q: SU<2>| Q * F,
+        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+        potential = |Q| self.weight * (Q * self.center).z,
+        tolerance = 1e-10
+    });
 }
 
 /// Exact drifts whose series end early.
@@ -167,6 +188,9 @@ pub fn scene() -> Scene<12> {
     };
     let mut settings = declarations(inertia, weight, center);
     settings.extend(tolerant(inertia, weight, center));
+    let loose = loose::sixteenth::Top { inertia, weight, center };
+    settings
+        .push(declared("quaternion collocation", loose, (tilted_quaternion(), momentum), pack_quaternion).to(1e-10));
     let first = exact::first::Top { inertia, weight, center };
     settings.push(declared("exact synchronized", first, (tilted(), momentum), pack).synchronized());
     let start = compact(&tilted_quaternion(), &momentum);

@@ -70,6 +70,15 @@ pendulums! {
     };
 }
 
+#[rustfmt::skip]
+mod collocated {
+    pendulums!(@one sixteenth, 16, {
+        action = |F: SO<3>, q: Unit<Vector3>| F * q,
+        lagrangian = |omega| self.mass * omega.norm_squared() / 2,
+        potential = |q| self.mass * self.gravity * q.z
+    });
+}
+
 /// g = 1.
 pub fn scene() -> Scene<6> {
     let gravity = black_box(1.0);
@@ -78,6 +87,8 @@ pub fn scene() -> Scene<6> {
         pack(&n.cross(&q), &(Vector3::new(-q.y, q.x, 0.0) * gravity))
     };
     let mut settings = declarations(gravity);
+    let collocated = collocated::sixteenth::Pendulum { mass: 1.0, gravity };
+    settings.push(declared("collocation", collocated, (POSITION, MOMENTUM), pack));
     let first = exponential::first::Pendulum { mass: 1.0, gravity };
     settings.push(declared("exponential synchronized", first, (POSITION, MOMENTUM), pack).synchronized());
     settings.extend(Equation { field, start: pack(&POSITION, &MOMENTUM), flat: |y| *y }.settings());
