@@ -33,6 +33,7 @@ pub struct Found {
     pub couples: bool,
     pub iterates: bool,
     pub compensated: bool,
+    pub collocated: bool,
     pub specialised: bool,
     pub deviation: f64,
     pub energy: f64,
@@ -50,9 +51,10 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
         let graph = Graph::new();
         let program = compile(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
         let found = compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))?;
+        let collocated = collocated(problem, seed)?;
         match (seed / 2).is_multiple_of(2) && !found.couples {
-            true => Ok(Found { compensated: compensated(problem, seed)?, ..found }),
-            false => Ok(found),
+            true => Ok(Found { compensated: compensated(problem, seed)?, collocated, ..found }),
+            false => Ok(Found { collocated, ..found }),
         }
     };
     let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
@@ -120,6 +122,51 @@ fn compensated(problem: &Declared, seed: u64) -> Result<bool, String> {
     compiled(&problem, &program, &mut Random::new(seed ^ 0x5eed)).map_err(|error| format!("compensated: {error}"))?;
     increments(problem, &mut Random::new(seed ^ 0x5eed))?;
     Ok(true)
+}
+
+/// The same problem in steps of order 16, where there are such: the slopes that they collocate are those of a short step of the oracle.
+fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
+    if problem.order != 2 {
+        return Ok(false);
+    }
+    let mut problem = problem.clone();
+    problem.dials.push("order = 16");
+    let tokens: TokenStream = problem.text().parse().map_err(|error| format!("no tokens: {error}"))?;
+    let graph = Graph::new();
+    let program = match compile(&graph, tokens) {
+        Ok(program) => program,
+        Err(errors) if errors.to_string().contains("`order = 16`") => return Ok(false),
+        Err(errors) => return Err(format!("refused in steps of order 16:\n{errors}")),
+    };
+    let (state, h) = (start(&problem, &mut Random::new(seed ^ 0x5eed)), 2.0_f64.powi(-30));
+    let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
+    let Some((found, missed)) = Stepper::new(&program, &fields, h).slopes(0.0, &seen(&problem, &state)) else {
+        return Ok(false);
+    };
+    let (size, first) = (DoubleDouble::of(h), state.lift::<DoubleDouble>());
+    let last = match program.formulas.parts == 2 {
+        true => composed_trajectory(&problem, size, &first, 1),
+        false => trajectory(&problem, size, &first, 1),
+    };
+    let last = last.map_err(|lost| format!("the oracle has no short step: {lost:?}"))?.remove(1);
+    let per_time = DoubleDouble::of(1.0 / h);
+    let slope = State {
+        q: last.q.iter().zip(&first.q).map(|(last, first)| (last - first).map(|x| x * per_time)).collect(),
+        n: last.n.iter().zip(&first.n).map(|(&last, &first)| (last - first) * per_time).collect(),
+    };
+    let exact = seen(&problem, &rounded(&slope));
+    let (a, b) = ([found.q.concat(), found.mu].concat(), [exact.q.concat(), exact.mu].concat());
+    let scale = b.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+    let off = a
+        .iter()
+        .zip(&b)
+        .fold(0.0, |most: f64, (a, b)| if (a - b).is_nan() { f64::NAN } else { most.max((a - b).abs()) });
+    match missed < 1e-13 && off < 1e-7 * scale {
+        true => Ok(true),
+        false => Err(format!(
+            "slopes are {off:.1e} from those of the oracle, and the covector's momentum {missed:.1e} from N"
+        )),
+    }
 }
 
 /// A short step without the potential, its increments beside those of the oracle.

@@ -79,6 +79,7 @@ fn integrates(seeds: impl Iterator<Item = u64>) {
             count(&|one| !one.iterates),
             count(&|one| one.specialised),
             count(&|one| one.compensated),
+            count(&|one| one.collocated),
         ];
         assert!(kinds.iter().all(|&count| count > 2), "the problems are too much alike: {kinds:?}");
     }

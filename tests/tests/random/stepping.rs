@@ -135,6 +135,35 @@ impl<'a, 'g> Stepper<'a, 'g> {
         Ok(Seen { q, mu })
     }
 
+    /// (q′, N′) by Hamilton's equations at a covector of N, and by how much the momentum of that covector misses N.
+    pub fn slopes(&mut self, t: f64, state: &Seen) -> Option<(Seen, f64)> {
+        let kernels = self.program.collocation.as_ref()?;
+        self.place(t, state);
+        let p = self.run(&kernels.lift);
+        let found = self.momentum_map(&state.q, &p);
+        let missed = found.iter().zip(&state.mu).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        self.momentum_map(&state.q, &p);
+        let slopes = self.run(&kernels.slope);
+        let (q, slope) = slopes.split_at(state.q.len());
+        let origin: Vec<Vec<f64>> = state.q.iter().map(|leaf| vec![0.0; leaf.len()]).collect();
+        let [along, at_origin, pushed] =
+            [self.momentum_map(q, &p), self.momentum_map(&origin, &p), self.momentum_map(&state.q, slope)];
+        let mu = along.iter().zip(&at_origin).zip(&pushed).map(|((along, origin), pushed)| along - origin + pushed);
+        Some((Seen { q: q.to_vec(), mu: mu.collect() }, missed))
+    }
+
+    /// J(q, p), which leaves q and p in their places.
+    fn momentum_map(&mut self, q: &[Vec<f64>], p: &[Vec<f64>]) -> Vec<f64> {
+        let formulas = &self.program.formulas;
+        for (leaf, entries) in formulas.model.configurations.iter().zip(q) {
+            self.values.set(leaf.symbol, entries);
+        }
+        for (symbol, entries) in formulas.symbols.covectors.iter().zip(p) {
+            self.values.set(*symbol, entries);
+        }
+        self.run(&self.program.momentum_map).concat()
+    }
+
     fn kick(&mut self, kernel: Option<&Kernel>, mu: &mut [f64]) {
         let Some(kernel) = kernel else { return };
         let kick = self.run(kernel).remove(0);
