@@ -14,12 +14,13 @@ struct Factored {
     waiting: Vec<Id>,
 }
 
-/// Takes common factors out of all sums that the outputs are made of.
+/// Takes common factors out of all sums that the outputs are made of; of some of them other terms are known than those they were made with.
 pub(super) fn factored(
     operations: &mut Operations,
     outputs: impl Iterator<Item = Id>,
+    sums: Table<Id, Vec<(Rational, Id)>>,
 ) -> Table<Id, Vec<(Rational, Id)>> {
-    let mut factored = Factored { uses: vec![0; operations.len()], ..Factored::default() };
+    let mut factored = Factored { uses: vec![0; operations.len()], sums, ..Factored::default() };
     outputs.for_each(|output| factored.take(operations, output));
     while let Some(sum) = factored.waiting.pop() {
         factored.sum(operations, sum);
@@ -27,9 +28,18 @@ pub(super) fn factored(
     factored.sums
 }
 
+/// What is taken out of terms.
+#[derive(Clone)]
+enum Factor {
+    /// A factor of products.
+    Of(Id),
+    /// The magnitude of coefficients.
+    Number(Rational),
+}
+
 /// A factor that is taken out of the terms at these positions.
 struct Choice {
-    factor: Id,
+    factor: Factor,
     positions: Vec<usize>,
     /// The multiplications that this saves.
     saved: isize,
@@ -97,8 +107,9 @@ impl Factored {
         let choices = candidates.map(|(&factor, positions)| {
             let saved: isize =
                 positions.iter().map(|&position| self.saved(operations, terms[position].1, factor)).sum();
-            Choice { factor, positions: positions.clone(), saved: saved - 1 }
+            Choice { factor: Factor::Of(factor), positions: positions.clone(), saved: saved - 1 }
         });
+        let choices = choices.chain(numbers(terms));
         // the first of equals
         choices.filter(|choice| choice.saved > 0).reduce(|best, next| if next.saved > best.saved { next } else { best })
     }
@@ -132,10 +143,13 @@ impl Factored {
         let (first, sign) = (taken[0].0, integer(if taken[0].1.0.is_negative() { -1 } else { 1 }));
         taken.iter().for_each(|(_, (_, product))| self.release(operations, *product));
         let mut inner = Vec::with_capacity(taken.len());
-        for (_, (coefficient, product)) in taken {
-            let remaining = self.divided(operations, product, choice.factor);
+        for (_, (coefficient, term)) in taken {
             // sums that differ in sign are one
-            self.append(operations, &mut inner, (coefficient * &sign, remaining));
+            let left = match &choice.factor {
+                Factor::Of(factor) => (coefficient * &sign, self.divided(operations, term, *factor)),
+                Factor::Number(number) => (coefficient * &sign / number, term),
+            };
+            self.append(operations, &mut inner, left);
         }
         inner.retain(|(coefficient, _)| !coefficient.is_zero());
         let sum = match inner.as_slice() {
@@ -144,10 +158,13 @@ impl Factored {
             [(coefficient, only)] if *coefficient == integer(1) => *only,
             _ => self.made(operations, Operation::Sum(integer(0), inner)),
         };
-        let product = self.product(operations, choice.factor, sum);
-        self.take(operations, product);
+        let (weight, term) = match &choice.factor {
+            Factor::Of(factor) => (sign, self.product(operations, *factor, sum)),
+            Factor::Number(number) => (sign * number, sum),
+        };
+        self.take(operations, term);
         let place = rest.iter().position(|(position, _)| *position > first).unwrap_or(rest.len());
-        rest.insert(place, (first, (sign, product)));
+        rest.insert(place, (first, (weight, term)));
         rest.into_iter().map(|(_, term)| term).collect()
     }
 
@@ -186,6 +203,26 @@ impl Factored {
         self.uses.resize(operations.len(), 0);
         id
     }
+}
+
+/// The magnitudes of coefficients that several terms have: one multiplication serves them all.
+fn numbers(terms: &[(Rational, Id)]) -> Vec<Choice> {
+    let mut choices: Vec<Choice> = Vec::new();
+    for (position, (coefficient, _)) in terms.iter().enumerate() {
+        let magnitude = if coefficient.is_negative() { -coefficient.clone() } else { coefficient.clone() };
+        if magnitude == integer(1) {
+            continue;
+        }
+        let same = |choice: &&mut Choice| matches!(&choice.factor, Factor::Number(number) if *number == magnitude);
+        match choices.iter_mut().find(same) {
+            Some(choice) => {
+                choice.positions.push(position);
+                choice.saved += 1;
+            }
+            None => choices.push(Choice { factor: Factor::Number(magnitude), positions: vec![position], saved: 0 }),
+        }
+    }
+    choices
 }
 
 /// Adds a term to a sum.
@@ -262,6 +299,18 @@ mod tests {
         let first = sum(&mut scalars, &[(1, &[a, b]), (-1, &[c, d])]);
         let second = sum(&mut scalars, &[(1, &[a, e]), (1, &[c, f])]);
         let whole = sum(&mut scalars, &[(1, &[k, first]), (1, &[k, second])]);
+        assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
+    }
+
+    /// (a b + a c)/2 − (a d − b c)/2 = (a (b + c − d) + b c)/2.
+    #[test]
+    fn numbers_are_factors() {
+        let mut scalars = Scalars::default();
+        let [a, b, c, d] = inputs(&mut scalars);
+        let first = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
+        let second = sum(&mut scalars, &[(1, &[a, d]), (-1, &[b, c])]);
+        let half = clebsch_symbolic::rational(1, 2);
+        let whole = scalars.sum(integer(0), [(first, half.clone()), (second, -half)]);
         assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
     }
 

@@ -150,8 +150,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting:
         .collect();
     builder.share_pairs(&outputs);
     if !builder.scalars.keeps_sums {
-        builder.factor_sums(&outputs);
-        builder.share_sums(&outputs);
+        builder.shorten(&outputs);
     }
     builder.code(&outputs)
 }
@@ -416,18 +415,74 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// Looks for fewer operations: by common factors and by sums within sums, and where numbers can be separated, with them and without.
+    fn shorten(&mut self, outputs: &[(Shape, Vec<Id>)]) {
+        let separated = self.separate_numbers(outputs);
+        let products = (!separated.is_empty()).then(|| self.products.clone());
+        self.factor_sums(outputs);
+        self.share_sums(outputs);
+        let Some(products) = products else { return };
+        let before = self.count_operations(outputs);
+        let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
+        self.factor_sums(outputs);
+        self.share_sums(outputs);
+        if self.count_operations(outputs) >= before {
+            (self.sums, self.products) = plain;
+        }
+    }
+
+    /// Writes a x with a taken out as n b, which stands nowhere else, as n times b x, where that is at hand: what other sums have of b x is then
+    /// found in this one.
+    fn separate_numbers(&self, outputs: &[(Shape, Vec<Id>)]) -> Table<Id, Vec<(Rational, Id)>> {
+        let mut sums = Table::default();
+        let used = self.used(outputs);
+        let mut uses = vec![0_usize; self.operations.len()];
+        used.iter()
+            .for_each(|&id| self.operations.value(id).operands().into_iter().for_each(|operand| uses[operand] += 1));
+        entries(outputs).for_each(|entry| uses[entry] += 1);
+        let is_used = |id: Id| uses[id] > 0;
+        for &id in &used {
+            let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
+            let separated: Vec<_> = terms
+                .iter()
+                .map(|(coefficient, term)| {
+                    let found = self.separated(*term).filter(|(_, product)| uses[*term] == 1 && is_used(*product));
+                    found.map_or((coefficient.clone(), *term), |(number, product)| (coefficient * &number, product))
+                })
+                .collect();
+            if separated != *terms {
+                sums.insert(id, separated);
+            }
+        }
+        sums
+    }
+
+    /// A product of something that is taken out as a number times the product without the number, where that one is known.
+    fn separated(&self, product: Id) -> Option<(Rational, Id)> {
+        let Operation::Product(factors) = self.operations.value(product) else { return None };
+        factors.iter().enumerate().find_map(|(position, &factor)| {
+            let Operation::Leaf(scalar) = self.operations.value(factor) else { return None };
+            let (number, Some(rest)) = self.scalars.factor(*scalar) else { return None };
+            let plain = self.operations.position(&Operation::Leaf(rest)).filter(|_| number != integer(1))?;
+            let mut factors = factors.clone();
+            factors[position] = plain;
+            factors.sort_unstable();
+            Some((number, self.operations.position(&Operation::Product(factors))?))
+        })
+    }
+
     /// Takes common factors out of sums, where that leaves fewer operations once pairs are shared again.
     fn factor_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
         let before = self.count_operations(outputs);
-        let sums = factors::factored(&mut self.operations, entries(outputs));
-        if sums.is_empty() {
+        let sums = factors::factored(&mut self.operations, entries(outputs), self.sums.clone());
+        if sums.iter().all(|(id, terms)| self.sums.get(id) == Some(terms)) {
             return;
         }
         let products = std::mem::take(&mut self.products);
-        self.sums = sums;
+        let plain = std::mem::replace(&mut self.sums, sums);
         self.share_pairs(outputs);
         if self.count_operations(outputs) >= before {
-            (self.sums, self.products) = (Table::default(), products);
+            (self.sums, self.products) = (plain, products);
         }
     }
 

@@ -12,7 +12,7 @@ type Id = usize;
 type Pair = (Id, Id);
 
 /// Products and the pairs of their factors.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Pairs {
     products: Table<Id, Vec<Id>>,
     uses: Table<Pair, Uses>,
@@ -21,7 +21,7 @@ pub struct Pairs {
 }
 
 /// Where a pair stands.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Uses {
     /// The number of products with it.
     all: usize,

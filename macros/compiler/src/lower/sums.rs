@@ -1,6 +1,6 @@
 //! Sums within sums.
 
-use clebsch_symbolic::{Rational, Table};
+use clebsch_symbolic::{Rational, Table, Zero, integer};
 
 /// The index of an operation of a kernel.
 type Id = usize;
@@ -8,53 +8,82 @@ type Id = usize;
 /// A sum: its index, whether it has no constant, and its terms.
 type Sum = (Id, bool, Vec<(Rational, Id)>);
 
-/// The terms of those sums that hold the whole of another one, or of its negative, with that one as a term.
-pub(super) fn shared(sums: Vec<Sum>) -> Table<Id, Vec<(Rational, Id)>> {
+/// The terms of those sums that hold all terms of another one, with that one or its negative in their place and what is left of them, where that
+/// is less work: 1 − 2a − b − c is 1 + d − a with d = −a − b − c. What then stands in a sum by name may stand in another one beside others.
+pub(super) fn shared(mut sums: Vec<Sum>) -> Table<Id, Vec<(Rational, Id)>> {
+    let mut shared = Table::default();
+    loop {
+        let found = shortest(&sums);
+        if found.is_empty() {
+            return shared;
+        }
+        for (position, terms) in found.iter() {
+            sums[*position].2.clone_from(terms);
+            shared.insert(sums[*position].0, terms.clone());
+        }
+    }
+}
+
+/// Of those sums, by position, in which another one can stand: the terms that are the least work.
+fn shortest(sums: &[Sum]) -> Table<usize, Vec<(Rational, Id)>> {
     let mut holders: Table<Id, Vec<usize>> = Table::default();
     for (position, (_, _, terms)) in sums.iter().enumerate() {
         for (_, term) in terms {
             holders.entry(*term).push(position);
         }
     }
-    // the longest first: what is left of a sum may hold a shorter one
-    let mut parts: Vec<usize> = (0..sums.len()).filter(|&position| sums[position].1).collect();
-    parts.sort_by_key(|&position| std::cmp::Reverse(sums[position].2.len()));
-    let mut shared: Table<Id, Vec<(Rational, Id)>> = Table::default();
+    // of equals the shortest: what others are made of as well
+    let is_part = |position: &usize| sums[*position].1 && sums[*position].2.len() > 1;
+    let mut parts: Vec<usize> = (0..sums.len()).filter(is_part).collect();
+    parts.sort_by_key(|&position| sums[position].2.len());
+    let mut found: Table<usize, Vec<(Rational, Id)>> = Table::default();
     for part in parts {
         let (name, _, terms) = &sums[part];
         // what holds all terms holds the rarest
         let held = terms.iter().filter_map(|(_, term)| holders.get(term)).min_by_key(|held| held.len());
-        for &whole in held.into_iter().flatten() {
-            let (id, has_no_constant, whole) = &sums[whole];
-            // of a sum and its negative, the first gives the other
-            if *has_no_constant && whole.len() == terms.len() && id <= name {
-                continue;
-            }
-            let current = shared.get(id).unwrap_or(whole);
-            if let Some(replaced) = replaced(current, terms, *name) {
-                shared.insert(*id, replaced);
+        for &position in held.into_iter().flatten() {
+            let (id, has_no_constant, whole) = &sums[position];
+            // a longer one has a shorter one in it, and of two with the same terms the one that is less work, or the first, gives the other:
+            // no two have each other
+            let comes_after = whole.len() > terms.len()
+                || whole.len() == terms.len() && (!has_no_constant || (work(whole), id) > (work(terms), name));
+            if comes_after
+                && let Some(replaced) = replaced(whole, terms, *name)
+                && found.get(&position).is_none_or(|best| work(&replaced) < work(best))
+            {
+                found.insert(position, replaced);
             }
         }
     }
-    shared
+    found
 }
 
-/// A sum with ±1 times a part of it by name; `None` where it does not hold the part.
+/// A sum with ±1 times a part of it by name; `None` where it does not hold the terms of the part, or where that saves nothing.
 fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Option<Vec<(Rational, Id)>> {
-    if whole.len() < part.len() {
+    if whole.iter().any(|(_, term)| *term == name) {
         return None;
     }
-    let coefficient = |wanted: Id| whole.iter().find(|(_, term)| *term == wanted).map(|(coefficient, _)| coefficient);
-    let sign = clebsch_symbolic::integer(if *coefficient(part[0].1)? == part[0].0 { 1 } else { -1 });
-    let holds =
-        |(weight, term): &(Rational, Id)| coefficient(*term).is_some_and(|c| *c == weight.clone() * sign.clone());
-    if !part.iter().all(holds) {
+    let weight_in = |terms: &[(Rational, Id)], wanted: Id| {
+        // a term that stands in it twice is left alone
+        let mut found = terms.iter().filter(|(_, term)| *term == wanted).map(|(weight, _)| weight.clone());
+        found.next().filter(|_| found.next().is_none())
+    };
+    let sign = integer(if weight_in(whole, part[0].1)?.is_negative() == part[0].0.is_negative() { 1 } else { -1 });
+    if !part.iter().all(|(_, term)| weight_in(whole, *term).is_some()) {
         return None;
     }
-    let rest: Vec<_> = whole.iter().filter(|(_, term)| !part.iter().any(|(_, other)| other == term)).cloned().collect();
-    // a term that stands in it twice is left alone
-    let is_whole = rest.len() + part.len() == whole.len();
-    is_whole.then(|| rest.into_iter().chain([(sign, name)]).collect())
+    let left = whole.iter().map(|(weight, term)| match weight_in(part, *term) {
+        Some(taken) => (weight.clone() - taken * &sign, *term),
+        None => (weight.clone(), *term),
+    });
+    let left: Vec<_> = left.filter(|(weight, _)| !weight.is_zero()).chain([(sign.clone(), name)]).collect();
+    (work(&left) < work(whole)).then_some(left)
+}
+
+/// The additions and multiplications of a sum without a constant.
+fn work(terms: &[(Rational, Id)]) -> usize {
+    let scaled = terms.iter().filter(|(weight, _)| *weight != integer(1) && *weight != integer(-1)).count();
+    terms.len() - 1 + scaled
 }
 
 #[cfg(test)]
@@ -78,6 +107,17 @@ mod tests {
     fn of_a_sum_and_its_negative_one_gives_the_other() {
         let shared = shared(vec![(10, true, terms(&[1, 2])), (11, true, terms(&[-1, -2]))]);
         assert_eq!((shared.get(&10), shared.get(&11)), (None, Some(&terms(&[-10]))));
+    }
+
+    /// 4 − 2 a − b − c − d − e with f = −a − b − c and g = −a − d − e is 4 + f + g.
+    #[test]
+    fn what_is_left_of_a_term_may_belong_to_another_sum() {
+        let whole = [(-2, 1), (-1, 2), (-1, 3), (-1, 4), (-1, 5)];
+        let whole: Vec<(Rational, Id)> = whole.map(|(weight, term)| (integer(weight), term)).to_vec();
+        let shared =
+            shared(vec![(10, true, terms(&[-1, -2, -3])), (11, true, terms(&[-1, -4, -5])), (12, false, whole)]);
+        assert_eq!(shared.get(&12), Some(&terms(&[10, 11])));
+        assert_eq!((shared.get(&10), shared.get(&11)), (None, None));
     }
 
     #[test]
