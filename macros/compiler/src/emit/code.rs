@@ -272,13 +272,15 @@ impl Scope<'_, '_> {
                 (_, true) => operator(tokens, '-'),
                 (false, false) => operator(tokens, '+'),
             }
-            is_first = false;
             let magnitude = coefficient.abs();
             if magnitude != integer(1) {
                 tokens.extend(self.number(&magnitude));
                 operator(tokens, '*');
             }
-            self.write(tokens, term, true);
+            // (a + b) + c is a + b + c
+            let leads = is_first && *coefficient == integer(1) && matches!(term, Code::Sum(..));
+            self.write(tokens, term, !leads);
+            is_first = false;
         }
     }
 

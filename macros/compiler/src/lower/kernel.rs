@@ -2,11 +2,11 @@
 
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
 
-use super::factors;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
 use super::sums;
 use super::{Input, Node, Rate, Scalar, Scalars};
+use super::{balance, factors};
 
 /// Straight-line code of one output entry or shared term.
 #[derive(Clone, PartialEq, Debug)]
@@ -79,9 +79,9 @@ impl Code {
     /// The t of 1 + √(1 − t).
     fn sine_squared(&self) -> Option<Code> {
         let one = integer(1);
-        let one_and = |code: &Code| match code {
-            Code::Sum(constant, terms) if *constant == one => Some(terms.clone()),
-            _ => None,
+        let one_and = |code: &Code| {
+            let (constant, terms) = code.summands()?;
+            (constant == one).then_some(terms)
         };
         let [(coefficient, Code::Root(square, (1, 2)))] = &one_and(self)?[..] else { return None };
         let mut terms = one_and(square).filter(|_| *coefficient == one)?;
@@ -90,6 +90,22 @@ impl Code {
             [(coefficient, term)] if *coefficient == one => Some(term.clone()),
             _ => Some(Code::Sum(integer(0), terms)),
         }
+    }
+
+    /// The constant and the terms of a sum, of sums within it too.
+    fn summands(&self) -> Option<(Rational, Vec<(Rational, Code)>)> {
+        let Code::Sum(constant, terms) = self else { return None };
+        let (mut total, mut all) = (constant.clone(), Vec::new());
+        for (coefficient, term) in terms {
+            match term.summands().filter(|_| *coefficient == integer(1) || *coefficient == integer(-1)) {
+                Some((constant, inner)) => {
+                    total += constant * coefficient;
+                    all.extend(inner.into_iter().map(|(weight, term)| (weight * coefficient, term)));
+                }
+                None => all.push((coefficient.clone(), term.clone())),
+            }
+        }
+        Some((total, all))
     }
 
     fn divisor(&self) -> Option<&Code> {
@@ -142,8 +158,8 @@ pub enum Hoisting<'a> {
 /// Makes a kernel of grids of outputs.
 pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
     let (operations, products) = (Interner::default(), Pairs::default());
-    let (sums, known) = (Table::default(), Table::default());
-    let mut builder = Builder { scalars, hoisting, operations, products, sums, known };
+    let (sums, known, delays) = (Table::default(), Table::default(), Vec::new());
+    let mut builder = Builder { scalars, hoisting, operations, products, sums, known, delays };
     let outputs: Vec<(Shape, Vec<Id>)> = outputs
         .iter()
         .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
@@ -163,6 +179,14 @@ fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
 const LONGEST_EXPRESSION: usize = 256;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
+/// The additions and multiplications that a processor begins in a cycle, about.
+const SIDE_BY_SIDE: usize = 3;
+/// The cycles of a division,
+const DIVISION: u32 = 13;
+/// of a root,
+const ROOT: u32 = 18;
+/// and of an elementary function, about.
+const CALL: u32 = 40;
 
 /// The index of an operation of a kernel.
 pub(super) type Id = usize;
@@ -200,6 +224,12 @@ impl Operation {
     }
 }
 
+/// When a term of a sum is there.
+fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)) -> u32 {
+    let is_unit = *coefficient == integer(1) || *coefficient == integer(-1);
+    delays[*term] + if is_unit { 0 } else { balance::STEP }
+}
+
 struct Builder<'a, 'b> {
     scalars: &'a mut Scalars,
     hoisting: Hoisting<'b>,
@@ -209,6 +239,8 @@ struct Builder<'a, 'b> {
     /// The terms of sums once sums within them are shared, where there are such.
     sums: Table<Id, Vec<(Rational, Id)>>,
     known: Table<Scalar, Id>,
+    /// When each operation is done, once code is made.
+    delays: Vec<u32>,
 }
 
 impl Builder<'_, '_> {
@@ -510,7 +542,13 @@ impl Builder<'_, '_> {
             }
             _ => None,
         });
-        for (sum, terms) in sums::shared(found.collect()).iter() {
+        // where the longest chain of operations takes longer than all of them side by side, no sum may wait longer than before
+        let delays = self.delays(outputs);
+        let longest = entries(outputs).map(|entry| delays[entry]).max().unwrap_or(0);
+        let waits = self.count_operations(outputs) < SIDE_BY_SIDE * longest as usize;
+        let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
+        let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
+        for (sum, terms) in shared.iter() {
             self.sums.insert(*sum, terms.clone());
         }
     }
@@ -548,6 +586,7 @@ impl Builder<'_, '_> {
         let mut locals = Vec::new();
         let mut names: Table<Id, usize> = Table::default();
         let mut sizes = vec![0; self.operations.len()];
+        self.delays = self.delays_in(&order);
         for id in order {
             let inner: usize = self
                 .operands(id)
@@ -569,6 +608,36 @@ impl Builder<'_, '_> {
             grids.push((*shape, entries.iter().map(|&entry| self.reference(entry, &names)).collect()));
         }
         Kernel { locals, outputs: grids }
+    }
+
+    /// When each operation is done, in cycles after the arguments are there, as common processors take them.
+    fn delays(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<u32> {
+        let (mut uses, mut order) = (vec![0; self.operations.len()], Vec::new());
+        entries(outputs).for_each(|entry| self.count(entry, &mut uses, &mut order));
+        self.delays_in(&order)
+    }
+
+    /// The same of operations that stand behind their operands.
+    fn delays_in(&self, order: &[Id]) -> Vec<u32> {
+        let mut delays = vec![0; self.operations.len()];
+        order.iter().for_each(|&id| delays[id] = self.delay(id, &delays));
+        delays
+    }
+
+    fn delay(&self, id: Id, delays: &[u32]) -> u32 {
+        let latest = || self.operands(id).into_iter().map(|operand| delays[operand]).max().unwrap_or(0);
+        match self.operations.value(id) {
+            Operation::Leaf(_) => 0,
+            Operation::Sum(constant, terms) => {
+                let terms = self.terms(id, terms).iter().map(|term| delay_of_term(delays, term));
+                balance::delay(terms.chain((!constant.is_zero()).then_some(0)))
+            }
+            Operation::Product(_) => latest() + balance::STEP * (self.operands(id).len() as u32 - 1),
+            Operation::Reciprocal(_) => latest() + DIVISION,
+            Operation::Root(..) => latest() + ROOT,
+            Operation::Function(..) | Operation::Call(..) => latest() + CALL,
+            Operation::Output(..) => latest(),
+        }
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
@@ -613,9 +682,13 @@ impl Builder<'_, '_> {
                 if terms.is_empty() {
                     return Code::Number(constant);
                 }
-                let terms =
+                let delays: Vec<u32> = terms.iter().map(|term| delay_of_term(&self.delays, term)).collect();
+                let terms: Vec<_> =
                     terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
-                Code::Sum(constant, terms)
+                match self.scalars.keeps_sums {
+                    true => Code::Sum(constant, terms),
+                    false => balance::balanced(constant, terms.into_iter().zip(delays)),
+                }
             }
             Operation::Product(_) => {
                 let factors = self.operands(id);

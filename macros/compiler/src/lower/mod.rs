@@ -3,6 +3,7 @@
 //! A kernel is one small function of generated code. Three rates decide where a value is computed: once per stepper (the
 //! constants), once per solve (the terms), or where it is used.
 
+mod balance;
 mod control;
 mod cost;
 mod displacement;

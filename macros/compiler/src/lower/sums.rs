@@ -10,10 +10,14 @@ type Sum = (Id, bool, Vec<(Rational, Id)>);
 
 /// The terms of those sums that hold all terms of another one, with that one or its negative in their place and what is left of them, where that
 /// is less work: 1 − 2a − b − c is 1 + d − a with d = −a − b − c. What then stands in a sum by name may stand in another one beside others.
-pub(super) fn shared(mut sums: Vec<Sum>) -> Table<Id, Vec<(Rational, Id)>> {
+/// `serves` says of terms and of those that they would replace whether they may.
+pub(super) fn shared(
+    mut sums: Vec<Sum>,
+    serves: impl Fn(&[(Rational, Id)], &[(Rational, Id)]) -> bool,
+) -> Table<Id, Vec<(Rational, Id)>> {
     let mut shared = Table::default();
     loop {
-        let found = shortest(&sums);
+        let found = shortest(&sums, &serves);
         if found.is_empty() {
             return shared;
         }
@@ -25,7 +29,10 @@ pub(super) fn shared(mut sums: Vec<Sum>) -> Table<Id, Vec<(Rational, Id)>> {
 }
 
 /// Of those sums, by position, in which another one can stand: the terms that are the least work.
-fn shortest(sums: &[Sum]) -> Table<usize, Vec<(Rational, Id)>> {
+fn shortest(
+    sums: &[Sum],
+    serves: &impl Fn(&[(Rational, Id)], &[(Rational, Id)]) -> bool,
+) -> Table<usize, Vec<(Rational, Id)>> {
     let mut holders: Table<Id, Vec<usize>> = Table::default();
     for (position, (_, _, terms)) in sums.iter().enumerate() {
         for (_, term) in terms {
@@ -50,6 +57,7 @@ fn shortest(sums: &[Sum]) -> Table<usize, Vec<(Rational, Id)>> {
             if comes_after
                 && let Some(replaced) = replaced(whole, terms, *name)
                 && found.get(&position).is_none_or(|best| work(&replaced) < work(best))
+                && serves(&replaced, whole)
             {
                 found.insert(position, replaced);
             }
@@ -88,8 +96,12 @@ fn work(terms: &[(Rational, Id)]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Id, shared};
+    use super::Id;
     use clebsch_symbolic::{Rational, integer};
+
+    fn shared(sums: Vec<super::Sum>) -> clebsch_symbolic::Table<Id, Vec<(Rational, Id)>> {
+        super::shared(sums, |_, _| true)
+    }
 
     fn terms(signed: &[i64]) -> Vec<(Rational, Id)> {
         signed.iter().map(|&term| (integer(term.signum()), term.unsigned_abs() as Id)).collect()

@@ -1,0 +1,110 @@
+//! Sums in the order in which their terms are there: first those that are there first, so that the last one waits for one addition alone.
+
+use clebsch_symbolic::{Rational, Zero, integer};
+
+use super::Code;
+
+/// The cycles of an addition or a multiplication.
+pub(super) const STEP: u32 = 4;
+
+/// What is still to be added: when it is there, its place among the terms, and a coefficient with what it multiplies; a number without it.
+type Part = (u32, usize, (Rational, Option<Code>));
+
+/// The sum of a constant and of terms, each with the cycle in which it is there.
+///
+/// Of all trees of additions, that which adds the two earliest parts as long as there are two is done first, as Huffman's is the shortest code.
+pub(super) fn balanced(constant: Rational, terms: impl Iterator<Item = ((Rational, Code), u32)>) -> Code {
+    let numbered = terms.enumerate();
+    let mut parts: Vec<Part> =
+        numbered.map(|(place, ((coefficient, term), delay))| (delay, place, (coefficient, Some(term)))).collect();
+    if parts.len() + usize::from(!constant.is_zero()) < 3 {
+        return Code::Sum(constant, parts.into_iter().filter_map(|(_, _, (c, term))| Some((c, term?))).collect());
+    }
+    if !constant.is_zero() {
+        parts.push((0, parts.len(), (constant, None)));
+    }
+    while parts.len() > 2 {
+        let (one, other) = (earliest(&mut parts), earliest(&mut parts));
+        let (delay, place) = (one.0.max(other.0) + STEP, one.1.min(other.1));
+        parts.push((delay, place, pair(one, other)));
+    }
+    let (one, other) = (earliest(&mut parts), earliest(&mut parts));
+    match pair(one, other) {
+        (coefficient, Some(sum)) if coefficient == integer(1) => sum,
+        (coefficient, Some(sum)) => Code::Sum(integer(0), vec![(coefficient, sum)]),
+        (number, None) => Code::Number(number),
+    }
+}
+
+/// When a sum of terms is done that are there in these cycles.
+pub(super) fn delay(terms: impl Iterator<Item = u32>) -> u32 {
+    let mut delays: Vec<u32> = terms.collect();
+    delays.sort_unstable_by_key(|delay| std::cmp::Reverse(*delay));
+    while let (Some(one), Some(other)) = (delays.pop(), delays.last().copied()) {
+        delays.pop();
+        let done = one.max(other) + STEP;
+        let place = delays.partition_point(|delay| *delay >= done);
+        delays.insert(place, done);
+        if delays.len() == 1 {
+            break;
+        }
+    }
+    delays.first().copied().unwrap_or(0)
+}
+
+/// Takes out the part that is there first, of several the first.
+fn earliest(parts: &mut Vec<Part>) -> Part {
+    let first = parts.iter().enumerate().min_by_key(|(_, part)| (part.0, part.1)).map_or(0, |(position, _)| position);
+    parts.remove(first)
+}
+
+/// A sum of two parts, positive where one of them is.
+fn pair(one: Part, other: Part) -> (Rational, Option<Code>) {
+    // the one that stood first is written first
+    let (one, other) = if one.1 < other.1 { (one.2, other.2) } else { (other.2, one.2) };
+    let sign = integer(if one.0.is_negative() && other.0.is_negative() { -1 } else { 1 });
+    let (mut constant, mut terms) = (integer(0), Vec::with_capacity(2));
+    for (coefficient, term) in [one, other] {
+        match term {
+            Some(term) => terms.push((coefficient * &sign, term)),
+            None => constant = coefficient * &sign,
+        }
+    }
+    (sign, Some(Code::Sum(constant, terms)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{balanced, delay};
+    use crate::lower::Code;
+    use clebsch_symbolic::integer;
+
+    fn sum(constant: i64, terms: &[(i64, Code)]) -> Code {
+        Code::Sum(integer(constant), terms.iter().map(|(weight, term)| (integer(*weight), term.clone())).collect())
+    }
+
+    #[test]
+    fn terms_that_are_there_at_once_make_a_balanced_tree() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(Code::Local);
+        let terms = [(1, &a), (-1, &b), (-1, &c), (-1, &d)].map(|(weight, term)| ((integer(weight), term.clone()), 0));
+        let pairs = [(1, sum(0, &[(1, a), (-1, b)])), (-1, sum(0, &[(1, c), (1, d)]))];
+        assert_eq!(balanced(integer(0), terms.into_iter()), sum(0, &pairs));
+        assert_eq!(delay([0; 4].into_iter()), 8);
+    }
+
+    #[test]
+    fn what_comes_last_is_added_last() {
+        let [a, b, c] = [0, 1, 2].map(Code::Local);
+        let terms = [(&a, 20), (&b, 0), (&c, 4)].map(|(term, delay)| ((integer(-1), term.clone()), delay));
+        let rest = sum(0, &[(1, sum(2, &[(-1, b)])), (-1, c)]);
+        assert_eq!(balanced(integer(2), terms.into_iter()), sum(0, &[(-1, a), (1, rest)]));
+        assert_eq!(delay([20, 0, 4, 0].into_iter()), 24);
+    }
+
+    #[test]
+    fn sums_of_two_stay_as_they_are() {
+        let [a, b] = [0, 1].map(Code::Local);
+        let terms = [((integer(-2), a.clone()), 9), ((integer(-1), b.clone()), 0)];
+        assert_eq!(balanced(integer(0), terms.into_iter()), sum(0, &[(-2, a), (-1, b)]));
+    }
+}
