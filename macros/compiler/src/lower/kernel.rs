@@ -239,7 +239,7 @@ struct Builder<'a, 'b> {
     /// The terms of sums once sums within them are shared, where there are such.
     sums: Table<Id, Vec<(Rational, Id)>>,
     known: Table<Scalar, Id>,
-    /// When each operation is done, once code is made.
+    /// When each operation is done, once code is made of which the longest chain is what takes the time.
     delays: Vec<u32>,
 }
 
@@ -542,10 +542,9 @@ impl Builder<'_, '_> {
             }
             _ => None,
         });
-        // where the longest chain of operations takes longer than all of them side by side, no sum may wait longer than before
+        // where the chain is what takes the time, no sum may wait longer than before
         let delays = self.delays(outputs);
-        let longest = entries(outputs).map(|entry| delays[entry]).max().unwrap_or(0);
-        let waits = self.count_operations(outputs) < SIDE_BY_SIDE * longest as usize;
+        let waits = self.waits(outputs, &delays);
         let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
         let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
         for (sum, terms) in shared.iter() {
@@ -586,7 +585,11 @@ impl Builder<'_, '_> {
         let mut locals = Vec::new();
         let mut names: Table<Id, usize> = Table::default();
         let mut sizes = vec![0; self.operations.len()];
-        self.delays = self.delays_in(&order);
+        let delays = self.delays_in(&order);
+        // where it is not, sums by pairs would only take registers
+        if !self.scalars.keeps_sums && self.waits(outputs, &delays) {
+            self.delays = delays;
+        }
         for id in order {
             let inner: usize = self
                 .operands(id)
@@ -608,6 +611,12 @@ impl Builder<'_, '_> {
             grids.push((*shape, entries.iter().map(|&entry| self.reference(entry, &names)).collect()));
         }
         Kernel { locals, outputs: grids }
+    }
+
+    /// Whether the longest chain of operations takes longer than all of them side by side.
+    fn waits(&self, outputs: &[(Shape, Vec<Id>)], delays: &[u32]) -> bool {
+        let longest = entries(outputs).map(|entry| delays[entry]).max().unwrap_or(0);
+        self.count_operations(outputs) < SIDE_BY_SIDE * longest as usize
     }
 
     /// When each operation is done, in cycles after the arguments are there, as common processors take them.
@@ -682,10 +691,13 @@ impl Builder<'_, '_> {
                 if terms.is_empty() {
                     return Code::Number(constant);
                 }
-                let delays: Vec<u32> = terms.iter().map(|term| delay_of_term(&self.delays, term)).collect();
+                let delays: Vec<u32> = match self.delays.is_empty() {
+                    true => Vec::new(),
+                    false => terms.iter().map(|term| delay_of_term(&self.delays, term)).collect(),
+                };
                 let terms: Vec<_> =
                     terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
-                match self.scalars.keeps_sums {
+                match delays.is_empty() {
                     true => Code::Sum(constant, terms),
                     false => balance::balanced(constant, terms.into_iter().zip(delays)),
                 }
