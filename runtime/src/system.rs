@@ -41,8 +41,9 @@ pub trait Clebsch {
 
     /// The name of the struct.
     const NAME: &'static str;
-    /// Order of accuracy of `step` and `step_symmetric`: above 2 they are composed of steps of second order, of which
-    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms.
+    /// Order of accuracy of `step` and `step_symmetric`: 4, 6 and 8 are composed of steps of second order, of which
+    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms; 16 collocates Hamilton's equations, and the
+    /// transforms are those of the step of second order that is declared beside.
     const ORDER: u32;
     /// The derivation in words and formulas, with operation counts and what was left out and why.
     const DERIVATION: &'static str;
