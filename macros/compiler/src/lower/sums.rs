@@ -77,7 +77,16 @@ fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Opti
         found.next().filter(|_| found.next().is_none())
     };
     let sign = integer(if weight_in(whole, part[0].1)?.is_negative() == part[0].0.is_negative() { 1 } else { -1 });
-    if !part.iter().all(|(_, term)| weight_in(whole, *term).is_some()) {
+    // what is taken is a part of each term: a + b + c + d as (a + b + c − d) + 2 d would cancel digits
+    let is_within = |(taken, term): &(Rational, Id)| {
+        let taken = taken.clone() * &sign;
+        weight_in(whole, *term).is_some_and(|weight| {
+            let left = weight.clone() - &taken;
+            weight.is_negative() == taken.is_negative()
+                && (left.is_zero() || left.is_negative() == weight.is_negative())
+        })
+    };
+    if !part.iter().all(is_within) {
         return None;
     }
     let left = whole.iter().map(|(weight, term)| match weight_in(part, *term) {
@@ -130,6 +139,13 @@ mod tests {
             shared(vec![(10, true, terms(&[-1, -2, -3])), (11, true, terms(&[-1, -4, -5])), (12, false, whole)]);
         assert_eq!(shared.get(&12), Some(&terms(&[10, 11])));
         assert_eq!((shared.get(&10), shared.get(&11)), (None, None));
+    }
+
+    /// 1 + a + b + c + d is not 1 + (a + b + c − d) + 2 d.
+    #[test]
+    fn no_digits_are_cancelled() {
+        let sums = vec![(10, true, terms(&[1, 2, 3, -4])), (11, false, terms(&[1, 2, 3, 4]))];
+        assert!(shared(sums).is_empty());
     }
 
     #[test]
