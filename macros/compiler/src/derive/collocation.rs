@@ -6,7 +6,7 @@ use super::equation::{Sources, is_diagonal, is_moving};
 use super::exact::inertia_inverse;
 use super::{Energy, Symbols};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Isotropy, Kinetic, Model, Order};
+use crate::model::{Isotropy, Model, Order};
 
 /// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
 ///
@@ -147,7 +147,7 @@ fn is_affine<'g>(model: &Model<'g>, momentum_map: &[Expr<'g>]) -> bool {
 
 fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> Result<(), Diagnostics> {
     let model = sources.model;
-    let second = "write `order = 8`";
+    let eighth = "write `order = 8`";
     if model.configurations.is_empty() {
         return Err(refused(
             model,
@@ -176,7 +176,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
         return Err(refused(
             model,
             "`order = 16` needs a kinetic energy with a constant inertia",
-            second,
+            eighth,
             "its equations are those of ½ (J − A)·Σ⁻¹(J − A) + V, with Σ⁻¹ made once",
         ));
     }
@@ -185,7 +185,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
         return Err(refused(
             model,
             &format!("`order = 16` moves what a momentum is made of, and `{name}` moves nothing"),
-            second,
+            eighth,
             "its stages are pairs (q, p), and J(q, p) has no part for this factor",
         ));
     }
@@ -196,9 +196,6 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
             "write `order = 8`, or declare the whole attitude",
             "its stages are pairs (q, p), and no p has a momentum J(q, p) about an axis that q does not show",
         ));
-    }
-    if let Kinetic::Controls { .. } | Kinetic::Dynamics(_) = model.kinetic {
-        return Err(refused(model, "`order = 16` is for mechanics", second, "inputs move this configuration"));
     }
     Ok(())
 }

@@ -40,6 +40,7 @@ pub(super) fn of(title: &str) -> Option<Reference> {
         ("cotangent lift", Reference::ClebschOptimalControl),
         ("inertia", Reference::MechanicsAndSymmetry),
         ("Hamiltonian", Reference::MechanicsAndSymmetry),
+        ("Hamilton's equations", Reference::MechanicsAndSymmetry),
         ("Legendre transform", Reference::DiscreteMechanics),
         ("next Legendre transform", Reference::DiscreteMechanics),
         ("kick", Reference::ClebschOptimalControl),

@@ -26,28 +26,22 @@ pub(super) fn balanced(constant: Rational, terms: impl Iterator<Item = ((Rationa
     while parts.len() > 2 {
         let (one, other) = (earliest(&mut parts), earliest(&mut parts));
         let (delay, place) = (one.0.max(other.0) + STEP, one.1.min(other.1));
-        parts.push((delay, place, pair(one, other)));
+        let (sign, sum) = pair(one, other);
+        parts.push((delay, place, (sign, Some(sum))));
     }
     let (one, other) = (earliest(&mut parts), earliest(&mut parts));
-    match pair(one, other) {
-        (coefficient, Some(sum)) if coefficient == integer(1) => sum,
-        (coefficient, Some(sum)) => Code::Sum(integer(0), vec![(coefficient, sum)]),
-        (number, None) => Code::Number(number),
-    }
+    let (sign, sum) = pair(one, other);
+    if sign == integer(1) { sum } else { Code::Sum(integer(0), vec![(sign, sum)]) }
 }
 
 /// When a sum of terms is done that are there in these cycles.
 pub(super) fn delay(terms: impl Iterator<Item = u32>) -> u32 {
     let mut delays: Vec<u32> = terms.collect();
     delays.sort_unstable_by_key(|delay| std::cmp::Reverse(*delay));
-    while let (Some(one), Some(other)) = (delays.pop(), delays.last().copied()) {
-        delays.pop();
-        let done = one.max(other) + STEP;
-        let place = delays.partition_point(|delay| *delay >= done);
-        delays.insert(place, done);
-        if delays.len() == 1 {
-            break;
-        }
+    while let [.., later, _] = delays[..] {
+        delays.truncate(delays.len() - 2);
+        let done = later + STEP;
+        delays.insert(delays.partition_point(|delay| *delay >= done), done);
     }
     delays.first().copied().unwrap_or(0)
 }
@@ -58,8 +52,8 @@ fn earliest(parts: &mut Vec<Part>) -> Part {
     parts.remove(first)
 }
 
-/// A sum of two parts, positive where one of them is.
-fn pair(one: Part, other: Part) -> (Rational, Option<Code>) {
+/// The sum of two parts as a sign and a sum in which one of them is positive.
+fn pair(one: Part, other: Part) -> (Rational, Code) {
     // the one that stood first is written first
     let (one, other) = if one.1 < other.1 { (one.2, other.2) } else { (other.2, one.2) };
     let sign = integer(if one.0.is_negative() && other.0.is_negative() { -1 } else { 1 });
@@ -70,7 +64,7 @@ fn pair(one: Part, other: Part) -> (Rational, Option<Code>) {
             None => constant = coefficient * &sign,
         }
     }
-    (sign, Some(Code::Sum(constant, terms)))
+    (sign, Code::Sum(constant, terms))
 }
 
 #[cfg(test)]
@@ -90,6 +84,7 @@ mod tests {
         let pairs = [(1, sum(0, &[(1, a), (-1, b)])), (-1, sum(0, &[(1, c), (1, d)]))];
         assert_eq!(balanced(integer(0), terms.into_iter()), sum(0, &pairs));
         assert_eq!(delay([0; 4].into_iter()), 8);
+        assert_eq!((delay([].into_iter()), delay([12].into_iter())), (0, 12));
     }
 
     #[test]

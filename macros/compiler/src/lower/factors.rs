@@ -29,7 +29,6 @@ pub(super) fn factored(
 }
 
 /// What is taken out of terms.
-#[derive(Clone)]
 enum Factor {
     /// A factor of products.
     Of(Id),

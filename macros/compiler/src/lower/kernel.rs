@@ -1,12 +1,14 @@
 //! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
 
+mod shorten;
+
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
 
+use super::balance;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
-use super::sums;
 use super::{Input, Node, Rate, Scalar, Scalars};
-use super::{balance, factors};
+use shorten::delay_of_term;
 
 /// Straight-line code of one output entry or shared term.
 #[derive(Clone, PartialEq, Debug)]
@@ -179,15 +181,6 @@ fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
 const LONGEST_EXPRESSION: usize = 256;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
-/// The additions and multiplications that a processor begins in a cycle, about.
-const SIDE_BY_SIDE: usize = 3;
-/// The cycles of a division,
-const DIVISION: u32 = 13;
-/// of a root,
-const ROOT: u32 = 18;
-/// and of an elementary function, about.
-const CALL: u32 = 40;
-
 /// The index of an operation of a kernel.
 pub(super) type Id = usize;
 
@@ -222,12 +215,6 @@ impl Operation {
             Operation::Output(call, ..) => vec![*call],
         }
     }
-}
-
-/// When a term of a sum is there.
-fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)) -> u32 {
-    let is_unit = *coefficient == integer(1) || *coefficient == integer(-1);
-    delays[*term] + if is_unit { 0 } else { balance::STEP }
 }
 
 struct Builder<'a, 'b> {
@@ -447,111 +434,6 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Looks for fewer operations: by common factors and by sums within sums, and where numbers can be separated, with them and without.
-    fn shorten(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let separated = self.separate_numbers(outputs);
-        let products = (!separated.is_empty()).then(|| self.products.clone());
-        self.factor_sums(outputs);
-        self.share_sums(outputs);
-        let Some(products) = products else { return };
-        let before = self.count_operations(outputs);
-        let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
-        self.factor_sums(outputs);
-        self.share_sums(outputs);
-        if self.count_operations(outputs) >= before {
-            (self.sums, self.products) = plain;
-        }
-    }
-
-    /// Writes a x with a taken out as n b, which stands nowhere else, as n times b x, where that is at hand: what other sums have of b x is then
-    /// found in this one.
-    fn separate_numbers(&self, outputs: &[(Shape, Vec<Id>)]) -> Table<Id, Vec<(Rational, Id)>> {
-        let mut sums = Table::default();
-        let used = self.used(outputs);
-        let mut uses = vec![0_usize; self.operations.len()];
-        used.iter()
-            .for_each(|&id| self.operations.value(id).operands().into_iter().for_each(|operand| uses[operand] += 1));
-        entries(outputs).for_each(|entry| uses[entry] += 1);
-        let is_used = |id: Id| uses[id] > 0;
-        for &id in &used {
-            let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
-            let separated: Vec<_> = terms
-                .iter()
-                .map(|(coefficient, term)| {
-                    let found = self.separated(*term).filter(|(_, product)| uses[*term] == 1 && is_used(*product));
-                    found.map_or((coefficient.clone(), *term), |(number, product)| (coefficient * &number, product))
-                })
-                .collect();
-            if separated != *terms {
-                sums.insert(id, separated);
-            }
-        }
-        sums
-    }
-
-    /// A product of something that is taken out as a number times the product without the number, where that one is known.
-    fn separated(&self, product: Id) -> Option<(Rational, Id)> {
-        let Operation::Product(factors) = self.operations.value(product) else { return None };
-        factors.iter().enumerate().find_map(|(position, &factor)| {
-            let Operation::Leaf(scalar) = self.operations.value(factor) else { return None };
-            let (number, Some(rest)) = self.scalars.factor(*scalar) else { return None };
-            let plain = self.operations.position(&Operation::Leaf(rest)).filter(|_| number != integer(1))?;
-            let mut factors = factors.clone();
-            factors[position] = plain;
-            factors.sort_unstable();
-            Some((number, self.operations.position(&Operation::Product(factors))?))
-        })
-    }
-
-    /// Takes common factors out of sums, where that leaves fewer operations once pairs are shared again.
-    fn factor_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let before = self.count_operations(outputs);
-        let sums = factors::factored(&mut self.operations, entries(outputs), self.sums.clone());
-        if sums.iter().all(|(id, terms)| self.sums.get(id) == Some(terms)) {
-            return;
-        }
-        let products = std::mem::take(&mut self.products);
-        let plain = std::mem::replace(&mut self.sums, sums);
-        self.share_pairs(outputs);
-        if self.count_operations(outputs) >= before {
-            (self.sums, self.products) = (plain, products);
-        }
-    }
-
-    /// The additions and multiplications of the outputs, shared ones once.
-    fn count_operations(&self, outputs: &[(Shape, Vec<Id>)]) -> usize {
-        let is_unit = |weight: &Rational| *weight == integer(1) || *weight == integer(-1);
-        let count = |id: Id| match self.operations.value(id) {
-            Operation::Sum(constant, terms) => {
-                let terms = self.terms(id, terms);
-                let scaled = terms.iter().filter(|(weight, _)| !is_unit(weight)).count();
-                (terms.len() + usize::from(!constant.is_zero())).saturating_sub(1) + scaled
-            }
-            Operation::Product(_) => self.operands(id).len() - 1,
-            _ => 0,
-        };
-        self.used(outputs).into_iter().map(count).sum()
-    }
-
-    /// Puts a sum that stands within others, as a + b in 1 − a − b, into them by its name.
-    fn share_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let used = self.used(outputs);
-        let found = used.into_iter().filter_map(|id| match self.operations.value(id) {
-            Operation::Sum(constant, terms) if terms.len() > 1 => {
-                Some((id, constant.is_zero(), self.terms(id, terms).to_vec()))
-            }
-            _ => None,
-        });
-        // where the chain is what takes the time, no sum may wait longer than before
-        let delays = self.delays(outputs);
-        let waits = self.waits(outputs, &delays);
-        let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
-        let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
-        for (sum, terms) in shared.iter() {
-            self.sums.insert(*sum, terms.clone());
-        }
-    }
-
     /// What the outputs are made of, in the order in which it was met.
     fn used(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<Id> {
         let mut is_used = vec![false; self.operations.len()];
@@ -611,42 +493,6 @@ impl Builder<'_, '_> {
             grids.push((*shape, entries.iter().map(|&entry| self.reference(entry, &names)).collect()));
         }
         Kernel { locals, outputs: grids }
-    }
-
-    /// Whether the longest chain of operations takes longer than all of them side by side.
-    fn waits(&self, outputs: &[(Shape, Vec<Id>)], delays: &[u32]) -> bool {
-        let longest = entries(outputs).map(|entry| delays[entry]).max().unwrap_or(0);
-        self.count_operations(outputs) < SIDE_BY_SIDE * longest as usize
-    }
-
-    /// When each operation is done, in cycles after the arguments are there, as common processors take them.
-    fn delays(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<u32> {
-        let (mut uses, mut order) = (vec![0; self.operations.len()], Vec::new());
-        entries(outputs).for_each(|entry| self.count(entry, &mut uses, &mut order));
-        self.delays_in(&order)
-    }
-
-    /// The same of operations that stand behind their operands.
-    fn delays_in(&self, order: &[Id]) -> Vec<u32> {
-        let mut delays = vec![0; self.operations.len()];
-        order.iter().for_each(|&id| delays[id] = self.delay(id, &delays));
-        delays
-    }
-
-    fn delay(&self, id: Id, delays: &[u32]) -> u32 {
-        let latest = || self.operands(id).into_iter().map(|operand| delays[operand]).max().unwrap_or(0);
-        match self.operations.value(id) {
-            Operation::Leaf(_) => 0,
-            Operation::Sum(constant, terms) => {
-                let terms = self.terms(id, terms).iter().map(|term| delay_of_term(delays, term));
-                balance::delay(terms.chain((!constant.is_zero()).then_some(0)))
-            }
-            Operation::Product(_) => latest() + balance::STEP * (self.operands(id).len() as u32 - 1),
-            Operation::Reciprocal(_) => latest() + DIVISION,
-            Operation::Root(..) => latest() + ROOT,
-            Operation::Function(..) | Operation::Call(..) => latest() + CALL,
-            Operation::Output(..) => latest(),
-        }
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
