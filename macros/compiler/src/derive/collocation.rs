@@ -2,8 +2,8 @@
 
 use clebsch_symbolic::{Expr, Property, Role, identity};
 
-use super::equation::{Sources, is_diagonal, is_moving};
-use super::exact::inertia_inverse;
+use super::equation::{Sources, is_moving};
+use super::exact::{by_inertia, inertia_inverse};
 use super::{Energy, Symbols};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Isotropy, Model, Order};
@@ -79,17 +79,7 @@ fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<
     let graph = model.graph;
     let entries = momentum.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0)));
     let free: Vec<_> = entries.enumerate().map(|(i, entry)| entry - slope.entry(i, 0)).collect();
-    let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
-        true => free.iter().enumerate().map(|(i, entry)| *entry / inertia.entry(i, i).expand()).collect(),
-        false => {
-            let inverse = inertia_inverse(graph, inertia.shape());
-            let row = |i: usize| {
-                free.iter().enumerate().fold(graph.integer(0), |sum, (j, entry)| sum + inverse.entry(i, j) * *entry)
-            };
-            (0..free.len()).map(row).collect()
-        }
-    };
-    let mut entries = velocity.into_iter();
+    let mut entries = by_inertia(inertia, || inertia_inverse(graph, inertia.shape()), &free).into_iter();
     let parts = sources.symbols.algebra.iter();
     parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).collect()))).collect()
 }

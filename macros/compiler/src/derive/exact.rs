@@ -231,6 +231,16 @@ fn gradient_energy<'g>(sources: &Sources<'_, 'g>, force: &[Expr<'g>]) -> Expr<'g
     }
 }
 
+/// Σ⁻¹μ, by divisions where Σ is diagonal, else by `inverse`, its inverse.
+pub(crate) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'g>, mu: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    if is_diagonal(inertia) {
+        return mu.iter().enumerate().map(|(i, mu)| *mu / inertia.entry(i, i).expand()).collect();
+    }
+    let (zero, inverse) = (inertia.graph().integer(0), inverse());
+    let row = |i: usize| mu.iter().enumerate().fold(zero, |sum, (j, mu)| sum + inverse.entry(i, j) * *mu);
+    (0..mu.len()).map(row).collect()
+}
+
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
 pub(crate) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
     graph.symbol("inertia_inverse", shape, Role::Auxiliary(usize::MAX), Property::Symmetric)

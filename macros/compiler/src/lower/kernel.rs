@@ -82,7 +82,8 @@ impl Code {
     fn sine_squared(&self) -> Option<Code> {
         let one = integer(1);
         let one_and = |code: &Code| {
-            let (constant, terms) = code.summands()?;
+            let Code::Sum(constant, terms) = code else { return None };
+            let (constant, terms) = Code::summands(constant, terms);
             (constant == one).then_some(terms)
         };
         let [(coefficient, Code::Root(square, (1, 2)))] = &one_and(self)?[..] else { return None };
@@ -95,19 +96,19 @@ impl Code {
     }
 
     /// The constant and the terms of a sum, of sums within it too.
-    fn summands(&self) -> Option<(Rational, Vec<(Rational, Code)>)> {
-        let Code::Sum(constant, terms) = self else { return None };
+    pub(super) fn summands(constant: &Rational, terms: &[(Rational, Code)]) -> (Rational, Vec<(Rational, Code)>) {
         let (mut total, mut all) = (constant.clone(), Vec::new());
         for (coefficient, term) in terms {
-            match term.summands().filter(|_| *coefficient == integer(1) || *coefficient == integer(-1)) {
-                Some((constant, inner)) => {
+            match term {
+                Code::Sum(constant, terms) if *coefficient == integer(1) || *coefficient == integer(-1) => {
+                    let (constant, terms) = Code::summands(constant, terms);
                     total += constant * coefficient;
-                    all.extend(inner.into_iter().map(|(weight, term)| (weight * coefficient, term)));
+                    all.extend(terms.into_iter().map(|(weight, term)| (weight * coefficient, term)));
                 }
-                None => all.push((coefficient.clone(), term.clone())),
+                _ => all.push((coefficient.clone(), term.clone())),
             }
         }
-        Some((total, all))
+        (total, all)
     }
 
     fn divisor(&self) -> Option<&Code> {

@@ -211,8 +211,10 @@ impl Program<'_> {
             Code::Term(index) => format!("s{index}"),
             Code::Local(index) => format!("t{index}"),
             Code::Sum(constant, terms) => {
+                // people read a + b + c, in whatever order it is added
+                let (constant, terms) = Code::summands(constant, terms);
                 let mut text = String::new();
-                for (coefficient, term) in terms {
+                for (coefficient, term) in &terms {
                     let negative = *coefficient < integer(0);
                     let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
                     text += match (text.is_empty(), negative) {
@@ -224,7 +226,7 @@ impl Program<'_> {
                     let scaled = magnitude != integer(1);
                     text += &if scaled { format!("{magnitude}*{}", self.text(term, 1)) } else { self.text(term, 1) };
                 }
-                if *constant != integer(0) {
+                if constant != integer(0) {
                     text = if text.is_empty() { constant.to_string() } else { format!("{constant} + {text}") };
                 }
                 if place == 0 { text } else { format!("({text})") }

@@ -8,7 +8,7 @@ use super::displacement;
 use super::fixed_point;
 use super::kernel::kernel;
 use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
-use crate::derive::{Equation, Formulas, Solution, Structure, Substep, chart_slope, increments, is_diagonal};
+use crate::derive::{Equation, Formulas, Solution, Structure, Substep, by_inertia, chart_slope, increments};
 use crate::model::Factor;
 
 /// The kernels of one substep.
@@ -374,19 +374,12 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
     };
     let inertia = block(formulas.inertia);
     let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momentum_entry(formulas, component)).collect();
-    let velocity: Vec<Expr<'g>> = match is_diagonal(inertia) {
-        true => (0..count).map(|i| momentum[i] / inertia.entry(i, i).expand()).collect(),
-        false => {
-            let inverse = block(inertia_inverse(formulas));
-            let row =
-                |i: usize| (0..shape.rows).fold(graph.integer(0), |sum, j| sum + inverse.entry(i, j) * momentum[j]);
-            (0..count).map(row).collect()
-        }
-    };
+    let velocity = by_inertia(inertia, || block(inertia_inverse(formulas)), &momentum);
     let h = formulas.model.step_size;
     Some(
         velocity
             .into_iter()
+            .take(count)
             .zip(components)
             .map(|(velocity, component)| slope_of_chart(formulas, component, substep.parts) * h * velocity)
             .collect(),
