@@ -20,8 +20,8 @@
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 
-/// The most sweeps of one step.
-const SWEEPS: u32 = 64;
+/// The most sweeps of one step, unless fewer are asked for.
+pub const SWEEPS: u32 = 64;
 
 /// Sweeps after which a derivative has settled as well, for each order of derivatives.
 const SWEEPS_OF_DERIVATIVES: u32 = 4;
@@ -89,7 +89,7 @@ impl<const H: usize> Gauss<H> {
 /// which the second half are mirrored.
 ///
 /// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change the step by less than
-/// `tolerance`, relative to q and to p, or where rounding is all that changes: ended one sweep earlier, by the rate of the last two, they leave energies that drift
+/// `tolerance`, relative to q and to p, or where rounding is all that changes, and after `most` at the latest: ended one sweep earlier, by the rate of the last two, they leave energies that drift
 /// ten times as fast.
 ///
 /// # Errors
@@ -101,6 +101,7 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     (t, h): (T, T),
     start: &[T; N],
     tolerance: f64,
+    most: u32,
     guess: impl Fn(T) -> [T; N],
     slope: impl Fn(T, &[T; N]) -> [T; N],
 ) -> Result<[T; N], Error> {
@@ -113,7 +114,8 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     table.sweep((t, h), &stages, open, &mut slopes, &slope);
     let mut before = T::zero();
     let mut count = 0;
-    while count < SWEEPS && open.any() {
+    while count < most && open.any() {
+        T::iterated();
         table.stages(start, &slopes, &mut stages);
         let changes = table.sweep((t, h), &stages, open, &mut slopes, &slope);
         count += 1;
@@ -126,7 +128,7 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
         before = change;
     }
     if !solved.any() {
-        return Err(match (count < SWEEPS, before.sqrt().to_f64()) {
+        return Err(match (count < most, before.sqrt().to_f64()) {
             (true, _) => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
             (false, residual) => Error::NotConverged { residual, iterations: count },
         });

@@ -277,7 +277,7 @@ impl Display for Error {
             Self::NotConverged { residual, iterations } => write!(
                 f,
                 "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
-                 reduce the step size"
+                 reduce the step size, or allow more by `iterations` where the declaration limits them"
             ),
             Self::InLane { lane } => write!(
                 f,

@@ -69,6 +69,14 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         T::EPSILON * T::from_ratio(1, 4)
     }
 
+    /// The most iterations of one solve, linearisations and residuals together.
+    ///
+    /// `None` by the provided method: the bounds of [`solve`] and [`solve_fixed_point`].
+    #[inline]
+    fn limit() -> Option<u32> {
+        None
+    }
+
     /// The sign of det Dρ at ξ = 0 and μ = 0, which every solution on the branch has; `None` where it is singular.
     ///
     /// The provided method makes one linearisation. It is asked for in every solve: answer from a constant, made by
@@ -106,14 +114,21 @@ pub fn orientation<T: Scalar, const M: usize, const N: usize>(
 }
 
 /// Newton steps that are tried before the path is followed. Each at least halves the correction and most square it.
-const QUICK: usize = 12;
+const QUICK: u32 = 12;
+
+/// How many of `most` iterations may be made after `spent` others.
+#[inline]
+fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
+    limit.map_or(most, |limit| most.min(limit.saturating_sub(spent)))
+}
 
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane the same as for a single number. Lanes without a
 /// solution are NaN.
 ///
 /// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
 /// place unless the equation says otherwise, or the residual is round-off. It is always the latter where Newton's method alone does not
-/// decide. Work: at most 12 linearisations, and where they do not decide at most [`LINEARIZATIONS`] more (ten to two hundred in practice).
+/// decide. Work: at most 12 linearisations, and where they do not decide at most [`LINEARIZATIONS`] more (ten to two hundred in practice);
+/// in all not more than [`Equation::limit`].
 ///
 /// # Errors
 /// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
@@ -123,15 +138,25 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
     target: &SVector<T, N>,
 ) -> Result<SVector<T, M>, Error> {
-    let (xi, solved) = newton(equation, target);
+    solve_after(equation, target, 0)
+}
+
+/// The same after `spent` iterations of another kind.
+#[inline]
+fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    equation: &E,
+    target: &SVector<T, N>,
+    spent: u32,
+) -> Result<SVector<T, M>, Error> {
+    let (xi, solved, made) = newton(equation, target, allowed(QUICK, E::limit(), spent));
     if !solved.all() {
-        return lane::follow(equation, target, xi, solved);
+        return lane::follow(equation, target, xi, solved, spent + made);
     }
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
 
-/// Newton's method from the predictor: ξ, and in which lanes it is the solution. A lane stays as it is once it has arrived, and is given
-/// up as soon as it does not contract cleanly, or leaves the branch.
+/// Newton's method from the predictor: ξ, in which lanes it is the solution, and how many linearisations were made, at most `most`. A lane
+/// stays as it is once it has arrived, and is given up as soon as it does not contract cleanly, or leaves the branch.
 ///
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
 /// would come next, and is not made if it is negligible. The predictor counts as the correction of ξ = 0, and where it is 0 the
@@ -140,10 +165,11 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
 fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
-) -> (SVector<T, M>, T::Mask) {
-    let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
+    most: u32,
+) -> (SVector<T, M>, T::Mask, u32) {
+    let (mut open, mut solved, mut made) = (T::Mask::everywhere(), T::Mask::nowhere(), 0);
     let mut xi = equation.predict(target);
-    let Some(branch) = equation.orientation() else { return (xi, solved) };
+    let Some(branch) = equation.orientation() else { return (xi, solved, made) };
     let terms = equation.prepare(target);
     let mut start = xi;
     let half = T::from_ratio(1, 2);
@@ -151,7 +177,9 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     let visible = larger(T::EPSILON, negligible);
     let mut predicted = size(&start);
     let (mut before, mut residual_before) = (predicted, xi);
-    for iteration in 0..QUICK {
+    while made < most {
+        T::iterated();
+        made += 1;
         let (residual, jacobian) = equation.linearize(&terms, &xi);
         let Some((correction, orientation)) = E::correct(&jacobian, &residual) else { break };
         if orientation != branch {
@@ -184,7 +212,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
             }
         }
         let others = open & !unpredicted & !contracts;
-        if iteration > 0 && others.any() {
+        if made > 1 && others.any() {
             let arrived = others & is_round_off(&residual, &jacobian, &old);
             let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&residual, &residual_before);
             (solved, open) = (solved | arrived, open & !arrived & !(others & strays));
@@ -194,7 +222,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         }
         (before, residual_before) = (now, residual);
     }
-    (xi, solved)
+    (xi, solved, made)
 }
 
 /// The same solution with its derivatives: each of Newton's corrections doubles the order to which they are right.

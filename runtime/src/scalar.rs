@@ -73,6 +73,12 @@ pub trait Scalar:
     /// Where x is neither NaN nor infinite.
     fn finite(self) -> Self::Mask;
 
+    /// Called once for every iteration of an implicit equation: a linearisation, a residual, or a sweep over the stages of a step of order 16.
+    ///
+    /// Does nothing, unless a number that counts the work done with it says otherwise.
+    #[inline]
+    fn iterated() {}
+
     /// |x|
     fn abs(self) -> Self;
     /// √x, NaN for x < 0

@@ -1,6 +1,7 @@
 //! Bad inputs give typed errors that name them, steps that are too long say by how much, and small cases are exact.
 
 use clebsch::{Clebsch, Error};
+use clebsch_tests::fixtures::bounded_top::BoundedTop;
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
@@ -213,4 +214,36 @@ fn both_solvers_step_alike() {
         }
     }
     assert!(stepped > 100 && refused > 40, "{stepped} steps, {refused} refused");
+}
+
+/// What three linearisations solve has the bits that it has without a limit; the rest is an error that says what was done.
+#[test]
+fn a_limit_of_iterations_is_kept() {
+    let mut random = Random::new(98);
+    let [mut same, mut refused] = [0, 0];
+    for size in [1e-3, 0.1, 1.0, 3.0, 10.0, 30.0, 100.0] {
+        for _ in 0..40 {
+            let HeavyTop { mass_matrix, weight, center } =
+                HeavyTop { mass_matrix: random.inertia(), weight: 1.3, center: random.vector() };
+            let (r, pi) = (random.attitude::<3>(), random.vector::<3>() * size);
+            let free = HeavyTop { mass_matrix, weight, center }.into_stepper(0.05).expect("a top");
+            let bounded = BoundedTop { mass_matrix, weight, center }.into_stepper(0.05).expect("a top");
+            let expected = free.step(&free.state(r, pi).expect("a state"));
+            match bounded.step(&bounded.state(r, pi).expect("a state")) {
+                Ok(next) => {
+                    let expected = expected.expect("solved in three linearisations").into_parts();
+                    assert_eq!(next.into_parts(), expected, "{size}");
+                    same += 1;
+                }
+                Err(error @ Error::NotConverged { residual, iterations }) => {
+                    assert!((1..=3).contains(&iterations) && residual > 0.0, "{error}");
+                    assert!(error.to_string().contains("allow more by `iterations`"), "{error}");
+                    refused += 1;
+                }
+                Err(other) => panic!("{size}: {other}"),
+            }
+        }
+    }
+    println!("{same} solved in three linearisations, {refused} refused");
+    assert!(same > 100 && refused > 40, "{same} solved, {refused} refused");
 }

@@ -1,6 +1,6 @@
 //! The nodes, the order and the invariants of collocation, on oscillators.
 
-use super::{GAUSS_16, collocate};
+use super::{GAUSS_16, SWEEPS, collocate};
 use crate::Error;
 
 /// ∫ τ^k over the step, and up to each stage: the conditions B(16) and C(8) that make the order.
@@ -24,7 +24,7 @@ fn stages_are_those_of_gauss() {
 }
 
 fn step(h: f64, t: f64, y: [f64; 2], slope: impl Fn(f64, &[f64; 2]) -> [f64; 2]) -> Result<[f64; 2], Error> {
-    let change = collocate::<f64, 2, 8, 4>(&GAUSS_16, (t, h), &y, 0.0, |_| y, slope)?;
+    let change = collocate::<f64, 2, 8, 4>(&GAUSS_16, (t, h), &y, 0.0, SWEEPS, |_| y, slope)?;
     Ok([y[0] + change[0], y[1] + change[1]])
 }
 

@@ -1,37 +1,37 @@
 //! The implicit equation by fixed-point iteration with the constant inverse of its Jacobian at the identity.
 
-use super::{Equation, select, size, solve, with_derivatives};
+use super::{Equation, allowed, select, size, solve_after, with_derivatives};
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
 /// Iterations that are tried before Newton's method: each leaves at most a quarter of the correction.
-const QUICK: usize = 32;
+const QUICK: u32 = 32;
 
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, by ξ ← ξ − Σ⁻¹ρ(ξ).
 ///
 /// For equations with ρ(ξ; μ) = (Σ + O(μ)) ξ − μ + O(μ ξ²), whose [`predict`](Equation::predict) is Σ⁻¹μ. An iteration contracts like
 /// h|ω|, and takes a residual in place of a Jacobian and a linear system. Where corrections do not shrink to a quarter each time,
-/// [`solve`] takes over from the start.
+/// [`solve`](super::solve) takes over from the start.
 ///
 /// Accuracy: what later corrections would add up to is below twice [`Equation::tolerance`] of ξ, half a unit in its last place
 /// unless the equation says otherwise.
 ///
 /// # Errors
-/// Those of [`solve`].
+/// Those of [`solve`](super::solve).
 #[inline]
-pub fn solve_fixed_point<T: Scalar, const M: usize>(
-    equation: &impl Equation<T, M>,
+pub fn solve_fixed_point<T: Scalar, E: Equation<T, M>, const M: usize>(
+    equation: &E,
     target: &SVector<T, M>,
 ) -> Result<SVector<T, M>, Error> {
-    let (xi, solved) = contract(equation, target);
+    let (xi, solved, made) = contract(equation, target, allowed(QUICK, E::limit(), 0));
     if !solved.all() {
-        return solve_at_last(equation, target, &xi, solved);
+        return solve_at_last(equation, target, &xi, solved, made);
     }
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
 
-/// The lanes that do not contract, by [`solve`].
+/// The lanes that do not contract in `made` iterations, by [`solve`](super::solve).
 #[cold]
 #[inline(never)]
 fn solve_at_last<T: Scalar, const M: usize>(
@@ -39,15 +39,17 @@ fn solve_at_last<T: Scalar, const M: usize>(
     target: &SVector<T, M>,
     xi: &SVector<T, M>,
     solved: T::Mask,
+    made: u32,
 ) -> Result<SVector<T, M>, Error> {
-    match solve(equation, target) {
+    match solve_after(equation, target, made) {
         Ok(others) => Ok(select(solved, xi, &others)),
         Err(_) if solved.any() => Ok(select(solved, xi, &SVector::from_element(T::from_f64(f64::NAN)))),
         Err(error) => Err(error),
     }
 }
 
-/// The iteration: ξ, and in which lanes it is the solution. A lane is given up as soon as it does not contract by a factor of four.
+/// The iteration: ξ, in which lanes it is the solution, and how many residuals were taken, at most `most`. A lane is given up as soon as it
+/// does not contract by a factor of four.
 ///
 /// Corrections then add up to at most a third of the predictor, so that ξ stays where the Jacobian is near Σ and on the branch of ξ = 0.
 /// After a correction Δ with the ratio r to the one before, those to come add up to r|Δ|/(1 − r) ≤ 4r|Δ|/3.
@@ -55,14 +57,17 @@ fn solve_at_last<T: Scalar, const M: usize>(
 fn contract<T: Scalar, E: Equation<T, M>, const M: usize>(
     equation: &E,
     target: &SVector<T, M>,
-) -> (SVector<T, M>, T::Mask) {
-    let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
+    most: u32,
+) -> (SVector<T, M>, T::Mask, u32) {
+    let (mut open, mut solved, mut made) = (T::Mask::everywhere(), T::Mask::nowhere(), 0);
     let terms = equation.prepare(target);
     let mut xi = equation.predict(target);
     let mut before = size(&xi);
     let [quarter, negligible] = [T::from_ratio(1, 4), E::tolerance()];
     let visible = larger(T::EPSILON, negligible);
-    for _ in 0..QUICK {
+    while made < most {
+        T::iterated();
+        made += 1;
         let correction = equation.predict(&equation.residual(&terms, &xi));
         xi = select(open, &(xi - correction), &xi);
         let (now, scale) = (size(&correction), size(&xi));
@@ -77,5 +82,5 @@ fn contract<T: Scalar, E: Equation<T, M>, const M: usize>(
         }
         before = now;
     }
-    (xi, solved)
+    (xi, solved, made)
 }

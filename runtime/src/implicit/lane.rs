@@ -1,13 +1,14 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, path, with_derivatives};
+use super::{Equation, QUICK, path, size, with_derivatives};
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// The solutions `xi` with those of the lanes that are not `solved`: the path from the identity is followed in each of them.
+/// The solutions `xi` with those of the lanes that are not `solved` after `made` iterations: the path from the identity is followed in each
+/// of them, where the equation's limit leaves iterations for it.
 ///
 /// A lane that has none becomes NaN.
 ///
@@ -20,13 +21,19 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
     target: &SVector<T, N>,
     mut xi: SVector<T, M>,
     solved: T::Mask,
+    made: u32,
 ) -> Result<SVector<T, M>, Error> {
     let mut failure = None;
     let mut is_solved = solved.any();
     for lane in (0..T::LANES).filter(|&lane| !solved.lane(lane)) {
         let own = lane_of(target, lane);
         let equation = InLane { equation, lane, scalar: PhantomData };
-        match path::follow(&equation, &own) {
+        let found = match E::limit() {
+            // decided where the program is made: a limit that Newton's method may use up leaves no path to follow
+            Some(limit) if limit <= QUICK => Err(unfinished(&equation, &own, &lane_of(&xi, lane), made)),
+            limit => path::follow(&equation, &own, made, limit),
+        };
+        match found {
             Ok(found) => {
                 let found = if T::DERIVATIVES == 0 { found } else { with_derivatives(&equation, &own, found) };
                 set_lane(&mut xi, lane, &found);
@@ -46,6 +53,22 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
         Some((error, _)) if !is_solved => Err(error),
         _ => Ok(xi),
     }
+}
+
+/// The error of an iteration that ends at ξ, as no more are allowed.
+fn unfinished<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+    equation: &E,
+    target: &SVector<T, N>,
+    xi: &SVector<T, M>,
+    made: u32,
+) -> Error {
+    if !target.is_finite() {
+        return Error::NotFinite { name: "the momentum" };
+    }
+    let terms = equation.prepare(target);
+    let [left, whole] = [*xi, SVector::from_element(T::zero())].map(|xi| size(&equation.residual(&terms, &xi)));
+    let residual = (left / whole).to_f64();
+    Error::NotConverged { residual: if residual.is_finite() { residual } else { f64::INFINITY }, iterations: made }
 }
 
 /// The equation in one lane.
@@ -69,6 +92,10 @@ impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T
     ) -> (SVector<T::Lane, M>, SMatrix<T::Lane, M, M>) {
         let (residual, jacobian) = self.equation.linearize(terms, &everywhere(xi));
         (lane_of(&residual, self.lane), lane_of(&jacobian, self.lane))
+    }
+
+    fn limit() -> Option<u32> {
+        E::limit()
     }
 }
 

@@ -8,7 +8,7 @@
 mod bracket;
 mod point;
 
-use super::{Equation, is_much_smaller, size};
+use super::{Equation, allowed, is_much_smaller, size};
 use crate::linear::solve_dense;
 use crate::space::larger;
 use crate::{Error, Real, Space};
@@ -18,17 +18,19 @@ use point::{Homotopy, Point};
 /// Bound on the linearisations in following one path; the step that reaches it is finished, which takes at most four more.
 pub const LINEARIZATIONS: u32 = 1024;
 
-/// The solution for s = 1 on the branch from the identity.
+/// The solution for s = 1 on the branch from the identity, in not more than `limit` iterations with those that were `made` before.
 #[cold]
 #[inline(never)]
 pub(super) fn follow<T: Real, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
     target: &SVector<T, N>,
+    made: u32,
+    limit: Option<u32>,
 ) -> Result<SVector<T, M>, Error> {
     if !target.is_finite() {
         return Err(Error::NotFinite { name: "the momentum" });
     }
-    let mut homotopy = Homotopy::new(equation, target);
+    let mut homotopy = Homotopy::new(equation, target, made, allowed(LINEARIZATIONS, limit, made));
     let mut here = homotopy.start()?;
     if homotopy.scale == T::zero() {
         return Ok(here.xi);
@@ -77,6 +79,7 @@ impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_,
         let half = T::from_ratio(1, 2);
         let (mut before, mut residual_before) = (size(&step), SVector::from_element(T::zero()));
         while self.is_affordable() {
+            T::iterated();
             self.count(1);
             let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
             let (correction, orientation) = solve_dense(&jacobian, &residual)?;

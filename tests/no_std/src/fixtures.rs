@@ -44,7 +44,7 @@ pub extern "C" fn step_between(
 }
 
 modules! {
-    annotated_body centred_body collocated_top compensated_top damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
+    annotated_body bounded_top centred_body collocated_top compensated_top damped_body exact_body exact_body4 first_order_top fluid_ellipsoid flying_body free_particle free_rigid_body generic_body
     gravity_gradient growing_shape harmonics heavy_top heavy_top_reduced heisenberg_geodesic linear_optics lopsided_pendulum
     lorentz_frame midpoint_top neumann paper_pendulum planar_pendulum principal_body principal_body4 promised_top quaternion_top regulator
     relativistic_particle rigid_body4 sided_pair sixth_order_top spatial_body sphere_geodesic spherical_pendulum spin_pair split_top steered_bob steered_body tolerant_exact_top tolerant_top tumbling_momentum two_bodies two_pendulums
@@ -53,6 +53,7 @@ modules! {
 
 steppers! {
     step_annotated_body: annotated_body::AnnotatedBody<'static, (), 4>;
+    step_bounded_top: bounded_top::BoundedTop;
     step_centred_body: centred_body::CentredBody;
     step_compensated_top: compensated_top::CompensatedTop;
     step_first_order_top: first_order_top::FirstOrderTop;

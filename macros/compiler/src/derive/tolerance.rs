@@ -1,4 +1,4 @@
-//! Equations that are solved to a tolerance: whether there are any, and what is conserved all the same.
+//! Equations that are solved to a tolerance, or in so many iterations: whether there are any, and what is conserved all the same.
 
 use clebsch_symbolic::{Expr, identity};
 
@@ -6,11 +6,17 @@ use super::{ConservedMomentum, Formulas, Solution, Substep};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Model, Side};
 
-/// A tolerance ends an iteration, or the series of the free rotations between kicks.
+/// A tolerance ends an iteration, or the series of the free rotations between kicks; a number of iterations limits one.
 pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
-    let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
     let solutions: Vec<Solution> =
         substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
+    if let Some(iterations) =
+        model.iterations.as_ref().filter(|_| !collocates && !solutions.contains(&Solution::Newton))
+    {
+        let error = Diagnostic::new(iterations.span, "the momentum equation of this step is solved without iteration");
+        return Err(error.help("leave out `iterations`: every step takes the same number of operations").into());
+    }
+    let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
     let turns_freely = solutions.contains(&Solution::FreeRotation);
     // without kicks d is found once, to round-off
     if collocates || solutions.contains(&Solution::Newton) || turns_freely && model.potential.is_some() {

@@ -1,7 +1,7 @@
 //! Steps of order 16: Hamilton's equations at all stages, found by sweeps over them.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::code::{self, Nesting};
 use super::{Emitter, docs};
@@ -94,6 +94,10 @@ impl Emitter<'_, '_> {
         let (start_of_pair, count) = (self.flat(), self.entries().count());
         let (dq, dp) = (self.built("change", 0), self.built("change", count));
         let tolerance = Literal::f64_unsuffixed(self.model.tolerance.as_ref().map_or(0.0, |tolerance| tolerance.value));
+        let most = match &self.model.iterations {
+            Some(iterations) => Literal::u32_unsuffixed(iterations.value).into_token_stream(),
+            None => quote!(#private::SWEEPS),
+        };
         let time = if self.is_timed() { quote!(t) } else { quote!(_) };
         let (argument, start) = (
             self.time_argument(),
@@ -119,6 +123,7 @@ impl Emitter<'_, '_> {
                     (#start, self.constants.step_size),
                     &#start_of_pair,
                     #tolerance,
+                    #most,
                     |part| self.guess(part, q, p, &x),
                     |#time, y| self.slope(#argument y),
                 )?;

@@ -274,7 +274,16 @@ fn scheme(program: &Program<'_>) -> String {
     if program.formulas.is_compensated() {
         text += COMPENSATED;
     }
-    text + &tolerance(program)
+    text + &tolerance(program) + &iterations(program)
+}
+
+/// How much work a step may be.
+fn iterations(program: &Program<'_>) -> String {
+    let Some(iterations) = &program.formulas.model.iterations else { return String::new() };
+    format!(
+        "At most {} iterations for each momentum equation, as asked for; a step that needs more is an error.\n",
+        iterations.value
+    )
 }
 
 /// What an iteration that ends early leaves as it is, and what it does not.
@@ -306,10 +315,11 @@ fn collocated(program: &Program<'_>, collocation: &Collocation<'_>) -> String {
     if collocation.is_affine {
         text += "The action moves the origin: J is affine in q.\n";
     }
+    let most = program.formulas.model.iterations.as_ref().map_or(64, |iterations| iterations.value);
     text += match &program.formulas.model.tolerance {
-        None => "Slopes are found by sweeps over all stages, 64 at most, until only rounding changes.\n".to_string(),
+        None => format!("Slopes are found by sweeps over all stages, {most} at most, until only rounding changes.\n"),
         Some(tolerance) => format!(
-            "Slopes are found by sweeps over all stages, 64 at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
+            "Slopes are found by sweeps over all stages, {most} at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
              energy, momenta and the orbit drift with it.\n",
             tolerance.value
         ),

@@ -224,6 +224,16 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
+        let limit = self.model.iterations.as_ref().map(|iterations| {
+            let most = Literal::u32_unsuffixed(iterations.value);
+            quote! {
+                /// The declared number of iterations.
+                #[inline]
+                fn limit() -> ::core::option::Option<u32> {
+                    ::core::option::Option::Some(#most)
+                }
+            }
+        });
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
@@ -254,6 +264,7 @@ impl<'g> Emitter<'_, 'g> {
                 #correct
                 #orientation
                 #tolerance
+                #limit
             }
         }
     }

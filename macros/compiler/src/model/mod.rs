@@ -109,6 +109,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         symmetries: formulas.symmetries,
         solver: dials.solver.as_ref().map(|solver| solver.value),
         tolerance: dials.tolerance.clone(),
+        iterations: dials.iterations.clone(),
         summation: dials.summation.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),

@@ -57,6 +57,9 @@ impl fmt::Display for Model<'_> {
         if let Some(tolerance) = &self.tolerance {
             writeln!(f, "  tolerance  {:e}", tolerance.value)?;
         }
+        if let Some(iterations) = &self.iterations {
+            writeln!(f, "  iterations {}", iterations.value)?;
+        }
         if let Some(summation) = &self.summation {
             writeln!(f, "  summation  {}", summation.value)?;
         }

@@ -57,6 +57,8 @@ pub struct Model<'g> {
     /// The part of a step by which its implicit equations, or the series of free rotations between kicks, may be missed; `None` for
     /// round-off.
     pub tolerance: Option<Located<f64>>,
+    /// The most iterations for one implicit equation; `None` for the bounds of the runtime.
+    pub iterations: Option<Located<u32>>,
     /// How a step adds to q and N; `None` for plain sums.
     pub summation: Option<Located<Summation>>,
     /// Where the potential is placed.

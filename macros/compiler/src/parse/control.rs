@@ -117,6 +117,7 @@ fn refuse(keys: &Keys, motion: &Ident, diagnostics: &mut Diagnostics) {
         "symmetry",
         "order",
         "tolerance",
+        "iterations",
         "summation",
         "isotropy",
         "chart",

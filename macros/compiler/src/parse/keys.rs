@@ -28,6 +28,7 @@ pub(super) enum Kind {
     Chart,
     Solver,
     Tolerance,
+    Iterations,
     Summation,
     Isotropy,
     Emit,
@@ -38,7 +39,7 @@ pub(super) enum Kind {
 }
 
 /// All keys.
-pub(super) const KEYS: [(&str, Kind); 25] = [
+pub(super) const KEYS: [(&str, Kind); 26] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
@@ -57,6 +58,7 @@ pub(super) const KEYS: [(&str, Kind); 25] = [
     ("chart", Kind::Chart),
     ("solver", Kind::Solver),
     ("tolerance", Kind::Tolerance),
+    ("iterations", Kind::Iterations),
     ("summation", Kind::Summation),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
@@ -117,6 +119,8 @@ pub struct Dials {
     pub solver: Option<Located<Solver>>,
     /// `tolerance = 1e-8`.
     pub tolerance: Option<Located<f64>>,
+    /// `iterations = 4`.
+    pub iterations: Option<Located<u32>>,
     /// `summation = compensated`.
     pub summation: Option<Located<Summation>>,
     /// `isotropy = fixed`.

@@ -56,6 +56,9 @@ impl fmt::Display for Declaration {
         if let Some(solver) = &dials.solver {
             writeln!(f, "  solver     = {}", solver.value)?;
         }
+        if let Some(iterations) = &dials.iterations {
+            writeln!(f, "  iterations = {}", iterations.value)?;
+        }
         if let Some(tolerance) = &dials.tolerance {
             writeln!(f, "  tolerance  = {:e}", tolerance.value)?;
         }

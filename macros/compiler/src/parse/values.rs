@@ -23,6 +23,7 @@ pub(super) fn example(kind: Kind) -> &'static str {
         Kind::Chart => "exponential",
         Kind::Solver => "fixed_point",
         Kind::Tolerance => "1e-8",
+        Kind::Iterations => "4",
         Kind::Summation => "compensated",
         Kind::Isotropy => "free",
         Kind::Emit => "[generated]",
@@ -78,6 +79,10 @@ pub(super) fn read(
         Kind::Tolerance => {
             let literal: Lit = stream.parse().map_err(|_| expected("a number"))?;
             keys.dials.tolerance = read_tolerance(&literal, diagnostics);
+        }
+        Kind::Iterations => {
+            let literal: Lit = stream.parse().map_err(|_| expected("a number"))?;
+            keys.dials.iterations = read_iterations(&literal, diagnostics);
         }
         Kind::Summation => keys.dials.summation = read_name(key, kind, stream, &SUMMATIONS, diagnostics)?,
         Kind::Isotropy => keys.dials.isotropy = read_name(key, kind, stream, &ISOTROPIES, diagnostics)?,
@@ -176,6 +181,25 @@ fn read_tolerance(literal: &Lit, diagnostics: &mut Diagnostics) -> Option<Locate
             error
                 .help("write a number between 0 and 1, as in `tolerance = 1e-8`, or leave the key out for round-off")
                 .note("it is the part of a step by which its momentum equation may be missed"),
+        );
+    }
+    found.map(|value| Located { value, span: literal.span() })
+}
+
+/// A whole number above zero.
+fn read_iterations(literal: &Lit, diagnostics: &mut Diagnostics) -> Option<Located<u32>> {
+    let number = match literal {
+        Lit::Int(number) if number.suffix().is_empty() => number.base10_parse().ok(),
+        _ => None,
+    };
+    let found = number.filter(|count: &u32| *count > 0);
+    if found.is_none() {
+        let written = super::spelling::tokens(literal);
+        let error = Diagnostic::new(literal.span(), format!("`{written}` is no number of iterations"));
+        diagnostics.push(
+            error
+                .help("write a whole number above zero, as in `iterations = 4`, or leave the key out")
+                .note("it is the most iterations that a step makes for each of its momentum equations; a step that needs more is an error"),
         );
     }
     found.map(|value| Located { value, span: literal.span() })

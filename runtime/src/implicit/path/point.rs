@@ -1,6 +1,6 @@
 //! Points of the path, and Newton's method with one unknown held fixed.
 
-use super::{LINEARIZATIONS, unsolvable};
+use super::unsolvable;
 use crate::implicit::{Equation, is_much_smaller, size};
 use crate::linear::{Orientation, eliminate, rows};
 use crate::space::larger;
@@ -36,6 +36,10 @@ pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
     /// Size of ρ(0; μ): what a residual is measured by.
     pub weight: T,
     count: u32,
+    /// The most linearisations.
+    most: u32,
+    /// The iterations before the path was followed.
+    made: u32,
 }
 
 /// ρ, Dρ and ∂ρ/∂s at a point.
@@ -46,10 +50,11 @@ struct Linearization<T: Real, const M: usize> {
 }
 
 impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
-    pub fn new(equation: &'a E, target: &SVector<T, N>) -> Self {
+    pub fn new(equation: &'a E, target: &SVector<T, N>, made: u32, most: u32) -> Self {
         let still = equation.prepare(&SVector::from_element(T::zero()));
         let moving = equation.prepare(target);
-        Self { equation, still, moving, branch: Orientation::POSITIVE, scale: T::zero(), weight: T::zero(), count: 0 }
+        let (branch, scale, weight) = (Orientation::POSITIVE, T::zero(), T::zero());
+        Self { equation, still, moving, branch, scale, weight, count: 0, most, made }
     }
 
     /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight.
@@ -70,7 +75,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     pub fn is_affordable(&self) -> bool {
-        self.count < LINEARIZATIONS
+        self.count < self.most
     }
 
     pub fn count(&mut self, linearizations: u32) {
@@ -80,7 +85,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     /// The error for too much work.
     pub fn exhausted(&mut self, here: &Point<T, M>) -> Error {
         let (residual, _) = self.equation.linearize(&self.moving, &here.xi);
-        Error::NotConverged { residual: (size(&residual) / self.weight).to_f64(), iterations: self.count }
+        Error::NotConverged { residual: (size(&residual) / self.weight).to_f64(), iterations: self.made + self.count }
     }
 
     /// Whether a residual is no more than the rounding of terms of the size `terms`.
@@ -163,6 +168,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     /// ρ(ξ; sμ) = ρ(ξ; 0) + s(ρ(ξ; μ) − ρ(ξ; 0)), for ρ is affine in μ.
     fn linearize(&mut self, xi: &SVector<T, M>, s: T) -> Linearization<T, M> {
         self.count(2);
+        T::iterated();
+        T::iterated();
         let (residual, jacobian) = self.equation.linearize(&self.still, xi);
         let (residual_moving, jacobian_moving) = self.equation.linearize(&self.moving, xi);
         let rate = residual_moving - residual;
