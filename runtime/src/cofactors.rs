@@ -102,7 +102,10 @@ impl<T: Scalar> Inverse<T> {
         // comparisons with NaN are false
         let is_safe = |product: T| least.at_most(product) & (product * least).at_most(T::one());
         let is_regular = (cancelled::<T>() * (la * (lb * lc))).at_most(determinant.abs());
-        let known = is_regular & is_safe(la * lb) & is_safe(lb * lc) & is_safe(lc * la) & reciprocal.finite();
+        // neither is below the normal numbers where four times the other does not overflow
+        let four = T::from_ratio(4, 1);
+        let is_normal = (four * determinant).finite() & (four * reciprocal).finite();
+        let known = is_regular & is_safe(la * lb) & is_safe(lb * lc) & is_safe(lc * la) & is_normal;
         Self { adjugate, reciprocal, known }
     }
 

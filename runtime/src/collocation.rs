@@ -112,8 +112,7 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     table.guess(&guess, &mut stages);
     let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
     table.sweep((t, h), &stages, open, &mut slopes, &slope);
-    let mut before = T::zero();
-    let mut count = 0;
+    let (mut before, mut count) = (T::zero(), 0);
     while count < most && open.any() {
         T::iterated();
         table.stages(start, &slopes, &mut stages);
@@ -123,15 +122,12 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
         let change = changes[0] / positive(sizes[0]) + changes[1] / positive(sizes[1]);
         let stays = if count == 1 { T::Mask::nowhere() } else { before.at_most(change) };
         open = open & change.finite();
-        let arrived = open & (change.at_most(tolerance * tolerance) | stays & change.at_most(rounding()));
+        let arrived = open & (change.at_most(tolerance) | stays & change.at_most(rounding()));
         (solved, open) = (solved | arrived, open & !arrived);
-        before = change;
+        before = T::select(change.finite(), change, before);
     }
     if !solved.any() {
-        return Err(match (count < most, before.sqrt().to_f64()) {
-            (true, _) => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
-            (false, residual) => Error::NotConverged { residual, iterations: count },
-        });
+        return Err(failure(before, count));
     }
     for _ in 0..T::DERIVATIVES * SWEEPS_OF_DERIVATIVES {
         table.stages(start, &slopes, &mut stages);
@@ -205,7 +201,7 @@ impl<T: Scalar, const H: usize> Table<T, H> {
         }
     }
 
-    /// The slopes at all stages, in the lanes that are open, and |h ΔK|² of those of q and of p.
+    /// The slopes at all stages, in the lanes that are open, and |h ΔK| of those of q and of p: the sums over all stages and entries.
     #[inline(always)]
     fn sweep<const N: usize, const S: usize>(
         &self,
@@ -224,30 +220,39 @@ impl<T: Scalar, const H: usize> Table<T, H> {
             let found = slope(t + self.node(i) * h, &place);
             for v in 0..N {
                 let change = found[v] - slopes[v][i];
-                changes[2 * v / N][i] += change * change;
+                changes[2 * v / N][i] += change.abs();
                 // a single lane is open as long as there are sweeps
                 slopes[v][i] = if T::LANES == 1 { found[v] } else { T::select(open, found[v], slopes[v][i]) };
             }
         }
-        changes.map(|changes| changes.into_iter().fold(T::zero(), |sum, change| sum + change) * (h * h))
+        changes.map(|changes| changes.into_iter().fold(T::zero(), |sum, change| sum + change) * h.abs())
     }
 }
 
-/// |q|² and |p|² with the squares of h q′ and h p′ at the first node and at the last.
+/// |q| and |p| with h q′ and h p′ at the first node and at the last: sums, as squares would leave the range of numbers sooner.
 #[inline]
 fn sizes<T: Scalar, const N: usize, const S: usize>(h: T, start: &[T; N], slopes: &[[T; S]; N]) -> [T; 2] {
     let mut sizes = [T::zero(); 2];
     for v in 0..N {
         let (one, other) = (h * slopes[v][0], h * slopes[v][S / 2]);
-        sizes[2 * v / N] += start[v] * start[v] + (one * one + other * other);
+        sizes[2 * v / N] += start[v].abs() + (one.abs() + other.abs());
     }
     sizes
 }
 
-/// (1024 ε)²
+/// 1024 ε
 fn rounding<T: Scalar>() -> T {
-    let bound = T::EPSILON * T::from_ratio(ROUNDING, 1);
-    bound * bound
+    T::EPSILON * T::from_ratio(ROUNDING, 1)
+}
+
+/// Why sweeps have found nothing: slopes near the guess that are no numbers, so that no change was one, or changes that do not shrink, whether or
+/// not they have overflowed since.
+#[cold]
+fn failure<T: Scalar>(last_change: T, sweeps: u32) -> Error {
+    match last_change.to_f64() {
+        0.0 => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
+        residual => Error::NotConverged { residual, iterations: sweeps },
+    }
 }
 
 /// x, or 1 where x = 0.

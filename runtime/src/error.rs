@@ -68,7 +68,7 @@ pub enum Error {
         tolerance: f64,
     },
     /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact drifts: the motion is longer
-    /// than formulas of duplication (on SO(3)) or parts (on SO(4)) reach, some thousand radians.
+    /// than formulas of duplication (on SO(3); h|M|/J up to some 10⁷ in `f64` and a thousand in `f32`) or parts (on SO(4), some thousand radians) reach.
     Unsolvable {
         /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
         solvable_fraction: f64,

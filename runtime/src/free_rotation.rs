@@ -35,8 +35,18 @@ mod duplication;
 mod series;
 mod turn;
 
-/// The most duplications.
-const DUPLICATIONS: u32 = 10;
+/// The most duplications: each doubles the error of the angle, which is that of its last digit.
+const DUPLICATIONS: u32 = 24;
+
+/// The error of an angle up to which it is still one.
+const LARGEST_ERROR: f64 = 1.0 / 8192.0;
+
+/// How many duplications numbers of this type are good for: 10 of `f32`.
+fn duplications<T: Scalar>() -> u32 {
+    let good =
+        (1..=DUPLICATIONS).take_while(|&times| f64::from(1 << times) * T::Lane::EPSILON.to_f64() <= LARGEST_ERROR);
+    good.last().unwrap_or(1)
+}
 
 /// What a motion keeps: d_i x over 2ⁿ, and 2⁻ⁿ, by which m is multiplied too; 0 where the motion is too long.
 pub type KeptRotation<T> = SVector<T, 4>;
@@ -359,7 +369,8 @@ impl<T: Scalar> FreeRotation<T> {
             return Err(Error::NotFinite { name: "the momentum" });
         }
         let (mut size, mut part) = (<T::Lane as One>::one(), *m);
-        for times in 1..=DUPLICATIONS {
+        let most = duplications::<T>();
+        for times in 1..=most {
             (size, part) = (half(size), part.map(half));
             let invariants = self.invariants(lane, &part);
             let sum = self.sum_of_series(lane, invariants);
@@ -369,7 +380,7 @@ impl<T: Scalar> FreeRotation<T> {
         }
         let [.., reach] = of_lane(&self.reach, lane);
         let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
-        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << DUPLICATIONS)) * (reach / square).sqrt();
+        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach / square).sqrt();
         Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
     }
 

@@ -5,7 +5,7 @@
 
 use crate::cofactors;
 use crate::space::larger;
-use crate::{Mask, Scalar};
+use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
 use core::ops::Mul;
 use nalgebra::{SMatrix, SVector};
@@ -180,13 +180,23 @@ pub fn solve_dense<T: Scalar, const M: usize>(
     if safe.all() { Some((x, orientation)) } else { eliminated_at_last((a, b), (x, orientation, safe)) }
 }
 
-/// The same where cofactors do not serve in all lanes.
+/// The same where cofactors do not serve in all lanes: near the ends of the exponent range in other units, in which the digits are those of numbers
+/// of ordinary size, and elsewhere by elimination.
 #[cold]
 #[inline(never)]
 fn eliminated_at_last<T: Scalar, const M: usize>(
     (a, b): (&SMatrix<T, M, M>, &SVector<T, M>),
-    (x, orientation, safe): (SVector<T, M>, Orientation, T::Mask),
+    (mut x, mut orientation, mut safe): (SVector<T, M>, Orientation, T::Mask),
 ) -> Option<(SVector<T, M>, Orientation)> {
+    let unit = power_of_two_near(a.max_abs());
+    let (other, turned, other_safe) = cofactors::solve(&a.map(|entry| entry * unit), &b.map(|entry| entry * unit));
+    if (!safe & other_safe).any() {
+        x = x.zip_map(&other, |own, other| T::select(safe, own, other));
+        (orientation, safe) = (orientation.or(safe.bits(), Some(turned)), safe | other_safe);
+    }
+    if safe.all() {
+        return Some((x, orientation));
+    }
     match eliminated(a, b) {
         Some((other, turned)) => {
             let x = x.zip_map(&other, |own, other| T::select(safe, own, other));
@@ -194,6 +204,22 @@ fn eliminated_at_last<T: Scalar, const M: usize>(
         }
         None => safe.any().then(|| (x, orientation.or(safe.bits(), None))),
     }
+}
+
+/// 2¹⁶ᵏ, times which `size` is between 2⁻¹⁶ and 2¹⁶; where it is zero or not finite any power.
+fn power_of_two_near<T: Scalar>(size: T) -> T {
+    /// For the range of `f64` in steps of 2¹⁶.
+    const STEPS: usize = 64;
+    let (large, small) = (T::from_ratio(1 << 16, 1), T::from_ratio(1, 1 << 16));
+    let mut power = T::one();
+    for _ in 0..STEPS {
+        let (is_small, is_large) = ((size * power).below(small), large.below(size * power));
+        if !(is_small | is_large).any() {
+            break;
+        }
+        power = T::select(is_small, power * large, T::select(is_large, power * small, power));
+    }
+    power
 }
 
 #[inline]
@@ -309,6 +335,23 @@ mod tests {
         assert_eq!(solve_linear(&Matrix2::new(1.0, 2.0, 2.0, 4.0), &Vector2::x()), None);
         assert_eq!(product(&[[1.0, 2.0], [3.0, 4.0]], &[[0.0, 1.0], [-1.0, 5.0]]), [[-2.0, 11.0], [-4.0, 23.0]]);
         assert_eq!(norm(&[[1.0, -2.0], [-3.0, -4.0]]), 7.0);
+    }
+
+    /// Units of powers of two change no digit, up to the ends of the exponent range, where determinants leave it.
+    #[test]
+    fn solutions_have_no_units() {
+        let (a, b) = (Matrix3::new(4.0, 1.0, -0.5, 1.25, 3.0, 0.75, -0.5, 0.25, 2.0), Vector3::new(1.0, -2.0, 0.5));
+        let expected = solve_dense(&a, &b);
+        for k in -1000..1000 {
+            let unit = 2.0_f64.powi(k);
+            assert_eq!(solve_dense(&(a * unit), &(b * unit)), expected, "2^{k}");
+        }
+        let (a, b) = (a.map(|x| x as f32), b.map(|x| x as f32));
+        let expected = solve_dense(&a, &b);
+        for k in -115..120 {
+            let unit = 2.0_f32.powi(k);
+            assert_eq!(solve_dense(&(a * unit), &(b * unit)), expected, "2^{k} in single precision");
+        }
     }
 
     /// A definite matrix, an indefinite one, one whose leading minors vanish, and a singular one.

@@ -70,9 +70,12 @@ fn failures_say_what_they_are() {
     assert!(matches!(long, Err(Error::NotConverged { iterations: 64, residual }) if residual > 1e-3), "{long:?}");
     let root = step(0.5, 0.0, [0.1, -1.0], |_, y| [y[1], -y[0].sqrt()]);
     assert!(matches!(root, Err(Error::NotFinite { .. })), "{root:?}");
-    // exponential growth overflows before it could converge
+    // sweeps that overflow have not converged, and nothing was wrong with the slopes
     let steep = step(1e3, 0.0, [1.0, 1.0], |_, y| [y[1] * y[1] * y[1], y[0] * y[0] * y[0]]);
-    assert!(matches!(steep, Err(Error::NotFinite { .. } | Error::NotConverged { .. })), "{steep:?}");
+    assert!(
+        matches!(steep, Err(Error::NotConverged { iterations, residual }) if iterations < 64 && residual > 1.0),
+        "{steep:?}"
+    );
 }
 
 /// A step back undoes a step.

@@ -223,6 +223,23 @@ fn what_cannot_be_is_said() {
     assert!(free.gibbs_vector(&Vector3::new(1e9 * solvable_fraction, 0.0, 0.0)).is_ok());
 }
 
+/// A needle turns slowly, but h|M|/J about its axis is large: exp(hM/J⊥) exp(hω(1 − J/J⊥)e₁) in closed form. The error is that of such an angle's last digit.
+#[test]
+fn needles_take_many_duplications() {
+    for moment in [1e-4, 1e-5, 1e-6, 1e-7] {
+        let (h, omega) = (0.05, Vector3::new(1.0, 0.7, -0.4));
+        let momentum = omega.component_mul(&Vector3::new(moment, 1.0, 1.0));
+        let c = body([moment, 1.0, 1.0], h).gibbs_vector(&momentum).expect("not too long");
+        let own = Vector3::x() * (h * omega.x * (1.0 - moment));
+        let half = |angle: Vector3<f64>| angle * ((angle.norm() / 2.0).tan() / angle.norm());
+        let expected = composed(&half(momentum * h), &half(own));
+        let angle = h * momentum.norm() / moment;
+        let error = (c - expected).norm();
+        std::println!("needle {moment:e}: an error of {error:.1e}, angles up to {angle:.1e}");
+        assert!(error <= 4.0 * f64::EPSILON * angle, "needle {moment:e}: {error:.1e}");
+    }
+}
+
 /// F ↦ Fᵀ M
 fn carried(momentum: &Vector3<f64>, c: &Vector3<f64>) -> Vector3<f64> {
     let once = c.cross(momentum);
