@@ -14,12 +14,14 @@
 //! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
 //! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |
 //! | [`extremal`] | continuous problems with bounded inputs, by Pontryagin's conditions and shooting |
+//! | [`counted`] | numbers that count iterations |
 //! | [`noise`] | normal random numbers from a seed |
 //! | [`scene`] | the frame of a `main`: failures, exit codes, output |
 
 pub mod claims;
 pub mod conserved;
 pub mod convergence;
+pub mod counted;
 pub mod csv;
 pub mod elliptic;
 pub mod energy_band;

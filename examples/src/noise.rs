@@ -1,4 +1,4 @@
-//! Normal random numbers from a seed, the same on every machine.
+//! Random numbers from a seed, the same on every machine.
 
 /// SplitMix64: Steele, Lea and Flood, *Fast splittable pseudorandom number generators* (2014).
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ impl Noise {
     }
 
     /// Between 0 and 1, neither of them.
-    fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 

@@ -20,7 +20,7 @@ pub use crate::implicit::{
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::opaque::check_slope;
-pub use crate::orbit::{largest, length_defect, orientation_defect, orthogonality_defect};
+pub use crate::orbit::{largest, length_defect, of_length_one, orientation_defect, orthogonal, orthogonality_defect};
 pub use crate::parameters::{
     annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
 };

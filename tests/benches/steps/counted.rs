@@ -64,32 +64,21 @@ pub struct Work {
     pub linearizations: f64,
 }
 
-/// The work of `steps` steps. `rest` is a state in equilibrium, from where a step makes one linearisation and so checks one
-/// determinant for every three unknowns; no unknowns stand for an explicit step.
-pub fn work<S: Clebsch<Scalar = Counted>>(
-    stepper: &Stepper<S>,
-    start: State<S>,
-    rest: State<S>,
-    unknowns: u64,
-    steps: u64,
-) -> Work {
-    let count = |mut state: State<S>, steps: u64| {
-        OPERATIONS.set(0);
-        CHECKS.set(0);
-        for _ in 0..steps {
-            state = stepper.step(&state).expect("a step of moderate size");
-        }
-        (OPERATIONS.get() as f64 / steps as f64, CHECKS.get() as f64 / steps as f64)
-    };
-    let ((operations, checks), (_, checks_at_rest)) = (count(start, steps), count(rest, 1));
-    let linearizations = if unknowns == 0 { 0.0 } else { 1.0 + 3.0 * (checks - checks_at_rest) / unknowns as f64 };
+/// The work of `steps` steps.
+pub fn work<S: Clebsch<Scalar = Counted>>(stepper: &Stepper<S>, start: State<S>, steps: u64) -> Work {
+    OPERATIONS.set(0);
+    ITERATIONS.set(0);
+    let mut state = start;
+    for _ in 0..steps {
+        state = stepper.step(&state).expect("a step of moderate size");
+    }
+    let [operations, linearizations] = [&OPERATIONS, &ITERATIONS].map(|count| count.get() as f64 / steps as f64);
     Work { operations, linearizations }
 }
 
 thread_local! {
     static OPERATIONS: Cell<u64> = const { Cell::new(0) };
-    /// Of finiteness: each linear system checks its determinants, each step its result.
-    static CHECKS: Cell<u64> = const { Cell::new(0) };
+    static ITERATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
 /// An `f64` that counts what is done with it.
@@ -166,8 +155,10 @@ impl Scalar for Counted {
         self.0
     }
     fn is_finite(self) -> bool {
-        CHECKS.set(CHECKS.get() + 1);
         self.0.is_finite()
+    }
+    fn iterated() {
+        ITERATIONS.set(ITERATIONS.get() + 1);
     }
     fn abs(self) -> Self {
         Self(self.0.abs())

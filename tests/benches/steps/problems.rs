@@ -79,7 +79,7 @@ fn free_body(h: f64) -> Vec<Result> {
     let work = {
         let stepper = counted::PrincipalBody { moments: three(inertia) }.into_stepper(Counted(h)).expect("a body");
         let state = |m| stepper.state(Matrix3::identity().map(Counted), three(m)).expect("a state");
-        work(&stepper, state(momentum), state([0.0; 3]), 3, 1000)
+        work(&stepper, state(momentum), 1000)
     };
     let engine = Gyroscopic::new(h, inertia, momentum);
     let trials = vec![
@@ -108,7 +108,7 @@ fn heavy_top(h: f64) -> Vec<Result> {
         let top = counted::HeavyTop { mass_matrix, weight: Counted(1.0), center };
         let stepper = top.into_stepper(Counted(h)).expect("a top");
         let state = |r: Matrix3<f64>, m| stepper.state(r.map(Counted), three(m)).expect("a state");
-        work(&stepper, state(attitude, momentum), state(Matrix3::identity(), [0.0; 3]), 3, 1000)
+        work(&stepper, state(attitude, momentum), 1000)
     };
     let compensated =
         CompensatedTop { mass_matrix, weight: 1.0, center: center.into() }.into_stepper(h).expect("a top");
@@ -133,7 +133,7 @@ fn pendulum(name: &'static str, gravity: f64, h: f64) -> Vec<Result> {
         let stepper =
             counted::SphericalPendulum { mass, length, gravity }.into_stepper(Counted(h)).expect("a pendulum");
         let state = |q, m| stepper.state(three(q), three(m)).expect("a state");
-        work(&stepper, state(position, momentum), state([0.0, 0.0, 1.0], [0.0; 3]), 0, 1000)
+        work(&stepper, state(position, momentum), 1000)
     };
     let trials = vec![derived(&stepper, start, 1.0), by_hand("rust_hand_map", hand), by_hand("rust_rk4", rk4)];
     results(name, h, 100, trials, work)
@@ -155,7 +155,7 @@ fn four_dimensions(h: f64) -> Vec<Result> {
         let stepper = counted::RigidBody4 { j_d: diagonal.map(Counted) }.into_stepper(Counted(h)).expect("a body");
         let state =
             |m: SVector<f64, 6>| stepper.state(Matrix4::identity().map(Counted), m.map(Counted)).expect("a state");
-        work(&stepper, state(components), state(SVector::zeros()), 6, 1000)
+        work(&stepper, state(components), 1000)
     };
     // The pairing tr(MᵀΩ) counts each plane twice.
     let trials = vec![derived(&stepper, start, 0.5), by_hand("rust_hand_fixed_point", hand), by_hand("rust_rk4", rk4)];

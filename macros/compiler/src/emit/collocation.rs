@@ -72,7 +72,7 @@ impl Emitter<'_, '_> {
                 quote!((*x * part, [<#scalar as #private::One>::one(); #count]))
             }
         };
-        let (advanced, entries) = (self.advanced_plainly(step), self.flat());
+        let (advanced, entries) = (self.moved_alone(step), self.flat());
         quote! {
             #whole
             /// (q, p) after a part of the step, moved along by the velocity of its start: on the orbit of q.
@@ -151,6 +151,7 @@ impl Emitter<'_, '_> {
                 quote!(let q = #sum;)
             }
         };
+        let on_spaces = if self.is_compensated() { quote!() } else { self.kept_on_spaces() };
         let unused = (!self.is_compensated()).then(|| quote!(let _ = impulse;));
         quote! {
             /// (q, N) ↦ (q⁺, N⁺), where N⁺ − N = J(q⁺, p⁺) − J(q, p) is made of the changes of q and p at the middle of the step.
@@ -177,6 +178,7 @@ impl Emitter<'_, '_> {
                     #krate::Clebsch::momentum_map(self.system, &dq, &p) #of_origin + #krate::Clebsch::momentum_map(self.system, &q, &dp)
                 };
                 #moved
+                #on_spaces
                 #pushed
                 ::core::result::Result::Ok((q, mu, #kept))
             }

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use clebsch_symbolic::Chart;
+use clebsch_symbolic::{Chart, Group};
 
 use crate::derive::{Collocation, Equation, Solution, Structure, Substep};
 use crate::lower::{Program, Solve};
-use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side};
+use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side, Space};
 
 /// The text of `DERIVATION`.
 pub fn derivation(program: &Program<'_>) -> String {
@@ -274,7 +274,28 @@ fn scheme(program: &Program<'_>) -> String {
     if program.formulas.is_compensated() {
         text += COMPENSATED;
     }
+    text += &spaces(program);
     text + &tolerance(program) + &iterations(program)
+}
+
+/// What keeps configurations on their spaces.
+fn spaces(program: &Program<'_>) -> String {
+    if program.formulas.is_compensated() {
+        return String::new();
+    }
+    let is = |which: fn(&Space) -> bool| program.formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
+    let rotations = is(|space| matches!(space, Space::Group(group) if group.is_orthogonal()));
+    let lengths = is(|space| matches!(space, Space::Unit | Space::Group(Group::UnitQuaternions)));
+    let (what, how) = match (rotations, lengths) {
+        (false, false) => return String::new(),
+        (true, false) => ("orthogonal matrices", "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε"),
+        (false, true) => ("what has length one", "by q(3 − |q|²)/2 once |q|² is off by 8ε"),
+        (true, true) => (
+            "orthogonal matrices and what has length one",
+            "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε, by q(3 − |q|²)/2 once |q|² is off by 8ε",
+        ),
+    };
+    format!("Rounding is taken off {what}, {how}: they stay there for any number of steps.\n")
 }
 
 /// How much work a step may be.
@@ -328,7 +349,7 @@ fn collocated(program: &Program<'_>, collocation: &Collocation<'_>) -> String {
     if program.formulas.is_compensated() {
         text += COMPENSATED;
     }
-    text
+    text + &spaces(program)
 }
 
 /// How a splitting goes.

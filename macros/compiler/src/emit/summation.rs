@@ -1,10 +1,12 @@
 //! How a step adds to q and N: as numbers are added, or with the rests that rounding leaves.
 
+use clebsch_symbolic::Group;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::{Emitter, code};
 use crate::lower::StepKernels;
+use crate::model::Space;
 
 impl Emitter<'_, '_> {
     /// What one step leaves to the next.
@@ -48,16 +50,44 @@ impl Emitter<'_, '_> {
     /// The move of q, by the increments or by the chart coordinates.
     pub(super) fn advanced(&self, step: &StepKernels) -> TokenStream {
         let (private, scalar, moved) = (&self.paths.private, &self.paths.scalar, self.moved(step));
+        let kept = self.kept_on_spaces();
         match self.is_compensated() {
+            // rounding of what is compensated is a hundredth
             true => quote!(let (q, q_rest) = #private::accumulate::<#scalar, _>(&q, &q_rest, &#moved);),
-            false => quote!(let q = #moved;),
+            false => quote!(let q = #moved; #kept),
         }
     }
 
     /// The same where no rests are kept.
     pub(super) fn advanced_plainly(&self, step: &StepKernels) -> TokenStream {
+        let (moved, kept) = (self.moved_alone(step), self.kept_on_spaces());
+        quote!(#moved #kept)
+    }
+
+    /// The same without a look at the rounding of q.
+    pub(super) fn moved_alone(&self, step: &StepKernels) -> TokenStream {
         let moved = self.moved_to(self.moved(step));
         quote!(let q = #moved;)
+    }
+
+    /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions; nothing where there are none.
+    pub(super) fn kept_on_spaces(&self) -> TokenStream {
+        let private = &self.paths.private;
+        let leaves = self.model.configurations.iter().filter_map(|leaf| {
+            let access = code::accessor(&leaf.accessor);
+            match leaf.space {
+                Space::Group(Group::UnitQuaternions) => {
+                    Some(quote!(q #access.coords = #private::of_length_one(q #access.coords);))
+                }
+                Space::Group(group) if group.is_orthogonal() => {
+                    Some(quote!(q #access = #private::orthogonal(q #access);))
+                }
+                Space::Unit => Some(quote!(q #access = #private::of_length_one(q #access);)),
+                Space::Vectors | Space::Group(_) => None,
+            }
+        });
+        let leaves: Vec<_> = leaves.collect();
+        if leaves.is_empty() { TokenStream::new() } else { quote!(let mut q = q; #(#leaves)*) }
     }
 
     /// q⁺ of what the kernel of the move gives: itself, or what is added to q.

@@ -402,6 +402,7 @@ impl Emitter<'_, '_> {
                 Space::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
                     Some(quote!(#private::orientation_defect(&q #access)))
                 }
+                Space::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
                 Space::Unit => Some(quote!(#private::length_defect(&q #access))),
                 Space::Vectors | Space::Group(_) => None,
             }

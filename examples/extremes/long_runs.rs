@@ -1,0 +1,103 @@
+//! How errors of rounding grow over many steps.
+
+use crate::declarations::{bodies, pendulums, tops};
+use crate::map::{SCALARS, size};
+use crate::parallel::in_parallel;
+use crate::probe::{Dial, Drift, Setup};
+use crate::rows::align;
+use clebsch_examples::claims::Claims;
+use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
+use clebsch_examples::scene::{Failure, say};
+use std::path::Path;
+
+const COLOURS: [RGBColor; 7] = [BLUE, GREEN, ORANGE, RED, PURPLE, TEAL, INK];
+
+/// What is let run for long.
+fn dials() -> Vec<Dial> {
+    let chosen = ["moser_veselov", "exact", "compensated", "exact, order 4", "chord", "exponential, order 4"];
+    [bodies(), tops(), pendulums()].concat().into_iter().filter(|dial| chosen.contains(&dial.name)).collect()
+}
+
+/// The exponent p of a quantity that grows like stepsᵖ, by least squares in logarithms over the last decades.
+fn growth(drifts: &[Drift], of: fn(&Drift) -> f64) -> f64 {
+    let points: Vec<(f64, f64)> = drifts
+        .iter()
+        .filter(|drift| drift.steps >= 10_000 && of(drift) > 0.0)
+        .map(|drift| ((drift.steps as f64).ln(), of(drift).ln()))
+        .collect();
+    let count = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let above: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    above / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+}
+
+/// Runs all of them, to `steps` steps.
+pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result<(), Failure> {
+    let decades = (3..).map(|power| 10_u64.pow(power)).take_while(|&count| count <= steps);
+    let marks: Vec<u64> = decades.flat_map(|count| [count, 3 * count]).filter(|&count| count <= steps).collect();
+    let dials = dials();
+    for (scalar, name) in SCALARS.into_iter().enumerate() {
+        let jobs = dials.iter().map(|dial| || dial.drift[scalar](&Setup::ordinary(), &marks));
+        let runs: Vec<_> = in_parallel(jobs.collect()).into_iter().collect::<Result<_, _>>()?;
+        say(format_args!(
+            "Long runs, {name}: root mean square between {:.0e} and {:.0e} steps of h = {}, relative, and the exponent p of steps^p\n",
+            marks[marks.len().saturating_sub(2)] as f64,
+            *marks.last().unwrap_or(&0) as f64,
+            Setup::ordinary().h
+        ));
+        let mut rows = vec![["", "energy", "p", "momenta", "p", "constraint", "p"].map(str::to_owned).to_vec()];
+        for (dial, drifts) in dials.iter().zip(&runs) {
+            let mut row = vec![format!("{}, {}", dial.scene, dial.name)];
+            let quantities: [fn(&Drift) -> f64; 3] =
+                [|drift| drift.energy, |drift| drift.momentum, |drift| drift.constraint];
+            for of in quantities {
+                row.push(drifts.last().map_or(String::new(), |last| size(of(last))));
+                row.push(format!("{:.1}", growth(drifts, of)));
+            }
+            claim(claims, dial, name, scalar, drifts);
+            rows.push(row);
+        }
+        say(align(&rows));
+        draw(&dials, &runs, name, folder)?;
+    }
+    Ok(())
+}
+
+/// Momenta and constraints stay below one rounding a step, all of the same sign.
+fn claim(claims: &mut Claims, dial: &Dial, name: &str, scalar: usize, drifts: &[Drift]) {
+    let Some(last) = drifts.last() else { return };
+    let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
+    let bound = epsilon * last.steps as f64;
+    claims.at_most(
+        &format!("long runs, {name}, {}, {}", dial.scene, dial.name),
+        last.momentum.max(last.constraint),
+        bound,
+        "momenta and constraint, at most ε a step",
+    );
+}
+
+fn draw(dials: &[Dial], runs: &[Vec<Drift>], scalar: &str, folder: Option<&Path>) -> Result<(), Failure> {
+    let name = format!("extremes_drift_{scalar}");
+    let path = folder.map(|folder| folder.join(&name).with_extension("svg"));
+    let labels: Vec<String> = dials.iter().map(|dial| format!("{}: {}", dial.scene, dial.name)).collect();
+    let curves: Vec<Curve<'_>> = labels
+        .iter()
+        .zip(runs)
+        .zip(COLOURS.into_iter().cycle())
+        .map(|((label, drifts), colour)| Curve {
+            label,
+            colour,
+            width: 1.5,
+            points: drifts.iter().map(|drift| (drift.steps as f64, drift.momentum)).collect(),
+            ringed: Vec::new(),
+        })
+        .collect();
+    let chart = Decades {
+        title: &format!("Rounding of conserved momenta, {scalar}"),
+        x_label: "steps",
+        y_label: "root mean square over |π|",
+        curves: &curves,
+    };
+    figure::draw_to(path.as_deref(), &name, (1000, 560), |area| chart.draw(area))
+}

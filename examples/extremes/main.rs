@@ -1,0 +1,120 @@
+//! The map of the edge: what happens where step sizes, bodies, units, starts and potentials are extreme, in both number types.
+//!
+//! Each section runs scenes with their dials over one quantity and prints a table. What must never happen is claimed: a result that is not finite, work
+//! beyond its bound, a momentum or a constraint that leaves rounding.
+
+mod declarations;
+mod inertia;
+mod long_runs;
+mod magnitudes;
+mod map;
+mod parallel;
+mod potentials;
+mod probe;
+mod random;
+mod random_states;
+mod rows;
+mod starts;
+mod step_sizes;
+
+use clap::{Parser, ValueEnum};
+use clebsch_examples::claims::Claims;
+use clebsch_examples::flags::count;
+use clebsch_examples::scene::{Failure, conclude, say};
+use map::Map;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The map of the edge: extreme steps, bodies, units, starts, potentials and durations
+#[derive(Parser, Debug)]
+#[command(name = "extremes")]
+struct Flags {
+    /// A thousand million random states of each scene and steps of each long run: hours
+    #[arg(long)]
+    full: bool,
+    /// One section alone
+    #[arg(long, value_name = "NAME")]
+    section: Option<Section>,
+    /// Steps of each long run [default: 1e8 as 100000000]
+    #[arg(long, value_name = "N", value_parser = count)]
+    steps: Option<u64>,
+    /// Random states of each scene, shared by its dials and types [default: 10000000]
+    #[arg(long, value_name = "N", value_parser = count)]
+    states: Option<u64>,
+    /// Write all cells to FILE: section, scene, dial, scalar, value, outcome, steps, iterations, residual, energy, momentum, constraint, error
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draw the figures to FOLDER, as SVG [default: `figures` under cargo's target folder]
+    #[arg(long, value_name = "FOLDER")]
+    figures: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Section {
+    StepSizes,
+    Inertia,
+    Magnitudes,
+    Starts,
+    Potentials,
+    RandomStates,
+    LongRuns,
+}
+
+impl Flags {
+    fn includes(&self, section: Section) -> bool {
+        self.section.is_none_or(|chosen| chosen == section)
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps.unwrap_or(if self.full { 1_000_000_000 } else { 100_000_000 })
+    }
+
+    fn states(&self) -> u64 {
+        self.states.unwrap_or(if self.full { 1_000_000_000 } else { 10_000_000 })
+    }
+
+    /// Random bodies whose bound is looked for.
+    fn bodies(&self) -> u32 {
+        if self.full { 10_000 } else { 300 }
+    }
+}
+
+fn main() -> ExitCode {
+    conclude(run(&Flags::parse()))
+}
+
+fn run(flags: &Flags) -> Result<Claims, Failure> {
+    let mut map = Map::new(flags.csv.as_deref())?;
+    let mut claims = Claims::new();
+    let folder = flags.figures.as_deref();
+    if flags.includes(Section::StepSizes) {
+        step_sizes::explore(&mut map, &mut claims, folder, flags.bodies())?;
+    }
+    if flags.includes(Section::Inertia) {
+        inertia::explore(&mut map, &mut claims)?;
+    }
+    if flags.includes(Section::Magnitudes) {
+        magnitudes::explore(&mut map, &mut claims)?;
+    }
+    if flags.includes(Section::Starts) {
+        starts::explore(&mut map, &mut claims)?;
+    }
+    if flags.includes(Section::Potentials) {
+        potentials::explore(&mut claims)?;
+    }
+    if flags.includes(Section::RandomStates) {
+        random_states::explore(&mut claims, flags.states())?;
+    }
+    if flags.includes(Section::LongRuns) {
+        long_runs::explore(&mut claims, flags.steps(), folder)?;
+    }
+    say(format_args!(
+        "{} runs, {} to their end, the others refused with an error that says why\n",
+        map.cells, map.ended
+    ));
+    claims.at_most("results that are not finite", map.hidden as f64, 0.0, "of all runs");
+    if let Some(path) = map.finish()? {
+        say(format_args!("cells       {}", path.display()));
+    }
+    Ok(claims)
+}

@@ -1,0 +1,210 @@
+//! Potentials that are singular, stiff, or move with the time.
+
+use crate::map::{refusal, size};
+use crate::rows::align;
+use clebsch::{Clebsch, Error};
+use clebsch_examples::claims::Claims;
+use clebsch_examples::scene::{Failure, say};
+use nalgebra::{SVector, Vector1, Vector3};
+use std::f64::consts::TAU;
+
+macro_rules! orders {
+    ($($module:ident $order:literal),*) => {$(
+        mod $module {
+            use clebsch::Clebsch;
+
+            /// A planet: unit mass, unit constant of gravitation.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                action    = |a: Translation<3>, x: Vector3| x + a,
+                cost      = |h, a| a.norm_squared() / (2 * h),
+                potential = |x| -self.attraction / x.norm(),
+                order     = $order,
+            )]
+            pub struct Planet {
+                /// Constant of gravitation times both masses.
+                pub attraction: f64,
+            }
+
+            /// A unit mass on a spring.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                action    = |a: Translation<1>, x: Vector1| x + a,
+                cost      = |h, a| a.norm_squared() / (2 * h),
+                potential = |x| self.stiffness * x.norm_squared() / 2,
+                order     = $order,
+            )]
+            pub struct Spring {
+                /// The square of the angular frequency.
+                pub stiffness: f64,
+            }
+        }
+    )*};
+}
+orders! { first 1, second 2, fourth 4, sixth 6, eighth 8, sixteenth 16 }
+
+/// A unit mass on a spring that is driven.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<1>, x: Vector1| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |t, x| x.norm_squared() / 2 - x.x * (self.frequency * t).sin(),
+)]
+struct Driven {
+    /// Angular frequency of the drive.
+    pub frequency: f64,
+}
+
+/// One more macro for the same call on each order.
+macro_rules! each_order {
+    ($function:ident, $kind:ident) => {
+        [
+            ("order 1", $function::<first::$kind> as fn(_) -> _),
+            ("order 2", $function::<second::$kind>),
+            ("order 4", $function::<fourth::$kind>),
+            ("order 6", $function::<sixth::$kind>),
+            ("order 8", $function::<eighth::$kind>),
+            ("order 16", $function::<sixteenth::$kind>),
+        ]
+    };
+}
+
+macro_rules! made {
+    ($trait:ident, $kind:ident, $field:ident, $dimension:literal: $($module:ident)*) => {
+        /// A system of each order, made of its only parameter.
+        trait $trait: Clebsch<Scalar = f64, Time = (), Input = (), Configuration = SVector<f64, $dimension>, Momentum = SVector<f64, $dimension>> {
+            fn made(parameter: f64) -> Self;
+        }
+        $(impl $trait for $module::$kind {
+            fn made(parameter: f64) -> Self {
+                Self { $field: parameter }
+            }
+        })*
+    };
+}
+made! { Attracted, Planet, attraction, 3: first second fourth sixth eighth sixteenth }
+made! { Elastic, Spring, stiffness, 1: first second fourth sixth eighth sixteenth }
+
+/// All three.
+pub fn explore(claims: &mut Claims) -> Result<(), Failure> {
+    near_collisions(claims);
+    stiff(claims);
+    driven(claims)
+}
+
+/// Two revolutions in 2000 steps on an ellipse that comes as near to the centre as `1 − e`: the largest relative error of the energy, and of the
+/// angular momentum.
+fn revolve<S: Attracted>(nearest: f64) -> Result<[f64; 2], Error> {
+    let stepper = S::made(1.0).into_stepper(TAU / 1000.0)?;
+    let speed = (nearest / (2.0 - nearest)).sqrt();
+    let mut state = stepper.state(Vector3::x() * (2.0 - nearest), Vector3::y() * speed)?;
+    let spin = speed * (2.0 - nearest);
+    let mut errors = [0.0_f64; 2];
+    for _ in 0..2000 {
+        state = stepper.step(&state)?;
+        let now = state.configuration().cross(state.momentum()).z;
+        let found = [(2.0 * stepper.energy(&state) + 1.0).abs(), (now - spin).abs()];
+        for (error, found) in errors.iter_mut().zip(found) {
+            *error = if found <= *error { *error } else { found };
+        }
+    }
+    Ok(errors)
+}
+
+fn near_collisions(claims: &mut Claims) {
+    say(
+        "Potentials: 1/r. Ellipses of half axis 1 in a thousand steps a revolution, two of them: largest relative error of the energy by the nearest distance\n",
+    );
+    let orders = each_order!(revolve, Planet);
+    let mut rows = vec![
+        std::iter::once("nearest".to_owned())
+            .chain(orders.iter().map(|(name, _)| (*name).to_owned()))
+            .collect::<Vec<_>>(),
+    ];
+    let (mut spin, mut hidden) = (0.0_f64, 0);
+    for nearest in [1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12, 0.0] {
+        let mut row = vec![format!("{nearest:e}")];
+        for (_, revolve) in orders {
+            row.push(match revolve(nearest) {
+                Ok([energy, moved]) => {
+                    hidden += u32::from(!(energy.is_finite() && moved.is_finite()));
+                    spin = spin.max(if nearest >= 0.1 { moved } else { 0.0 });
+                    size(energy)
+                }
+                Err(error) => refusal(error),
+            });
+        }
+        rows.push(row);
+    }
+    say(align(&rows));
+    claims.at_most("potentials: numbers that are not finite", f64::from(hidden), 0.0, "each run ends or is refused");
+    claims.at_most("potentials: angular momentum of ellipses", spin, 2000.0 * 16.0 * f64::EPSILON, "16 ε a step");
+}
+
+/// Half of the trace of a step of the spring, whose eigenvalues are on the unit circle as long as it is at most one.
+fn half_trace<S: Elastic>(angle: f64) -> Result<f64, Error> {
+    let stepper = S::made(1.0).into_stepper(angle)?;
+    let image = |x: f64, p: f64| -> Result<[f64; 2], Error> {
+        let next = stepper.step(&stepper.state(Vector1::new(x), Vector1::new(p))?)?;
+        Ok([next.configuration().x, next.momentum().x])
+    };
+    Ok((image(1.0, 0.0)?[0] + image(0.0, 1.0)?[1]) / 2.0)
+}
+
+/// The intervals of h·ω up to 30 that are stable, and why the next is not.
+fn stable(half_trace: fn(f64) -> Result<f64, Error>) -> (f64, String) {
+    const PARTS: u32 = 30_000;
+    for part in 1..=PARTS {
+        let angle = f64::from(part) * 30.0 / f64::from(PARTS);
+        match half_trace(angle) {
+            Ok(half) if half.abs() <= 1.0 + 1e-9 => {}
+            Ok(half) => {
+                return (angle, format!("grows by {:.2} a step at first", half.abs() + (half * half - 1.0).sqrt()));
+            }
+            Err(error) => return (angle, refusal(error)),
+        }
+    }
+    (30.0, "stable".to_owned())
+}
+
+fn stiff(claims: &mut Claims) {
+    say(
+        "Potentials: stiff ones. A unit mass on a spring of the angular frequency ω: the least h·ω at which steps grow, on a grid of 0.001\n",
+    );
+    let mut rows = vec![["", "least hω", "there"].map(str::to_owned).to_vec()];
+    for (name, half_trace) in each_order!(half_trace, Spring) {
+        let (bound, why) = stable(half_trace);
+        rows.push(vec![name.to_owned(), format!("{bound:.3}"), why]);
+        if matches!(name, "order 1" | "order 2") {
+            claims.within(
+                &format!("stiff potentials, {name}"),
+                bound,
+                2.0..=2.002,
+                3,
+                "the bound of Störmer and Verlet is 2",
+            );
+        }
+    }
+    say(align(&rows));
+}
+
+/// The time goes on where a step is below its last place.
+fn driven(claims: &mut Claims) -> Result<(), Failure> {
+    say(
+        "Potentials: in time. A driven spring started late, a million steps of 0.01: by how much the time is off, in units of its last place\n",
+    );
+    let mut rows = vec![["start / s", "off by"].map(str::to_owned).to_vec()];
+    let stepper = Driven { frequency: 0.5 }.into_stepper(0.01)?;
+    let mut worst = 0.0_f64;
+    for start in [0.0, 1e6, 1e12, 1e15, 1e17, 1e100] {
+        let state = stepper.state_at(start, Vector1::zeros(), Vector1::zeros())?;
+        let late: f64 = stepper.advance(&state, 1_000_000)?.time();
+        let expected = start + 1e4;
+        let off = (late - expected).abs() / (f64::EPSILON * expected);
+        worst = worst.max(off);
+        rows.push(vec![format!("{start:e}"), format!("{off:.2}")]);
+    }
+    say(align(&rows));
+    claims.at_most("time of a late start", worst, 1.0, "units in the last place");
+    Ok(())
+}

@@ -1,0 +1,105 @@
+//! The most work of a step, over many random states.
+
+use crate::declarations::{bodies, pendulums, tops};
+use crate::map::SCALARS;
+use crate::parallel::in_parallel;
+use crate::probe::{Dial, Sample, Setup};
+use crate::random::Random;
+use crate::rows::align;
+use clebsch_examples::claims::Claims;
+use clebsch_examples::scene::{Failure, say};
+
+/// States of one body.
+const STATES: u64 = 10_000;
+/// Most iterations of a solve: 12 by Newton's method, then 1024 along the path and those of its last step, at most 8 more. A step of order 16
+/// makes at most 64 sweeps.
+const ITERATIONS: u32 = 12 + 1024 + 8;
+
+/// Those with an iteration.
+fn dials() -> Vec<Dial> {
+    let explicit = ["exact", "exact, order 4", "chord", "exponential, order 4"];
+    let composed = ["moser_veselov, order 8", "compensated"];
+    let all = [bodies(), tops(), pendulums()].concat().into_iter();
+    all.filter(|dial| !explicit.contains(&dial.name) && !composed.contains(&dial.name)).collect()
+}
+
+/// Moments of a ratio up to a thousand, any attitude, h|ω| of the first state of the order of one.
+fn body(random: &mut Random) -> Setup {
+    let masses = [0; 3].map(|_| 10.0_f64.powf(random.between(-3.0, 0.0)));
+    let moments = [masses[1] + masses[2], masses[2] + masses[0], masses[0] + masses[1]];
+    let setup = Setup { moments, attitude: random.attitude(), h: random.between(0.01, 0.1), ..Setup::ordinary() };
+    let velocity = random.direction() / setup.h;
+    setup.with_velocity(velocity)
+}
+
+/// `states` random states of each scene, as many with each dial in each type.
+pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
+    let dials = dials();
+    let kinds: Vec<(usize, &Dial)> =
+        (0..SCALARS.len()).flat_map(|scalar| dials.iter().map(move |dial| (scalar, dial))).collect();
+    let kinds = &kinds;
+    let jobs = kinds.iter().map(|&(scalar, dial)| {
+        move || {
+            let (mut random, mut sample) = (Random::new(64), Sample::default());
+            let states = states / kinds.iter().filter(|(_, other)| other.scene == dial.scene).count() as u64;
+            for number in 0..states.div_ceil(STATES) {
+                let setup = body(&mut random);
+                dial.sample[scalar](&setup, STATES.min(states), number, &mut sample);
+            }
+            sample
+        }
+    });
+    let samples = in_parallel(jobs.collect());
+    say(format_args!(
+        "Random states, {states:e} of each scene: bodies of moments of a ratio up to 1000, h|ω| from 1e-8 to 10, any attitude and direction. How many steps take so many iterations\n"
+    ));
+    let headings = [
+        "",
+        "done",
+        "≤ 2",
+        "≤ 4",
+        "≤ 12",
+        "more",
+        "most",
+        "too long",
+        "most",
+        "not converged",
+        "other errors",
+        "missed",
+    ];
+    let mut rows = vec![headings.map(str::to_owned).to_vec()];
+    for (&(scalar, dial), sample) in kinds.iter().zip(&samples) {
+        let name = format!("{}, {}, {}", dial.scene, dial.name, SCALARS[scalar]);
+        let below = |most: usize| sample.iterations.iter().take(most + 1).sum::<u64>();
+        let share = |count: u64| format!("{:.1} %", 100.0 * count as f64 / sample.done.max(1) as f64);
+        rows.push(vec![
+            name.clone(),
+            sample.done.to_string(),
+            share(below(2)),
+            share(below(4)),
+            share(below(12)),
+            (sample.done - below(12)).to_string(),
+            sample.most.to_string(),
+            sample.too_long.to_string(),
+            sample.most_refused.to_string(),
+            sample.not_converged.to_string(),
+            sample.others.to_string(),
+            format!("{:.0e}", sample.missed),
+        ]);
+        let most = sample.most.max(sample.most_refused);
+        claims.at_most(
+            &format!("iterations, {name}"),
+            f64::from(most),
+            f64::from(ITERATIONS),
+            "the bound that the docs state",
+        );
+        claims.at_most(
+            &format!("hidden NaN, {name}"),
+            sample.hidden as f64,
+            0.0,
+            "numbers that are not finite, and errors of no kind",
+        );
+    }
+    say(align(&rows));
+    Ok(())
+}
