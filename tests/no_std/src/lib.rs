@@ -20,6 +20,7 @@ mod planted;
 mod roots;
 
 /// The systems, and a call of a macro of `roots` for what each of them can do.
+#[cfg(not(feature = "heap"))]
 mod systems {
     // what the fixtures import for their declarations, no code names, nor what they keep beside
     #![allow(unused_imports, dead_code)]

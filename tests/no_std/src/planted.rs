@@ -1,5 +1,12 @@
 //! Faults that the check looks for in a program of their own: what it does not find here, it would not find anywhere.
 
+/// One vector: with it the library does not build, and without the systems that is said sooner.
+#[cfg(feature = "heap")]
+#[unsafe(export_name = "planted.heap")]
+extern "C" fn heap(length: usize) -> usize {
+    core::hint::black_box(alloc::vec![0_u8; length]).len()
+}
+
 /// An index that may be out of range.
 #[unsafe(export_name = "planted.panic")]
 extern "C" fn panic(values: &[f64; 3], index: usize) -> f64 {

@@ -131,8 +131,6 @@ macro_rules! stepping {
 /// A stepper of step size `h`.
 #[inline]
 pub fn stepper<S: Clebsch + Clone>(system: &S, h: S::Scalar) -> Result<Stepper<S>, Error> {
-    #[cfg(feature = "heap")]
-    core::hint::black_box(alloc::vec![h]);
     system.stepper(h)
 }
 
