@@ -36,12 +36,13 @@ pub use core;
 pub use nalgebra::{Quaternion, SMatrix, SVector};
 pub use num_traits::{One, Zero};
 
+use crate::linear::entry;
 use nalgebra::ArrayStorage;
 
 /// A matrix from its rows.
 #[inline]
 pub fn matrix<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
-    SMatrix::from_array_storage(ArrayStorage(core::array::from_fn(|j| core::array::from_fn(|i| rows[i][j]))))
+    SMatrix::from_array_storage(ArrayStorage(core::array::from_fn(|j| core::array::from_fn(|i| entry(&rows, i, j)))))
 }
 
 /// A column vector from its entries.

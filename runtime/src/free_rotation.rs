@@ -350,8 +350,20 @@ impl<T: Scalar> FreeRotation<T> {
     ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
         match part == <T::Lane as Zero>::zero() {
             true => self.long_turn(lane, m),
-            false => Ok(balanced(self.turned(lane, d, &m.map(|component| component * part)))),
+            false => Ok(self.turned_by_part(lane, d, part, m)),
         }
+    }
+
+    /// The turn of the whole time, of d over 2ⁿ and 2⁻ⁿ.
+    #[inline]
+    fn turned_by_part(
+        &self,
+        lane: usize,
+        d: &[T::Lane; 3],
+        part: T::Lane,
+        m: &[T::Lane; 3],
+    ) -> (T::Lane, [T::Lane; 3]) {
+        balanced(self.turned(lane, d, &m.map(|component| component * part)))
     }
 
     /// The turn of a motion beyond the reach of the series.
@@ -359,7 +371,7 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline(never)]
     fn long_turn(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
         let (d, part) = self.long_motion(lane, m)?;
-        self.long_turn_of(lane, &d, part, m)
+        Ok(self.turned_by_part(lane, &d, part, m))
     }
 
     /// d_i x over 2ⁿ, and 2⁻ⁿ, by n duplications: d ρ − m × ρ = ρ₀ m holds for multiples of d and m too.

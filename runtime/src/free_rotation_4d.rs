@@ -23,7 +23,7 @@ use crate::eigen::Spectrum;
 use crate::root::root;
 use crate::space::{MOST_LANES, each_lane, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar};
-use flow::{Matrix, PLANES, dot, flow, identity, product, skew};
+use flow::{Matrix, PLANES, above, dot, flow, identity, product, skew};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 use setup::Constants;
@@ -160,7 +160,7 @@ impl<T: Scalar> FreeRotation4<T> {
         match &self.axes {
             Axes::Principal(axes) => {
                 let turned = product(&transposed(axes), &product(&skew(&scaled), axes));
-                PLANES.map(|(i, j)| turned[i][j])
+                above(&turned)
             }
             _ => scaled,
         }
@@ -173,7 +173,7 @@ impl<T: Scalar> FreeRotation4<T> {
             Axes::Principal(axes) => {
                 let turned = |a: &Matrix<T>| product(axes, &product(a, &transposed(axes)));
                 let (increment, body) = (turned(increment), turned(&skew(m)));
-                (matrix(&increment), PLANES.map(|(i, j)| inverse * body[i][j]).into())
+                (matrix(&increment), scaled(&above(&body), inverse).into())
             }
             _ => (matrix(increment), scaled(m, inverse).into()),
         }
@@ -199,7 +199,8 @@ impl<T: Real> FreeRotation4<T> {
         let inverse = size.recip();
         let relative = moments.map(|moment| moment * inverse);
         // Σ_(ij) = d_i + d_j
-        let least = PLANES.iter().map(|&(i, j)| (relative[i] + relative[j]).abs());
+        let [p, q, r, s] = relative;
+        let least = [p + q, p + r, p + s, q + r, q + s, r + s].into_iter().map(T::abs);
         let least = least.fold(T::one(), |least, sum| if sum < least { sum } else { least });
         let is_regular = least > T::EPSILON;
         if !is_regular {
@@ -240,24 +241,34 @@ impl<T: Real> FreeRotation4<T> {
         Ok(Constants::by_series(T::from_f64(f64::from(fewest))))
     }
 
-    /// F − I and the momentum after a part of a motion, by one series, or two of half the time.
-    fn series(&self, m: &[T; 6], halves: u32) -> Result<(Matrix<T>, [T; 6]), Error> {
-        if let Some(found) = flow(|m| self.velocity(m), m) {
-            return Ok(found);
+    /// F − I and the momentum after a part of a motion, by one series, or by some of half the time, of a quarter, …: each as long as it may be.
+    fn series(&self, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+        let (mut whole, mut m) = ([[T::zero(); 4]; 4], *m);
+        // of the time, in units of 1/PARTS
+        let (mut done, mut length) = (0, PARTS);
+        while done < PARTS {
+            let part = T::from_ratio(i64::from(length), i64::from(PARTS));
+            match flow(|m| self.velocity(m), &scaled(&m, part)) {
+                Some((increment, end)) => {
+                    whole = if done == 0 { increment } else { composed(&whole, &increment) };
+                    m = scaled(&end, part.recip());
+                    done += length;
+                    // what is left of the half that was too long
+                    while done & (2 * length - 1) == 0 && done < PARTS {
+                        length *= 2;
+                    }
+                }
+                None if length == 1 => return Err(Error::NotFinite { name: "the free motion" }),
+                None => length /= 2,
+            }
         }
-        if halves == 0 {
-            return Err(Error::NotFinite { name: "the free motion" });
-        }
-        let two = T::from_f64(2.0);
-        let (first, between) = self.series(&scaled(m, two.recip()), halves - 1)?;
-        let (second, end) = self.series(&between, halves - 1)?;
-        Ok((composed(&first, &second), scaled(&end, two)))
+        Ok((whole, m))
     }
 
     fn velocity(&self, m: &[T; 6]) -> [T; 6] {
         match &self.axes {
             Axes::Tensor(inverse) => (inverse * SVector::from(*m)).into(),
-            _ => array(|e| m[e] / (self.moments[PLANES[e].0] + self.moments[PLANES[e].1])),
+            _ => setup::velocity(&self.moments, m),
         }
     }
 
@@ -270,7 +281,7 @@ impl<T: Real> FreeRotation4<T> {
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], scaled(m, constants.step));
         for _ in 0..parts {
             let (increment, next) = match constants.by_series > T::zero() {
-                true => self.series(&m, PARTS.ilog2())?,
+                true => self.series(&m)?,
                 false => turn(&constants, &m),
             };
             (whole, m) = (composed(&whole, &increment), next);
@@ -302,7 +313,8 @@ pub fn free_momentum_4d<T: Scalar>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix
 
 fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> Option<SVector<T, 6>> {
     let free = FreeRotation4::new(inertia, h).ok()?;
-    let below = |a: &SMatrix<T, 4, 4>| SVector::<T, 6>::from_fn(|e, _| a[(PLANES[e].1, PLANES[e].0)]);
+    // columns, one after the other: those of the transposed
+    let below = |a: &SMatrix<T, 4, 4>| SVector::<T, 6>::from(above(&a.data.0));
     // the turn that is left, R(μ)ᵀF, is small: its skew part tells it
     let defect = |momentum: &SVector<T, 6>| {
         let (increment, _) = free.turn(&free.motion(momentum), momentum).ok()?;
@@ -347,10 +359,12 @@ fn mass<T: Scalar>(inertia: &SMatrix<T, 6, 6>) -> SMatrix<T, 4, 4> {
         let index = PLANES.iter().position(|&plane| plane == (low, high)).unwrap_or(0);
         (index, if i < k { T::one() } else { -T::one() })
     };
+    // the lower triangle; by construction there is such an entry
+    let entry = |a: usize, b: usize| inertia.get((a.max(b), a.min(b))).copied().unwrap_or_else(T::zero);
     let ricci = SMatrix::<T, 4, 4>::from_fn(|i, j| {
         (0..4).filter(|&k| k != i && k != j).fold(T::zero(), |sum, k| {
             let ((a, sign), (b, other)) = (plane(i, k), plane(j, k));
-            sum + sign * other * inertia[(a.max(b), a.min(b))]
+            sum + sign * other * entry(a, b)
         })
     });
     let mean = ricci.trace() * T::from_ratio(1, 6);

@@ -283,13 +283,19 @@ pub fn solve_symmetric<T: Scalar, const M: usize>(
 /// A square matrix by rows.
 #[inline]
 pub(crate) fn rows<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| matrix[(i, j)]))
+    from_fn(|i| from_fn(|j| matrix.get((i, j)).copied().unwrap_or_else(T::zero)))
+}
+
+/// Entry (i, j) of rows that have it: where the optimiser does not see that they do, no panic is left.
+#[inline(always)]
+pub(crate) fn entry<T: Scalar, const R: usize, const C: usize>(rows: &[[T; C]; R], i: usize, j: usize) -> T {
+    rows.get(i).and_then(|row| row.get(j)).copied().unwrap_or_else(T::zero)
 }
 
 /// A B of square matrices by rows.
 #[inline]
 pub(crate) fn product<T: Scalar, const N: usize>(a: &[[T; N]; N], b: &[[T; N]; N]) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| (0..N).fold(T::zero(), |sum, k| sum + a[i][k] * b[k][j])))
+    from_fn(|i| from_fn(|j| (0..N).fold(T::zero(), |sum, k| sum + entry(a, i, k) * entry(b, k, j))))
 }
 
 /// c I
@@ -301,7 +307,7 @@ pub(crate) fn multiple_of_identity<T: Scalar, const N: usize>(c: T) -> [[T; N]; 
 /// A + c I
 #[inline]
 pub(crate) fn shifted<T: Scalar, const N: usize>(a: &[[T; N]; N], c: T) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| if i == j { a[i][j] + c } else { a[i][j] }))
+    from_fn(|i| from_fn(|j| if i == j { entry(a, i, j) + c } else { entry(a, i, j) }))
 }
 
 /// The largest Σ_j |A_ij| of a row i: a norm with |AB| ≤ |A||B|. NaN are passed over.

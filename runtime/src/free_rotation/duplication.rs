@@ -138,7 +138,8 @@ impl<T: Real> Functions<T> {
         let (zero, one) = (T::zero(), T::one());
         match self {
             Self::OnAxes(x) => {
-                let differences = [0, 1, 2].map(|i| (x[i] - x[(i + 1) % 3]) * (x[i] - x[(i + 2) % 3]));
+                let [a, b, c] = *x;
+                let differences = [(a, b, c), (b, c, a), (c, a, b)].map(|(x, y, z)| (x - y) * (x - z));
                 [*x, self.adjugate(x), differences]
             }
             // x_jx_k = X² − e₁X + e₂

@@ -43,16 +43,15 @@ pub(super) fn coefficient<T: Scalar>(series: &Coefficients<T>, i: usize, j: usiz
 /// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
 #[cold]
 pub(super) fn on_axes<T: Scalar>(x: &[T; 3]) -> Coefficients<T> {
-    let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
+    let [x0, x1, x2] = *x;
+    let others = [(x1, x2), (x2, x0), (x0, x1)];
     // e_i, less their mean: coefficients of α and of ε
-    let raw: [[T; 2]; 3] = core::array::from_fn(|i| {
-        let (j, k) = others(i);
-        [x[j] * x[k], x[i]]
-    });
+    let pairs = others.map(|(y, z)| y * z);
     let third = T::from_ratio(1, 3);
-    let mean: [T; 2] = core::array::from_fn(|part| third * (raw[0][part] + raw[1][part] + raw[2][part]));
-    let roots: [[T; 2]; 3] = raw.map(|[a, b]| [a - mean[0], b - mean[1]]);
-    let [[a, p], [b, q], [g, r]] = roots;
+    let mean = |[a, b, c]: [T; 3]| third * (a + b + c);
+    let means = [mean(pairs), mean(*x)];
+    let [a, b, g] = pairs.map(|pair| pair - means[0]);
+    let [p, q, r] = x.map(|x| x - means[1]);
     let squares = [a * a + b * b + g * g, T::from_f64(2.0) * (a * p + b * q + g * r), p * p + q * q + r * r];
     let products = [a * b * g, p * b * g + a * q * g + a * b * r, p * q * g + p * b * r + a * q * r, p * q * r];
     let elliptic = elliptic(&squares, &products);
@@ -60,12 +59,12 @@ pub(super) fn on_axes<T: Scalar>(x: &[T; 3]) -> Coefficients<T> {
     let nothing = [T::zero(); 3];
     let mut all = [[T::zero(); 4]; MONOMIALS];
     each_coefficient(&elliptic, &mut all, |entry, [value]| entry[3] = value);
-    for i in 0..3 {
-        let (j, k) = others(i);
-        let differences = (x[i] - x[j]) * (x[i] - x[k]);
-        let roots = roots[i].map(|root| [root]);
-        let series = of_function(&nothing, [x[i]], [x[i].recip()], [differences], roots, &elliptic);
-        each_coefficient(&series, &mut all, |entry, [value]| entry[i] = value);
+    let roots = [[[a], [p]], [[b], [q]], [[g], [r]]];
+    for (i, ((&x, (y, z)), roots)) in x.iter().zip(others).zip(roots).enumerate() {
+        let differences = (x - y) * (x - z);
+        let series = of_function(&nothing, [x], [x.recip()], [differences], roots, &elliptic);
+        // one of the first three
+        each_coefficient(&series, &mut all, |entry, [value]| entry[i % 4] = value);
     }
     all
 }
@@ -135,8 +134,8 @@ fn of_function<T: Scalar, const N: usize>(
     // (ε − x α) P times the polynomial of one degree less
     let mut factor = [zero; DEGREE + 1];
     (factor[0], factor[1]) = (scaled(&product(&differences, &x, e), -T::one()), differences);
-    for n in 1..=DEGREE {
-        add_product(&mut rate[n], (&factor, 1), (&inverse[n - 1], n - 1), e);
+    for (n, row) in rate.iter_mut().enumerate().skip(1) {
+        add_product(row, (&factor, 1), term(&inverse, n - 1), e);
     }
     riccati(reciprocal, x, &rate, e).map(|row| row.map(|value| product(&x, &value, e)))
 }
@@ -152,7 +151,7 @@ fn elliptic<T: Scalar>(squares: &[T; 3], products: &[T; 4]) -> Series<T, 1> {
     for k in 4..=DEGREE {
         let mut row = [[T::zero()]; DEGREE + 1];
         for m in 2..=k - 2 {
-            add_product(&mut row, (&c[m], m), (&c[k - m], k - m), &[T::zero(); 3]);
+            add_product(&mut row, term(&c, m), term(&c, k - m), &[T::zero(); 3]);
         }
         let factor = T::from_ratio(3, ((2 * k + 1) * (k - 3)) as i64);
         c[k] = row.map(|coefficient| scaled(&coefficient, factor));
@@ -205,7 +204,7 @@ fn inverse<T: Scalar, const N: usize>(p: &Series<T, N>, e: &[T; 3]) -> Series<T,
     for n in 1..=DEGREE {
         let mut row = [[T::zero(); N]; DEGREE + 1];
         for k in 1..=n {
-            add_product(&mut row, (&p[k], k), (&inverse[n - k], n - k), e);
+            add_product(&mut row, term(p, k), term(&inverse, n - k), e);
         }
         inverse[n] = row.map(|coefficient| scaled(&coefficient, -T::one()));
     }
@@ -227,25 +226,36 @@ fn riccati<T: Scalar, const N: usize>(
         let mut row = [[T::zero(); N]; DEGREE + 1];
         // both halves of the square are the same
         for k in 1..n.div_ceil(2) {
-            add_product(&mut row, (&v[k], k), (&v[n - k], n - k), e);
+            add_product(&mut row, term(&v, k), term(&v, n - k), e);
         }
         row = row.map(|coefficient| sum(&coefficient, &coefficient));
         if n % 2 == 0 {
-            add_product(&mut row, (&v[n / 2], n / 2), (&v[n / 2], n / 2), e);
+            add_product(&mut row, term(&v, n / 2), term(&v, n / 2), e);
         }
         if n == 1 {
             row[0] = sum(&row[0], &unity());
         }
         let mut right = row.map(|coefficient| product(&coefficient, &x, e));
         for k in 1..=n {
-            add_product(&mut right, (&square[n - k], n - k), (&rate[k], k), e);
+            add_product(&mut right, term(&square, n - k), term(rate, k), e);
         }
         let factor = -T::from_ratio(1, (2 * n + 1) as i64);
-        v[n] = right.map(|coefficient| scaled(&coefficient, factor));
+        let found = right.map(|coefficient| scaled(&coefficient, factor));
         let twice = scaled(&start, T::from_f64(2.0));
-        square[n] = core::array::from_fn(|j| sum(&row[j], &product(&twice, &v[n][j], e)));
+        square[n] = row;
+        for (entry, value) in square[n].iter_mut().zip(&found) {
+            *entry = sum(entry, &product(&twice, value, e));
+        }
+        v[n] = found;
     }
     v
+}
+
+/// The terms of a degree, with it. Degrees are at most [`DEGREE`], and no panic is left where the optimiser does not see that.
+#[inline(always)]
+fn term<T, const N: usize>(series: &Series<T, N>, degree: usize) -> (&Polynomial<T, N>, usize) {
+    let [.., last] = series;
+    (series.get(degree).unwrap_or(last), degree)
 }
 
 /// Adds the product of two homogeneous polynomials, given with their degrees.

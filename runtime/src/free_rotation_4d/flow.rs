@@ -10,12 +10,33 @@ pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), 
 pub(super) type Matrix<T> = [[T; 4]; 4];
 
 /// The skew matrix with these entries above the diagonal.
-pub(super) fn skew<T: Scalar>(v: &[T; 6]) -> Matrix<T> {
-    let mut matrix = [[T::zero(); 4]; 4];
-    for (&(i, j), &entry) in PLANES.iter().zip(v) {
-        (matrix[i][j], matrix[j][i]) = (entry, -entry);
-    }
-    matrix
+pub(super) fn skew<T: Scalar>([a, b, c, d, e, f]: &[T; 6]) -> Matrix<T> {
+    let zero = T::zero();
+    [[zero, *a, *b, *c], [-*a, zero, *d, *e], [-*b, -*d, zero, *f], [-*c, -*e, -*f, zero]]
+}
+
+/// The entries above the diagonal.
+#[inline]
+pub(super) fn above<T: Scalar>([[_, a, b, c], [_, _, d, e], [_, _, _, f], _]: &Matrix<T>) -> [T; 6] {
+    [*a, *b, *c, *d, *e, *f]
+}
+
+/// One of four numbers: indices are below 4, and no panic is left where the optimiser does not see that.
+#[inline(always)]
+pub(super) fn at<T: Copy>(numbers: &[T; 4], axis: usize) -> T {
+    numbers[axis % 4]
+}
+
+/// An entry of a matrix, as [`at`] is of a vector.
+#[inline(always)]
+pub(super) fn entry<T: Copy>(matrix: &Matrix<T>, row: usize, column: usize) -> T {
+    matrix[row % 4][column % 4]
+}
+
+/// Its place.
+#[inline(always)]
+pub(super) fn place<T>(matrix: &mut Matrix<T>, row: usize, column: usize) -> &mut T {
+    &mut matrix[row % 4][column % 4]
 }
 
 /// ⋆v, the planes perpendicular to those of v.
@@ -38,8 +59,9 @@ pub(super) fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
 /// A B
 #[inline]
 pub(super) fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+    let term = |i: usize, k: usize, j: usize| entry(a, i, k) * entry(b, k, j);
     core::array::from_fn(|i| {
-        core::array::from_fn(|j| (a[i][0] * b[0][j] + a[i][1] * b[1][j]) + (a[i][2] * b[2][j] + a[i][3] * b[3][j]))
+        core::array::from_fn(|j| (term(i, 0, j) + term(i, 1, j)) + (term(i, 2, j) + term(i, 3, j)))
     })
 }
 
@@ -63,16 +85,18 @@ pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) ->
     for n in 0..TERMS - 1 {
         let factor = T::from_ratio(1, n as i64 + 1);
         let (mut rotation, mut momentum) = ([[zero; 4]; 4], [zero; 6]);
-        for l in 0..=n {
-            let (turn, speed) = (&rotations[l], skew(&velocities[n - l]));
-            let (body, other) = (skew(&momenta[l]), skew(&velocities[n - l]));
+        let backward = velocities.iter().take(n + 1).rev();
+        for ((turn, body), speed) in rotations.iter().zip(&momenta).zip(backward) {
+            let (body, speed) = (skew(body), skew(speed));
             for (row, of_row) in rotation.iter_mut().zip(turn) {
-                for (j, entry) in row.iter_mut().enumerate() {
-                    *entry += (0..4).fold(zero, |sum, k| sum + of_row[k] * speed[k][j]);
+                for (j, sum) in row.iter_mut().enumerate() {
+                    *sum += of_row.iter().zip(&speed).fold(zero, |sum, (turned, row)| sum + *turned * at(row, j));
                 }
             }
-            for (entry, &(i, j)) in momentum.iter_mut().zip(&PLANES) {
-                *entry += (0..4).fold(zero, |sum, k| sum + body[i][k] * other[k][j] - other[i][k] * body[k][j]);
+            for (sum, &(i, j)) in momentum.iter_mut().zip(&PLANES) {
+                *sum += (0..4).fold(zero, |sum, k| {
+                    sum + entry(&body, i, k) * entry(&speed, k, j) - entry(&speed, i, k) * entry(&body, k, j)
+                });
             }
         }
         let rotation = rotation.map(|row| row.map(|entry| entry * factor));

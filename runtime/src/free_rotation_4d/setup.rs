@@ -1,6 +1,6 @@
 //! The constants of a motion, from its Taylor series.
 
-use super::flow::{Matrix, PLANES, dot, dual, flow, pfaffian, product, skew};
+use super::flow::{Matrix, PLANES, at, dot, dual, entry, flow, pfaffian, product, skew};
 use crate::space::larger;
 use crate::stumpff::stumpff;
 use crate::{Real, Scalar};
@@ -81,7 +81,7 @@ pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &[T; 6], pfaffian: T) ->
 /// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD; `None` where they are not found.
 #[cold]
 pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants<T>> {
-    let (increment, _) = flow(|m| core::array::from_fn(|e| m[e] / (d[PLANES[e].0] + d[PLANES[e].1])), momentum)?;
+    let (increment, _) = flow(|m| velocity(d, m), momentum)?;
     let mut motion = increment;
     (0..4).for_each(|i| motion[i][i] += T::one());
     let fitted = Fit { d, momentum, motion: &motion }.fit()?;
@@ -94,13 +94,24 @@ pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants
     let here = integrals(&k, &squares, pf);
     let e = characteristic(&moments, &fitted.motion, &k, &here)?;
     let slopes = slopes(&e, last(&moments))?;
-    let origin = core::array::from_fn(|i| e[i] - dot(&slopes[i], &here));
+    let [[a, b, c], [p, q, r]] = [e, slopes.map(|slopes| dot(&slopes, &here))];
+    let origin = [a - p, b - q, c - r];
     let two = T::from_f64(2.0);
     let least = T::from_f64(1e4) * T::EPSILON * square;
     let casimirs = [square + two * pf, square - two * pf].map(|c| if c > least { c.recip() } else { T::zero() });
     let turn = turn([delta / step, kappa / step], square, pf);
     let constants = Constants { parts: T::one(), by_series: T::zero(), step, moments, origin, slopes, casimirs, turn };
     constants.write().iter().all(|number| number.is_finite()).then_some(constants)
+}
+
+/// Ω of M = DΩ + ΩD.
+#[inline]
+pub(super) fn velocity<T: Scalar>(d: &[T; 4], m: &[T; 6]) -> [T; 6] {
+    let [p, q, r, s] = *d;
+    let sums = [p + q, p + r, p + s, q + r, q + s, r + s];
+    let mut velocity = *m;
+    velocity.iter_mut().zip(sums).for_each(|(entry, sum)| *entry /= sum);
+    velocity
 }
 
 /// The coefficients of exp(δm + κ⋆m) − I, by the two parts of a rotation in four dimensions, which commute.
@@ -124,7 +135,7 @@ fn turn<T: Real>([delta, kappa]: [T; 2], square: T, pf: T) -> [T; 4] {
 
 /// e₁, e₂ and e₃ of A = F̃J̃, as its integrals ask for to the last place.
 fn characteristic<T: Real>(moments: &[T; 4], motion: &Matrix<T>, k: &[T; 4], here: &[T; 3]) -> Option<[T; 3]> {
-    let a: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| motion[i][j] * moments[j]));
+    let a: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| entry(motion, i, j) * at(moments, j)));
     let trace = |a: &Matrix<T>| a[0][0] + a[1][1] + a[2][2] + a[3][3];
     let square = product(&a, &a);
     let (first, second, third) = (trace(&a), trace(&square), trace(&product(&square, &a)));
@@ -142,8 +153,9 @@ fn characteristic<T: Real>(moments: &[T; 4], motion: &Matrix<T>, k: &[T; 4], her
         let found =
             [two * e[1] - e[0] * e[0], e[1] * e[1] + two * last - two * e[0] * e[2], two * e[1] * last - e[2] * e[2]];
         let slopes = slopes(&e, last)?;
-        let defect: [T; 3] = core::array::from_fn(|i| wanted[i] - found[i]);
-        e = core::array::from_fn(|i| e[i] + dot(&slopes[i], &defect));
+        let mut defect = wanted;
+        defect.iter_mut().zip(found).for_each(|(entry, found)| *entry -= found);
+        e.iter_mut().zip(slopes).for_each(|(entry, slopes)| *entry += dot(&slopes, &defect));
     }
     Some(e)
 }
@@ -220,13 +232,15 @@ impl<T: Real> Fit<'_, T> {
         let squared = product(&body, &body);
         let increment: Matrix<T> = core::array::from_fn(|i| {
             core::array::from_fn(|j| {
-                let entry = b * body[i][j] + c * perpendicular[i][j] + d * squared[i][j];
-                if i == j { entry + a + d * T::from_ratio(1, 2) * square } else { entry }
+                let sum = b * entry(&body, i, j) + c * entry(&perpendicular, i, j) + d * entry(&squared, i, j);
+                if i == j { sum + a + d * T::from_ratio(1, 2) * square } else { sum }
             })
         });
         let carried = product(&increment, self.motion);
-        let motion: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| self.motion[i][j] + carried[i][j]));
-        let residual = core::array::from_fn(|e| across(&motion, &moments, PLANES[e]) - step * self.momentum[e]);
+        let sum = |i: usize, j: usize| entry(self.motion, i, j) + entry(&carried, i, j);
+        let motion: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| sum(i, j)));
+        let mut residual = PLANES.map(|plane| across(&motion, &moments, plane));
+        residual.iter_mut().zip(self.momentum).for_each(|(entry, m)| *entry -= step * *m);
         Fitted { unknowns, moments, motion, residual }
     }
 
@@ -251,25 +265,26 @@ impl<T: Real> Fit<'_, T> {
 /// Entry (i, j) of FJ − JFᵀ.
 #[inline]
 fn across<T: Scalar>(f: &Matrix<T>, moments: &[T; 4], (i, j): (usize, usize)) -> T {
-    f[i][j] * moments[j] - f[j][i] * moments[i]
+    entry(f, i, j) * at(moments, j) - entry(f, j, i) * at(moments, i)
 }
 
 /// The x that comes closest to Σ x_k a_k = b, by orthogonal columns, the longest first. Where columns are dependent, there are many, and x is small.
 fn least_squares<T: Real>(columns: [[T; 6]; 4], b: [T; 6]) -> [T; 4] {
     let lengths = columns.map(|column| dot(&column, &column).sqrt());
     let unit = |column: &[T; 6], length: T| column.map(|entry| entry / length);
-    let mut left: [[T; 6]; 4] = core::array::from_fn(|k| match lengths[k] > T::zero() {
-        true => unit(&columns[k], lengths[k]),
-        false => [T::zero(); 6],
-    });
+    let mut left = columns;
+    for (column, length) in left.iter_mut().zip(lengths) {
+        *column = if length > T::zero() { unit(column, length) } else { [T::zero(); 6] };
+    }
     let mut rest = b;
     // a_k less its parts along those before is r_kk q_k
     let (mut order, mut upper, mut right) = ([0; 4], [[T::zero(); 4]; 4], [T::zero(); 4]);
     let mut used = [false; 4];
     let mut rank = 0;
     for stage in 0..4 {
-        let size = |k: usize| dot(&left[k], &left[k]).sqrt();
-        let next = (0..4).filter(|&k| !used[k]).max_by(|&a, &b| match size(a) < size(b) {
+        let sizes = left.map(|column| dot(&column, &column).sqrt());
+        let size = |k: usize| at(&sizes, k);
+        let next = (0..4).filter(|&k| !at(&used, k)).max_by(|&a, &b| match size(a) < size(b) {
             true => core::cmp::Ordering::Less,
             false => core::cmp::Ordering::Greater,
         });
@@ -280,22 +295,25 @@ fn least_squares<T: Real>(columns: [[T; 6]; 4], b: [T; 6]) -> [T; 4] {
         if !is_independent {
             break;
         }
-        (order[stage], used[next], rank) = (next, true, stage + 1);
-        let q = unit(&left[next], length);
-        upper[stage][next] = length;
-        right[stage] = dot(&q, &rest);
-        rest = core::array::from_fn(|i| rest[i] - right[stage] * q[i]);
-        for k in (0..4).filter(|&k| !used[k]) {
-            let along = dot(&q, &left[k]);
-            upper[stage][k] = along;
-            left[k] = core::array::from_fn(|i| left[k][i] - along * q[i]);
+        (order[stage], used[next % 4], rank) = (next % 4, true, stage + 1);
+        let q = unit(&at(&left, next), length);
+        upper[stage][next % 4] = length;
+        let part = dot(&q, &rest);
+        right[stage] = part;
+        rest.iter_mut().zip(q).for_each(|(entry, q)| *entry -= part * q);
+        let columns = left.iter_mut().zip(&mut upper[stage]).zip(used);
+        for ((column, along), _) in columns.filter(|(_, used)| !used) {
+            *along = dot(&q, column);
+            column.iter_mut().zip(q).for_each(|(entry, q)| *entry -= *along * q);
         }
     }
     let mut x = [T::zero(); 4];
     for stage in (0..rank).rev() {
-        let known =
-            (stage + 1..rank).fold(right[stage], |sum, later| sum - upper[stage][order[later]] * x[order[later]]);
-        x[order[stage]] = known / upper[stage][order[stage]];
+        let (column, row) = (at(&order, stage), at(&upper, stage));
+        let later = order.iter().take(rank).skip(stage + 1);
+        let known = later.fold(at(&right, stage), |sum, &other| sum - at(&row, other) * at(&x, other));
+        x[column % 4] = known / at(&row, column);
     }
-    core::array::from_fn(|k| if lengths[k] > T::zero() { x[k] / lengths[k] } else { T::zero() })
+    x.iter_mut().zip(lengths).for_each(|(x, length)| *x = if length > T::zero() { *x / length } else { T::zero() });
+    x
 }

@@ -1,6 +1,6 @@
 //! The exact motion against a Runge–Kutta method in small steps, and against its own laws.
 
-use super::{FreeRotation4, KeptRotation4, PLANES, free_momentum_4d};
+use super::{FreeRotation4, KeptRotation4, PLANES, flow, free_momentum_4d};
 use crate::Error;
 use nalgebra::{Matrix4, SMatrix, SVector, Vector6};
 use proptest::prelude::*;
@@ -92,6 +92,22 @@ fn motions_are_those_of_small_steps() {
             assert!(error < 3e-13, "{what}, {steps}: {error:e}");
         }
     }
+}
+
+/// Nine radians are too much for one series: they are made of halves, and of halves of those.
+#[test]
+fn long_motions_are_series_after_series() {
+    let mass = Matrix4::from_diagonal(&[2.0, 3.0, 4.0, 5.0].into());
+    let (inertia, mu) = (form(&mass), Vector6::from(START));
+    let free = FreeRotation4::new(&inertia, 30.0).expect("regular");
+    let m = free.in_principal_axes(&mu);
+    assert!(flow(|m| free.velocity(m), &m).is_none());
+    let (increment, end) = free.series(&m).expect("parts that end");
+    let (increment, end) = free.in_coordinates(&increment, &end);
+    let (wanted, last) = followed(&inertia, &mu, 30.0, 30_000);
+    let error = (increment + Matrix4::identity() - wanted).amax().max((end - last).amax());
+    assert!(error < 1e-11, "{error:e}");
+    assert!(free.series(&m.map(|entry| entry * 1e4)).is_err());
 }
 
 /// Constants are found: a step of a radian is one part, and no Taylor series.

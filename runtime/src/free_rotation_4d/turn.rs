@@ -1,6 +1,6 @@
 //! One step of a motion whose constants are known: no iteration, one division.
 
-use super::flow::{Matrix, PLANES, dot, dual, pfaffian};
+use super::flow::{Matrix, PLANES, at, dot, dual, entry, pfaffian, place};
 use super::setup::{Constants, integrals};
 use crate::Scalar;
 
@@ -18,7 +18,8 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &[T; 6]) -> (Matrix<T
         (n[0][0] * adjugate[0][0] + n[0][1] * adjugate[1][0]) + (n[0][2] * adjugate[2][0] + n[0][3] * adjugate[3][0]);
     let inverse = determinant.recip();
     let mut motion = super::flow::product(&adjugate, &g).map(|row| row.map(|entry| entry * inverse));
-    let next = PLANES.map(|(row, column)| j[row] * motion[row][column] - motion[column][row] * j[column]);
+    let next = PLANES
+        .map(|(row, column)| at(j, row) * entry(&motion, row, column) - entry(&motion, column, row) * at(j, column));
     let next = on_level(constants, &next, square, pf);
     let turn = of_casimirs(&constants.turn, m, &of_square, square);
     (0..4).for_each(|i| motion[i][i] -= T::one());
@@ -60,13 +61,13 @@ fn equation<T: Scalar>(
     let zero = [[T::zero(); 4]; 4];
     let (mut n, mut g) = (zero, zero);
     let (perpendicular, rest) = (dual(m), e[1] - square);
-    for (index, &(row, column)) in PLANES.iter().enumerate() {
-        let skew = (rest + (k[row] + k[column])) * m[index] + pf * perpendicular[index];
-        let symmetric = e[0] * above[index];
-        (n[row][column], n[column][row]) = (skew - symmetric, -skew - symmetric);
-        let along = e[0] * m[index];
-        g[row][column] = (along - above[index]) * j[column];
-        g[column][row] = -(along + above[index]) * j[row];
+    for ((&(row, column), m), (perpendicular, above)) in PLANES.iter().zip(m).zip(perpendicular.iter().zip(above)) {
+        let skew = (rest + (at(k, row) + at(k, column))) * *m + pf * *perpendicular;
+        let symmetric = e[0] * *above;
+        (*place(&mut n, row, column), *place(&mut n, column, row)) = (skew - symmetric, -skew - symmetric);
+        let along = e[0] * *m;
+        *place(&mut g, row, column) = (along - *above) * at(j, column);
+        *place(&mut g, column, row) = -(along + *above) * at(j, row);
     }
     // e₄/J̃
     let (first, second) = (j[0] * j[1], j[2] * j[3]);
@@ -82,9 +83,9 @@ fn equation<T: Scalar>(
 /// The adjugate, by minors of the upper and the lower two rows.
 #[inline]
 fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
-    let minor = |(p, q): (usize, usize), (r, s): (usize, usize)| a[p][r] * a[q][s] - a[q][r] * a[p][s];
-    let [s0, s1, s2, s3, s4, s5] = PLANES.map(|columns| minor((0, 1), columns));
-    let [c0, c1, c2, c3, c4, c5] = PLANES.map(|columns| minor((2, 3), columns));
+    let minor = |p: &[T; 4], q: &[T; 4], (r, s): (usize, usize)| at(p, r) * at(q, s) - at(q, r) * at(p, s);
+    let [s0, s1, s2, s3, s4, s5] = PLANES.map(|columns| minor(&a[0], &a[1], columns));
+    let [c0, c1, c2, c3, c4, c5] = PLANES.map(|columns| minor(&a[2], &a[3], columns));
     [
         [
             a[1][1] * c5 - a[1][2] * c4 + a[1][3] * c3,
@@ -138,9 +139,9 @@ fn of_casimirs<T: Scalar>(
 ) -> Matrix<T> {
     let mut turn = [[T::zero(); 4]; 4];
     let (perpendicular, mean) = (dual(m), *a + *d * (T::from_ratio(1, 2) * square));
-    for (index, &(row, column)) in PLANES.iter().enumerate() {
-        let (skew, symmetric) = (*b * m[index] + *c * perpendicular[index], *d * above[index]);
-        (turn[row][column], turn[column][row]) = (symmetric + skew, symmetric - skew);
+    for ((&(row, column), m), (perpendicular, above)) in PLANES.iter().zip(m).zip(perpendicular.iter().zip(above)) {
+        let (skew, symmetric) = (*b * *m + *c * *perpendicular, *d * *above);
+        (*place(&mut turn, row, column), *place(&mut turn, column, row)) = (symmetric + skew, symmetric - skew);
     }
     (0..4).for_each(|i| turn[i][i] = mean + *d * diagonal[i]);
     turn
@@ -150,7 +151,7 @@ fn of_casimirs<T: Scalar>(
 #[inline]
 pub(super) fn composed<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     let both = super::flow::product(a, b);
-    core::array::from_fn(|i| core::array::from_fn(|j| both[i][j] + (a[i][j] + b[i][j])))
+    core::array::from_fn(|i| core::array::from_fn(|j| entry(&both, i, j) + (entry(a, i, j) + entry(b, i, j))))
 }
 
 /// D − ½(I + D)S with S = D + Dᵀ + DᵀD: what rounding has left of the orthogonality of I + D.
@@ -166,5 +167,6 @@ fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Matrix<T> {
         }
     }
     let carried = super::flow::product(d, &defect);
-    core::array::from_fn(|i| core::array::from_fn(|j| d[i][j] - (carried[i][j] + defect[i][j])))
+    let corrected = |i: usize, j: usize| entry(d, i, j) - (entry(&carried, i, j) + entry(&defect, i, j));
+    core::array::from_fn(|i| core::array::from_fn(|j| corrected(i, j)))
 }

@@ -66,11 +66,11 @@ fn guess<T: Real, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, par
 impl Parameter {
     /// The value of the parameter at a point.
     fn of<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
-        if self.0 < M { point.xi[self.0] } else { point.s }
+        point.xi.as_slice().get(self.0).copied().unwrap_or(point.s)
     }
 
     /// Its change along the tangent.
     fn slope<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
-        if self.0 < M { point.slope_xi[self.0] } else { point.slope_s }
+        point.slope_xi.as_slice().get(self.0).copied().unwrap_or(point.slope_s)
     }
 }

@@ -1,0 +1,263 @@
+//! The exported functions of a system: what is called where, in a program whose stack and code are looked at.
+//!
+//! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because nothing is conserved or
+//! because it has lanes, [`Absent`] has one that does nothing.
+
+use clebsch::{Clebsch, Error, State, Stepper};
+
+/// The steps of a plan, and the edges of a path.
+pub const STEPS: usize = 16;
+
+/// What a stepper does not have itself.
+pub trait Absent<S: Clebsch> {
+    fn conserved(&self, _: &State<S>) {}
+    fn step_tangent(&self, _: &State<S>) {}
+    fn suggest_step_size(&self, _: &State<S>, _: S::Scalar, _: S::Scalar) {}
+    fn state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
+    fn cotangent_state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Configuration) {}
+    fn staggered_state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
+    fn inverse_legendre(&self, _: &S::Configuration, _: &S::Momentum) {}
+}
+
+impl<S: Clebsch> Absent<S> for Stepper<S> {}
+
+/// Whether an operation succeeds, under the name `clebsch.operation.system`.
+#[macro_export]
+macro_rules! export {
+    ($operation:literal, $system:literal, |$($argument:ident: $type:ty),* $(,)?| $body:block) => {
+        const _: () = {
+            #[unsafe(export_name = concat!("clebsch.", $operation, ".", $system))]
+            extern "C" fn root($($argument: $type),*) -> bool {
+                #[inline(always)]
+                fn operation($($argument: $type),*) -> Result<(), clebsch::Error> {
+                    $body
+                    Ok(())
+                }
+                operation($($argument),*).is_ok()
+            }
+        };
+    };
+}
+
+/// A stepper with all that it can do.
+#[macro_export]
+macro_rules! stepping {
+    ($name:literal, $type:ty) => {
+        const _: () = {
+            use clebsch::{Clebsch, CotangentState, SavedState, State, Stepper};
+            use core::hint::black_box;
+            #[allow(unused_imports, reason = "a system may have it all")]
+            use $crate::roots::{self, Absent};
+
+            type S = $type;
+            type T = <S as Clebsch>::Scalar;
+            type Q = <S as Clebsch>::Configuration;
+            type N = <S as Clebsch>::Momentum;
+
+            $crate::export!("stepper", $name, |system: &S, h: &T, made: &mut Option<Stepper<S>>| {
+                *made = Some(roots::stepper(system, *h)?);
+            });
+            $crate::export!("state", $name, |stepper: &Stepper<S>, q: &Q, mu: &N, made: &mut State<S>| {
+                *made = stepper.state(*q, *mu)?;
+            });
+            $crate::export!("staggered", $name, |stepper: &Stepper<S>, q: &Q, mu: &N, made: &mut State<S>| {
+                *made = stepper.staggered_state(*q, *mu)?;
+            });
+            $crate::export!("timed", $name, |stepper: &Stepper<S>, t: &T, q: &Q, mu: &N| {
+                let _ = black_box(stepper.state_at(*t, *q, *mu));
+                let _ = black_box(stepper.cotangent_state_at(*t, *q, *q));
+                let _ = black_box(stepper.staggered_state_at(*t, *q, *mu));
+            });
+            $crate::export!("cotangent", $name, |stepper: &Stepper<S>, q: &Q, p: &Q, made: &mut CotangentState<S>| {
+                *made = stepper.cotangent_state(*q, *p)?;
+            });
+            $crate::export!("project", $name, |stepper: &Stepper<S>, q: &Q, mu: &mut N| {
+                *mu = stepper.project(q, mu)?;
+            });
+            $crate::export!("resume", $name, |stepper: &Stepper<S>, saved: &SavedState<S>, made: &mut State<S>| {
+                *made = stepper.resume(*saved)?;
+            });
+            $crate::export!("step", $name, |stepper: &Stepper<S>, state: &mut State<S>| {
+                *state = stepper.step(state)?;
+            });
+            $crate::export!("step_with", $name, |stepper: &Stepper<S>,
+                                                 state: &mut State<S>,
+                                                 u: &<S as Clebsch>::Input| {
+                *state = stepper.step_with(state, u)?;
+            });
+            $crate::export!("step_each", $name, |stepper: &Stepper<S>, state: &mut State<S>| {
+                *state = stepper.step_each(state).0;
+            });
+            $crate::export!("failure", $name, |stepper: &Stepper<S>, state: &State<S>, lane: usize| {
+                stepper.failure(state, lane).map_or(Ok(()), Err)?;
+            });
+            $crate::export!("step_symmetric", $name, |stepper: &Stepper<S>, state: &mut CotangentState<S>| {
+                *state = stepper.step_symmetric(state)?;
+            });
+            $crate::export!("step_tangent", $name, |stepper: &Stepper<S>, state: &State<S>| {
+                let _ = black_box(stepper.step_tangent(state));
+            });
+            $crate::export!("advance", $name, |stepper: &Stepper<S>, state: &mut State<S>, steps: usize| {
+                *state = stepper.advance(state, steps)?;
+            });
+            $crate::export!("trajectory", $name, |stepper: &Stepper<S>, state: &mut State<S>, steps: usize| {
+                for next in stepper.trajectory(*state).take(steps) {
+                    *state = next?;
+                }
+            });
+            $crate::export!("suggest_step_size", $name, |stepper: &Stepper<S>,
+                                                         state: &State<S>,
+                                                         error: &T,
+                                                         time: &T| {
+                let _ = black_box(stepper.suggest_step_size(state, *error, *time));
+            });
+            $crate::export!("energies", $name, |stepper: &Stepper<S>, state: &State<S>, energies: &mut [T; 3]| {
+                *energies = [stepper.energy(state), stepper.kinetic_energy(state), stepper.synchronized_energy(state)];
+            });
+            $crate::export!("momenta", $name, |stepper: &Stepper<S>, state: &State<S>, mu: &mut N| {
+                let _ = black_box(stepper.conserved(state));
+                *mu = stepper.synchronized(state);
+            });
+            $crate::export!("formulas", $name, |stepper: &Stepper<S>, t: &T, q: &Q, p: &Q, mu: &mut N| {
+                roots::formulas(stepper, *t, q, p, mu)?;
+            });
+            $crate::export!("inverse_legendre", $name, |stepper: &Stepper<S>, q: &Q, mu: &N| {
+                let _ = black_box(stepper.inverse_legendre(q, mu));
+            });
+        };
+    };
+}
+
+/// A stepper of step size `h`.
+#[inline]
+pub fn stepper<S: Clebsch + Clone>(system: &S, h: S::Scalar) -> Result<Stepper<S>, Error> {
+    system.stepper(h)
+}
+
+/// What is derived, besides steps.
+#[inline]
+pub fn formulas<S: Clebsch>(
+    stepper: &Stepper<S>,
+    t: S::Scalar,
+    q: &S::Configuration,
+    p: &S::Configuration,
+    mu: &mut S::Momentum,
+) -> Result<(), Error> {
+    let f = stepper.inverse_legendre_at(t, q, mu)?;
+    *mu = stepper.legendre_at(t, q, &f) + stepper.legendre_next_at(t, q, &f);
+    *mu = stepper.coadjoint(&f, mu) + stepper.momentum_map(&stepper.act(&f, q), p);
+    *mu = stepper.momentum_components(&stepper.momentum_matrix(mu));
+    core::hint::black_box(stepper.potential_at(t, q));
+    Ok(())
+}
+
+/// Derivatives of steps by everything that is fixed during them.
+#[macro_export]
+macro_rules! sensitive {
+    ($name:literal, $type:ty) => {
+        $crate::export!(
+            "step_sensitivity",
+            $name,
+            |stepper: &clebsch::Stepper<$type>, state: &clebsch::State<$type>| {
+                let _ = core::hint::black_box(stepper.step_sensitivity(state));
+            }
+        );
+    };
+}
+
+/// A path between places.
+pub trait Path {
+    /// Its vertices.
+    type Nodes;
+}
+
+impl<S, T: clebsch::Real, const M: usize> Path for S
+where
+    S: Clebsch<Scalar = T, Momentum = nalgebra::SVector<T, M>> + clebsch::Variational<M>,
+{
+    type Nodes = [clebsch::Node<S, M>; STEPS];
+}
+
+/// Extremals between fixed and free ends.
+#[macro_export]
+macro_rules! connecting {
+    ($name:literal, $type:ty) => {
+        const _: () = {
+            use clebsch::{Clebsch, Guess, Stepper};
+
+            type S = $type;
+            type T = <S as Clebsch>::Scalar;
+            type Q = <S as Clebsch>::Configuration;
+            type Nodes = <S as $crate::roots::Path>::Nodes;
+
+            $crate::export!("connect", $name, |stepper: &Stepper<S>,
+                                               ends: &[Q; 2],
+                                               path: &mut Nodes,
+                                               action: &mut T| {
+                let boundary = stepper.boundary();
+                path.fill(boundary.rest(&ends[0]));
+                *action = boundary.solve(&ends[0], &ends[1], Guess::Geodesic, path)?.action();
+            });
+            $crate::export!("connect_free", $name, |stepper: &Stepper<S>,
+                                                    start: &Q,
+                                                    path: &mut Nodes,
+                                                    action: &mut T| {
+                *action = stepper.boundary().solve_free(start, Guess::Path, path)?.action();
+            });
+            $crate::export!(
+                "connect_free_time",
+                $name,
+                |stepper: &Stepper<S>, ends: &[Q; 2], path: &mut Nodes, h: &mut [T; 2]| {
+                    let steps = h[0]..=h[1];
+                    h[0] = stepper.boundary().free_time(&ends[0], Some(&ends[1]), steps, Guess::Path, path)?;
+                }
+            );
+            $crate::export!("connect_several", $name, |stepper: &Stepper<S>,
+                                                       ends: &[Q; 2],
+                                                       path: &mut Nodes,
+                                                       action: &mut T| {
+                let ways: [Option<clebsch::Way<_, _>>; 2] = stepper.boundary().several(&ends[0], &ends[1], path)?;
+                *action = ways.into_iter().flatten().fold(*action, |sum, way| sum + way.action);
+            });
+        };
+    };
+}
+
+/// Plans of least price.
+#[macro_export]
+macro_rules! planning {
+    ($name:literal, $type:ty, $d:literal, $u:literal, $c:literal) => {
+        const _: () = {
+            use clebsch::{Control, Controlled, Stage, Target};
+
+            type S = $type;
+            type T = <S as Controlled<$d, $u, $c>>::Scalar;
+            type X = <S as Controlled<$d, $u, $c>>::Place;
+            type Stages = [Stage<S, $d, $u, $c>; $crate::roots::STEPS];
+
+            $crate::export!("control", $name, |system: &S, h: &T, made: &mut Option<Control<S, $d, $u, $c>>| {
+                *made = Some(system.clone().control(*h)?);
+            });
+            $crate::export!("plan", $name, |control: &Control<S, $d, $u, $c>,
+                                            ends: &[X; 2],
+                                            plan: &mut Stages,
+                                            price: &mut T| {
+                plan.fill(control.stage(&ends[0]));
+                *price = control.solve(&ends[0], Target::Place(ends[1]), plan)?.price();
+            });
+            $crate::export!("plan_free_time", $name, |control: &Control<S, $d, $u, $c>,
+                                                      ends: &[X; 2],
+                                                      plan: &mut Stages,
+                                                      h: &mut [T; 2]| {
+                let target = Target::Configuration(ends[1]);
+                h[0] = control.solve_free_time(&ends[0], target, h[0]..=h[1], plan)?.step_size();
+            });
+            $crate::export!("follow", $name, |control: &Control<S, $d, $u, $c>,
+                                              plan: &Stages,
+                                              start: &X,
+                                              place: &mut X| {
+                *place = control.follow(start, &control.feedback(&plan[0], place))?;
+            });
+        };
+    };
+}
