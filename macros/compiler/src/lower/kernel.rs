@@ -2,7 +2,7 @@
 
 mod shorten;
 
-use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
 use super::pairs::Pairs;
@@ -141,6 +141,7 @@ pub struct Hoisted {
 
 impl Hoisted {
     fn index(&mut self, scalar: Scalar) -> usize {
+        work::spend(1 + self.scalars.len() / 32);
         self.scalars.iter().position(|&known| known == scalar).unwrap_or_else(|| {
             self.scalars.push(scalar);
             self.scalars.len() - 1
@@ -255,6 +256,7 @@ impl Builder<'_, '_> {
     }
 
     fn intern(&mut self, operation: Operation) -> Id {
+        work::spend(2 + operation.operands().len());
         self.operations.intern(operation).0
     }
 
@@ -437,6 +439,7 @@ impl Builder<'_, '_> {
 
     /// What the outputs are made of, in the order in which it was met.
     fn used(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<Id> {
+        work::spend(self.operations.len() / 4);
         let mut is_used = vec![false; self.operations.len()];
         let mut waiting: Vec<Id> = entries(outputs).collect();
         while let Some(id) = waiting.pop() {
@@ -497,6 +500,7 @@ impl Builder<'_, '_> {
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
+        work::spend(1);
         uses[id] += 1;
         let is_first = uses[id] == 1;
         // what has no name of its own is written out at each use
