@@ -2,11 +2,11 @@
 
 #![no_main]
 
-#[path = "../../tests/fuzz/mutation.rs"]
+#[path = "../../../macros/compiler/tests/fuzz/mutation.rs"]
 mod mutation;
-#[path = "../../tests/fuzz/seeds.rs"]
+#[path = "../../../macros/compiler/tests/fuzz/seeds.rs"]
 mod seeds;
-#[path = "../../tests/fuzz/verdict.rs"]
+#[path = "../../../macros/compiler/tests/fuzz/verdict.rs"]
 mod verdict;
 
 use std::sync::LazyLock;

@@ -181,6 +181,8 @@ fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
 
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
 const LONGEST_EXPRESSION: usize = 256;
+/// An expression that nests deeper is cut too: a parser takes more of its stack for a level than for an operation.
+const DEEPEST_EXPRESSION: usize = 24;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
 /// The index of an operation of a kernel.
@@ -470,21 +472,18 @@ impl Builder<'_, '_> {
         }
         let mut locals = Vec::new();
         let mut names: Table<Id, usize> = Table::default();
-        let mut sizes = vec![0; self.operations.len()];
+        let (mut sizes, mut depths) = (vec![0; self.operations.len()], vec![0; self.operations.len()]);
         let delays = self.delays_in(&order);
         // where it is not, sums by pairs would only take registers
         if !self.scalars.keeps_sums && self.waits(outputs, &delays) {
             self.delays = delays;
         }
         for id in order {
-            let inner: usize = self
-                .operands(id)
-                .iter()
-                .filter(|&operand| !names.contains(operand))
-                .map(|&operand| sizes[operand])
-                .sum();
-            sizes[id] = 1 + inner;
-            let long = sizes[id] > LONGEST_EXPRESSION;
+            let operands = self.operands(id);
+            let inner = || operands.iter().filter(|&operand| !names.contains(operand));
+            sizes[id] = 1 + inner().map(|&operand| sizes[operand]).sum::<usize>();
+            depths[id] = 1 + inner().map(|&operand| depths[operand]).max().unwrap_or(0);
+            let long = sizes[id] > LONGEST_EXPRESSION || depths[id] > DEEPEST_EXPRESSION;
             if matches!(self.operations.value(id), Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id)
             {
                 let code = self.operation(id, &names);

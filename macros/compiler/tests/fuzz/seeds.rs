@@ -14,10 +14,8 @@ pub fn all() -> Vec<(String, String)> {
 
 /// The seeds of a folder, sorted by name.
 pub fn of(folder: &str) -> Vec<(String, String)> {
-    // the fuzz targets are a package within `tests`
-    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let root = if own.ends_with("fuzz") { own.parent().expect("the folder `tests`") } else { own };
-    let folder = root.join(folder);
+    // two folders up from `macros/compiler` and from `tests/fuzz`
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests").join(folder);
     let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<_> = entries.map(|entry| entry.expect("a readable folder").path()).collect();
     paths.sort();

@@ -64,7 +64,8 @@ const NUMBERS: &[&str] = &[
 /// A text with one to four changes; parts of `other` may come into it. A text that is no Rust is changed into `other`.
 pub fn mutated(text: &str, other: &str, choices: &mut Choices) -> String {
     let (Some(mut words), donor) = (words(text), words(other)) else { return other.to_string() };
-    for _ in 0..1 + choices.pick(4) {
+    let most = [1, 1, 2, 4][choices.pick(4)];
+    for _ in 0..most {
         change(&mut words, donor.as_deref().unwrap_or_default(), choices);
     }
     words.join(" ")

@@ -14,6 +14,9 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 /// A panic, other tokens the second time, code that is no Rust, or an error without message, help or place.
 pub fn verdict(text: &str) -> Result<Option<Diagnostics>, String> {
     let Ok(tokens) = text.parse::<TokenStream>() else { return Ok(None) };
+    if tokens.is_empty() {
+        return Ok(None);
+    }
     let item = declaration(tokens);
     let expansion = expand(item.clone()).to_string();
     if expansion.contains("has found a bug in clebsch") {
@@ -28,14 +31,19 @@ pub fn verdict(text: &str) -> Result<Option<Diagnostics>, String> {
             false => Err(format!("other tokens the second time:\n{text}")),
         };
     }
-    let Ok(Some(errors)) = catch_unwind(|| compile(&Graph::new(), item).err()) else {
+    let Ok(Some(errors)) = catch_unwind(|| compile(&Graph::new(), item.clone()).err()) else {
         return refused_in_emission(&expansion, text);
     };
     if !expansion.starts_with(&errors.to_compile_errors().to_string()) {
         return Err(format!("other errors the second time:\n{text}"));
     }
     helps(&errors, text)?;
-    Ok(Some(errors))
+    // rustc gives a macro whole items: only what is none may end without a place
+    let is_whole = || errors.to_string().contains("to be read") || syn::parse2::<syn::DeriveInput>(item).is_ok();
+    match placed(&errors, text) {
+        Err(failure) if is_whole() => Err(failure),
+        _ => Ok(Some(errors)),
+    }
 }
 
 /// The text of the code is the last that a budget is spent on.
@@ -47,7 +55,7 @@ fn refused_in_emission(expansion: &str, text: &str) -> Result<Option<Diagnostics
 }
 
 /// The item of a file that derives `Clebsch`, as the macro gets it; all tokens of a text without such an item.
-fn declaration(tokens: TokenStream) -> TokenStream {
+pub fn declaration(tokens: TokenStream) -> TokenStream {
     let mut items: Vec<Vec<TokenTree>> = vec![Vec::new()];
     for token in tokens.clone() {
         let ends = match &token {
@@ -75,7 +83,7 @@ fn begins(stream: TokenStream, word: &str) -> bool {
     matches!(stream.into_iter().next(), Some(TokenTree::Ident(first)) if first == word)
 }
 
-/// Every error has a message, a help or a note, and a place in the text.
+/// Every error has a message, and a help or a note.
 fn helps(errors: &Diagnostics, text: &str) -> Result<(), String> {
     let broken = |what: &str| Err(format!("{what}:\n{errors}\n{text}"));
     let found = errors.clone().into_vec();
@@ -92,11 +100,16 @@ fn helps(errors: &Diagnostics, text: &str) -> Result<(), String> {
             return broken("an error without a help or a note");
         }
     }
+    Ok(())
+}
+
+/// Every error has a place in the text.
+fn placed(errors: &Diagnostics, text: &str) -> Result<(), String> {
     // `compile_error! { … }` carries the first and the last token of the place
     for token in errors.to_compile_errors() {
         let (from, to) = (token.span().start(), token.span().end());
         if from.line == 0 || from >= to || text.lines().nth(to.line - 1).is_none_or(|line| line.len() < to.column) {
-            return broken(&format!("an error without a place, `{token}` at {from:?} to {to:?}"));
+            return Err(format!("an error without a place, `{token}` at {from:?} to {to:?}:\n{errors}\n{text}"));
         }
     }
     Ok(())
