@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::mutation::{Choices, mutated};
 use crate::seeds;
-use crate::verdict::verdict;
+use crate::verdict::{declaration, verdict};
 
 /// What no macro can know: names that are not there, traits that a type of the user's has not.
 const UNKNOWN: [&str; 12] =
@@ -44,7 +44,15 @@ fn accepted(count: u64) -> Vec<String> {
         let (one, other) = (choices.pick(from.len()), choices.pick(seeds.len()));
         mutated(&from[one].1, &seeds[other].1, choices)
     };
-    (0..count).map(change).filter(|text| matches!(verdict(text), Ok(None))).collect()
+    (0..count).map(change).filter(|text| matches!(verdict(text), Ok(None))).filter_map(|text| item(&text)).collect()
+}
+
+/// The item of a text as a module has it; `None` of what rustc would not give to a macro, and of potentials whose methods stand beside the item.
+fn item(text: &str) -> Option<String> {
+    let item = declaration(text.parse().ok()?);
+    syn::parse2::<syn::DeriveInput>(item.clone()).ok()?;
+    let text = item.to_string();
+    (!text.contains("opaque")).then(|| format!("use clebsch::Clebsch;\nuse nalgebra::*;\n#[derive(Clebsch)]\n{text}\n"))
 }
 
 /// A crate with a module for each text.
