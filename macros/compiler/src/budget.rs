@@ -10,8 +10,8 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{ChartChoice, Declaration, Discretization, Kinetic, Order};
 
-/// The work of one expansion: about ten seconds and a quarter of a gigabyte where the compiler is not optimised. What integrates a
-/// system that somebody has declared so far takes less than a tenth of it.
+/// The work of one expansion: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
+/// the systems of the tests take less than a tenth of it.
 pub const WORK: u64 = 20_000_000;
 
 /// The stages behind the first one.
