@@ -7,6 +7,7 @@
 //!
 //! Each stage is a function from one value to the next, each value prints, and each print is a snapshot test.
 
+mod budget;
 pub mod derive;
 pub mod diagnostic;
 pub mod emit;
@@ -14,37 +15,63 @@ pub mod lower;
 pub mod model;
 pub mod parse;
 
+use std::cell::Cell;
+
 use proc_macro2::TokenStream;
 
+pub use budget::WORK;
 pub use clebsch_symbolic::Graph;
 
+use crate::budget::Stage;
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
+use crate::parse::Declaration;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
 ///
-/// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported.
+/// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported. There
+/// are no panics: one of ours is an error that asks for a report.
 pub fn expand(item: TokenStream) -> TokenStream {
-    let graph = Graph::new();
-    match compile(&graph, item.clone()) {
-        Ok(program) => emit::emit(&program),
+    match budget::without_panic(&item, || integrator(item.clone())).flatten() {
+        Ok(tokens) => tokens,
         Err(errors) => {
-            let declaration = parse::parse(item).ok();
-            let outline = declaration.as_ref().and_then(|declaration| model::outline(&graph, declaration));
-            let stub = declaration.zip(outline).map(|(declaration, outline)| emit::stub(&declaration, &outline));
-            let errors = errors.to_compile_errors();
+            let (errors, stub) = (errors.to_compile_errors(), budget::without_panic(&item, || stub(item.clone())));
+            let stub = stub.ok().flatten();
             quote::quote!(#errors #stub)
         }
     }
 }
 
-/// The first four stages.
+/// All five stages.
+fn integrator(item: TokenStream) -> Result<TokenStream, Diagnostics> {
+    let (graph, declaration) = (Graph::new(), parse::parse(item)?);
+    budget::within(&declaration, |stage| {
+        let program = program(&graph, &declaration, stage)?;
+        stage.set(Stage::Emit);
+        Ok(emit::emit(&program))
+    })
+}
+
+/// What stands beside errors; `None` where the types cannot be read.
+fn stub(item: TokenStream) -> Option<TokenStream> {
+    let (graph, declaration) = (Graph::new(), parse::parse(item).ok()?);
+    let outline = budget::within(&declaration, |_| Ok(model::outline(&graph, &declaration)));
+    Some(emit::stub(&declaration, &outline.ok()??))
+}
+
+/// The first four stages, which may panic where the compiler has a bug.
 ///
 /// # Errors
 /// Everything that is wrong with the declaration, each error at its place.
 pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnostics> {
     let declaration = parse::parse(item)?;
-    let model = model::model(graph, &declaration)?;
+    budget::within(&declaration, |stage| program(graph, &declaration, stage))
+}
+
+fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Cell<Stage>) -> Result<Program<'g>, Diagnostics> {
+    let model = model::model(graph, declaration)?;
+    stage.set(Stage::Derive);
     let formulas = derive::derive(model)?;
+    stage.set(Stage::Lower);
     lower::lower(formulas)
 }

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clebsch_compiler::{Graph, compile};
+use clebsch_compiler::{Graph, WORK, compile, expand};
+use clebsch_symbolic::work;
+use proc_macro2::TokenStream;
 use quote::ToTokens;
 
 /// The files of a folder of fixtures, in order.
@@ -16,8 +18,13 @@ fn fixtures(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// What the compiler says about the item of a file that carries the derive: nothing, or its errors.
+/// What the compiler says about the item of a file: nothing, or its errors.
 fn errors(file: &Path) -> Option<String> {
+    compile(&Graph::new(), item(file)).err().map(|errors| errors.to_string())
+}
+
+/// The item of a file that carries the derive.
+fn item(file: &Path) -> TokenStream {
     let text = fs::read_to_string(file).expect("a readable file");
     let items = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display())).items;
     let declared = |item: &syn::Item| {
@@ -29,7 +36,7 @@ fn errors(file: &Path) -> Option<String> {
         attributes.iter().any(|attribute| attribute.path().is_ident("derive"))
     };
     let item = items.into_iter().find(declared).unwrap_or_else(|| panic!("{} derives nothing", file.display()));
-    compile(&Graph::new(), item.to_token_stream()).err().map(|errors| errors.to_string())
+    item.to_token_stream()
 }
 
 #[test]
@@ -39,6 +46,19 @@ fn accepted_fixtures_compile() {
     for file in files {
         assert_eq!(errors(&file), None, "{}", file.display());
     }
+}
+
+/// What people declare is far from what is too large: no fixture takes a twentieth of the budget.
+#[test]
+fn accepted_fixtures_stay_far_within_the_budget() {
+    let mut most = (0, String::new());
+    for file in fixtures("accept") {
+        let before = work::spent();
+        expand(item(&file));
+        most = most.max((work::spent() - before, file.display().to_string()));
+    }
+    println!("{} of {WORK}: {}", most.0, most.1);
+    assert!(most.0 > WORK / 1000 && most.0 < WORK / 20, "{} of {WORK}: {}", most.0, most.1);
 }
 
 #[test]

@@ -12,14 +12,13 @@ impl<'g> Expr<'g> {
 
     /// Applies a linear operation to each term of a sum, `operation` being given single terms without their scalars.
     pub(crate) fn linear(self, shape: Shape, operation: impl Fn(Expr<'g>) -> Expr<'g>) -> Expr<'g> {
-        let mut result = self.graph.zero(shape);
-        for Term { coefficient, scalars, word } in self.terms() {
+        let image = |Term { coefficient, scalars, word }| {
             let plain = Term { coefficient: Rational::one(), scalars: Vec::new(), word };
             let image = operation(self.graph.collect(self.shape(), [plain]));
             let scale = self.graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]);
-            result = result + scale * image;
-        }
-        result
+            scale * image
+        };
+        self.graph.total(shape, self.terms().into_iter().map(image))
     }
 
     /// The transpose Aᵀ.

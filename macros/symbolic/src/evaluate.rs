@@ -1,7 +1,7 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
 use crate::node::{Analytic, Exponent, Function, Id, Node};
-use crate::{Expr, Graph, Rational, Shape, Table};
+use crate::{Expr, Graph, Rational, Shape, Table, work};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
@@ -119,6 +119,7 @@ impl<K: Number> Matrix<K> {
 
     /// The matrix whose entries a function gives.
     pub fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> K) -> Matrix<K> {
+        work::spend(1 + shape.len() / 4);
         Matrix::new(shape, shape.positions().map(entry).collect())
     }
 
@@ -148,6 +149,7 @@ impl<K: Number> Matrix<K> {
         if other.shape.is_scalar() {
             return self.scale(other.entries[0]);
         }
+        work::spend(self.shape.len() * other.shape.columns / 4);
         let product =
             |(i, j)| (0..self.shape.columns).fold(zero(), |sum: K, k| sum.add(self.at(i, k).multiply(other.at(k, j))));
         Matrix::from_fn(Shape::new(self.shape.rows, other.shape.columns), product)
@@ -165,6 +167,7 @@ impl<K: Number> Matrix<K> {
     /// The inverse and the determinant, by elimination; the inverse of a singular matrix is made of reciprocals of zero.
     pub fn inverse(&self) -> (Matrix<K>, K) {
         let n = self.shape.rows;
+        work::spend(n * n * n / 2);
         let (mut left, mut right) = (self.clone(), Matrix::scaled_identity(n, one::<K>()));
         let mut determinant: K = one();
         for column in 0..n {

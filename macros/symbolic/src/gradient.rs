@@ -130,7 +130,9 @@ impl<'g> Expr<'g> {
         }
         match &*self.node() {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => zero,
-            Node::Sum(terms) => terms.iter().fold(zero, |sum, term| sum + self.push_forward_term(term, tangents)),
+            Node::Sum(terms) => {
+                graph.total(self.shape(), terms.iter().map(|term| self.push_forward_term(term, tangents)))
+            }
             Node::Word(word) => self.push_forward_word(word, tangents),
             Node::Trace(word) => self.push_forward_word(word, tangents).trace(),
             Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),

@@ -10,7 +10,7 @@ use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
 use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
-use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational};
+use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
@@ -44,6 +44,7 @@ impl Graph {
     }
 
     pub(crate) fn intern(&self, node: Node, shape: Shape) -> Expr<'_> {
+        work::spend(node.size());
         let (position, _) = self.nodes.borrow_mut().intern((Rc::new(node), shape));
         self.expr(Id(position as u32))
     }

@@ -36,6 +36,7 @@ mod table;
 mod terms;
 mod view;
 mod windows;
+pub mod work;
 
 pub use algebra::{Algebra, Basis, Sparse};
 pub use evaluate::{Matrix, Number};

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::node::Id;
-use crate::{Algebra, Expr, Graph, Group, Table};
+use crate::{Algebra, Expr, Graph, Group, Table, work};
 
 /// A map of expressions.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -38,6 +38,7 @@ impl Images {
         let mut known = self.known.borrow_mut();
         if known.len() <= id.0 as usize {
             let mut larger = vec![0; 2 * (id.0 as usize + 1)];
+            work::spend(larger.len() / 32);
             larger[..known.len()].copy_from_slice(&known);
             *known = larger;
         }

@@ -93,6 +93,24 @@ pub(crate) enum Node {
     Components(Algebra, Id),
 }
 
+impl Node {
+    /// About the work that it takes to make it once its parts are there.
+    pub(crate) fn size(&self) -> usize {
+        2 + match self {
+            Node::Sum(terms) => terms.iter().map(Term::size).sum(),
+            Node::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum(),
+            Node::Stack(parts) | Node::Word(parts) | Node::Trace(parts) | Node::Opaque(_, _, parts) => parts.len(),
+            _ => 0,
+        }
+    }
+}
+
+impl Term {
+    fn size(&self) -> usize {
+        1 + self.coefficient.digits() + (self.scalars.len() + self.word.len()) / 4
+    }
+}
+
 impl Function {
     /// The functions that a declaration can name, by their names in Rust.
     pub const ALL: [(&'static str, Function); 11] = [

@@ -5,7 +5,7 @@ use std::fmt;
 use num_traits::One;
 
 use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
-use crate::{Expr, Graph, Rational, Shape};
+use crate::{Expr, Graph, Rational, Shape, work};
 
 /// How a formula is written.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -44,6 +44,8 @@ impl Printer<'_> {
     /// The text of a node, in parentheses if it binds less tightly than its place asks.
     fn print(&self, id: Id, place: Binding) -> String {
         let (text, binding) = self.node(id);
+        // what stands in several places is written out in each
+        work::spend(1 + text.len() / 64);
         if binding < place { self.parenthesized(&text) } else { text }
     }
 

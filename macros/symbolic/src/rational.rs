@@ -13,6 +13,7 @@ pub use num_traits::{One, Zero};
 use num_traits::{Pow, ToPrimitive};
 
 use crate::fraction::Fraction;
+use crate::work;
 
 /// A rational number of any size.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -71,6 +72,14 @@ impl Rational {
     /// Numerator and denominator, if they are machine words.
     pub fn parts(&self) -> Option<(i64, i64)> {
         self.as_fraction().map(Fraction::parts)
+    }
+
+    /// The machine words that it takes beside one for each part.
+    pub(crate) fn digits(&self) -> usize {
+        match &self.0 {
+            Size::Short(_) => 0,
+            Size::Long(value) => ((value.numer().bits() + value.denom().bits()) / 64) as usize,
+        }
     }
 
     fn long(&self) -> BigRational {
@@ -153,7 +162,12 @@ impl From<BigRational> for Rational {
         let parts = value.numer().to_i128().zip(value.denom().to_i128());
         match parts.and_then(|(numerator, denominator)| Fraction::reduced(numerator, denominator)) {
             Some(fraction) => Rational::short(fraction),
-            None => Rational(Size::Long(Box::new(value))),
+            None => {
+                let value = Rational(Size::Long(Box::new(value)));
+                // digits meet digits in products and in lowest terms
+                work::spend(1 + value.digits() * value.digits() / 8);
+                value
+            }
         }
     }
 }

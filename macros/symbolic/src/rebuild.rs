@@ -4,7 +4,7 @@ use num_traits::{One, Zero};
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, Id, Node, Term};
-use crate::{Expr, Graph, Rational, Shape};
+use crate::{Expr, Graph, Rational, Shape, work};
 
 impl Node {
     /// Hands the identities of the direct children on, one after the other.
@@ -64,6 +64,7 @@ impl<'g> Expr<'g> {
                 self.graph.node(id).each_child(|child| open.push(child));
             }
         }
+        work::spend((reached.len() + seen.len() / 64) / 4);
         reached.sort_unstable();
         reached
     }
@@ -114,12 +115,15 @@ impl<'g> Expr<'g> {
         let product = |word: &[Id]| word.iter().map(image).reduce(|a, b| a * b);
         match &*node {
             Node::Symbol(_) | Node::Pi | Node::Literal(_) => self,
-            Node::Sum(terms) => terms.iter().fold(graph.zero(self.shape()), |sum, term| {
-                let powers = term.scalars.iter().map(|(base, e)| image(base).power(Rational::short(*e)));
-                let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
-                let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
-                sum + scale * word
-            }),
+            Node::Sum(terms) => {
+                let image = |term: &Term| {
+                    let powers = term.scalars.iter().map(|(base, e)| image(base).power(Rational::short(*e)));
+                    let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
+                    let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
+                    scale * word
+                };
+                graph.total(self.shape(), terms.iter().map(image))
+            }
             Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(image).collect()),
             // by construction: words of `Word` and `Trace` nodes are not empty
             Node::Word(word) => product(word).expect("a word has letters"),
@@ -169,9 +173,10 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
             Node::Function(..) => self,
-            Node::Sum(terms) => terms
-                .iter()
-                .fold(graph.zero(self.shape()), |sum, term| sum + graph.expand_term(term, self.shape(), images)),
+            Node::Sum(terms) => {
+                let shape = self.shape();
+                graph.total(shape, terms.iter().map(|term| graph.expand_term(term, shape, images)))
+            }
             Node::Word(word) => graph.expand_word(word, images, Shape::scalar()),
             Node::Trace(word) => {
                 let n = graph.shape(word[0]).rows;
@@ -224,13 +229,9 @@ impl Graph {
 
     /// The product of two expanded expressions, term by term.
     fn distribute<'g>(&'g self, left: Expr<'g>, right: Expr<'g>, shape: Shape) -> Expr<'g> {
-        let mut sum = self.zero(shape);
-        for a in left.terms() {
-            for b in right.terms() {
-                sum = sum + self.multiply_expanded(&a, &b, shape);
-            }
-        }
-        sum
+        let (left, right) = (left.terms(), right.terms());
+        let pairs = left.iter().flat_map(|a| right.iter().map(move |b| (a, b)));
+        self.total(shape, pairs.map(|(a, b)| self.multiply_expanded(a, b, shape)))
     }
 
     fn multiply_expanded(&self, a: &Term, b: &Term, shape: Shape) -> Expr<'_> {

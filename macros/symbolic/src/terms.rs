@@ -6,7 +6,7 @@ use num_traits::{One, Zero};
 
 use crate::node::{Exponent, Id, Node, Term};
 use crate::rational::product;
-use crate::{Expr, Graph, Group, Property, Rational, Shape, integer};
+use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
 
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
@@ -52,7 +52,11 @@ fn add(sum: &mut Vec<Term>, term: Term) {
     };
     match place {
         Ok(position) => sum[position].coefficient += term.coefficient,
-        Err(position) => sum.insert(position, term),
+        Err(position) => {
+            // what stands behind it moves
+            work::spend((sum.len() - position) / 64);
+            sum.insert(position, term);
+        }
     }
 }
 
@@ -61,6 +65,17 @@ impl Graph {
     pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
         let mut sum: Vec<Term> = Vec::new();
         terms.into_iter().for_each(|term| add(&mut sum, term));
+        self.settle(shape, sum)
+    }
+
+    /// The sum of expressions of one shape. What stands there on the way makes no expressions: of a long sum they would be as many,
+    /// and nearly as long.
+    pub(crate) fn total<'g>(&'g self, shape: Shape, parts: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
+        let mut sum: Vec<Term> = Vec::new();
+        for part in parts {
+            work::spend(1);
+            part.terms().into_iter().for_each(|term| add(&mut sum, term));
+        }
         self.settle(shape, sum)
     }
 
@@ -138,9 +153,8 @@ impl<'g> Expr<'g> {
 
     /// Each term of the sum times a scalar, which meets the powers that the terms hold of it.
     pub fn times_each(self, scalar: Expr<'g>) -> Expr<'g> {
-        let zero = self.graph.zero(self.shape());
         let terms = self.terms().into_iter().map(|term| self.graph.collect(self.shape(), [term]) * scalar);
-        terms.fold(zero, |sum, term| sum + term)
+        self.graph.total(self.shape(), terms)
     }
 
     /// The product of matrices, or of a scalar and anything.

@@ -24,15 +24,18 @@ impl<'g> Expr<'g> {
         let images = Images::default();
         let image = |part: &Id| images.of(self.graph, part);
         self.mapped(&images, |expr| match &*expr.node() {
-            Node::Sum(terms) => terms.iter().fold(self.graph.zero(expr.shape()), |sum, term| {
-                let scale = Term { word: Vec::new(), ..term.clone() };
-                let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
-                let word = match term.word.is_empty() {
-                    true => self.graph.identity(expr.shape().rows),
-                    false => product(term.word.iter().map(image)),
+            Node::Sum(terms) => {
+                let image = |term: &Term| {
+                    let scale = Term { word: Vec::new(), ..term.clone() };
+                    let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
+                    let word = match term.word.is_empty() {
+                        true => self.graph.identity(expr.shape().rows),
+                        false => product(term.word.iter().map(image)),
+                    };
+                    scale * word
                 };
-                sum + scale * word
-            }),
+                self.graph.total(expr.shape(), terms.iter().map(image))
+            }
             Node::Word(word) => product(word.iter().map(image)),
             Node::Trace(word) => product(word.iter().map(image)).trace(),
             Node::Block(inner, row, column) => image(inner).cut(*row, *column, expr.shape()),

@@ -1,13 +1,5 @@
 //! Valid problems with one mistake: each is refused, with a message, at a place, and with a help or a note.
 
-use std::panic::catch_unwind;
-
-use clebsch_compiler::diagnostic::Diagnostics;
-use clebsch_compiler::{Graph, compile};
-use clebsch_tests::oracle::random::Random;
-use proc_macro2::{TokenStream, TokenTree};
-
-use crate::groups::pick;
 use crate::problem::{Declared, Kind, Kinetic};
 
 /// The text of a declaration with a mistake, and what the mistake is.
@@ -65,78 +57,4 @@ pub fn mistakes(problem: &Declared) -> Vec<Mistake> {
         replaced("a cost and a Lagrangian", "cost = |", "lagrangian = |v| v.norm_squared(),\n    cost = |");
     }
     found
-}
-
-/// The text without one of its tokens, with one twice, or with two of them exchanged.
-pub fn mutilated(text: &str, random: &mut Random) -> String {
-    let tokens: TokenStream = text.parse().expect("tokens");
-    let mut words = Vec::new();
-    flatten(tokens, &mut words);
-    let (i, j) = (pick(random, words.len()), pick(random, words.len()));
-    match pick(random, 3) {
-        0 => drop(words.remove(i)),
-        1 => words.insert(i, words[j].clone()),
-        _ => words.swap(i, j),
-    }
-    words.join(" ")
-}
-
-fn flatten(tokens: TokenStream, words: &mut Vec<String>) {
-    for token in tokens {
-        match token {
-            TokenTree::Group(group) => {
-                let (open, close) = match group.delimiter() {
-                    proc_macro2::Delimiter::Parenthesis => ("(", ")"),
-                    proc_macro2::Delimiter::Brace => ("{", "}"),
-                    proc_macro2::Delimiter::Bracket => ("[", "]"),
-                    proc_macro2::Delimiter::None => ("", ""),
-                };
-                words.push(open.into());
-                flatten(group.stream(), words);
-                words.push(close.into());
-            }
-            other => words.push(other.to_string()),
-        }
-    }
-}
-
-/// What the compiler says of a text: nothing, or errors that help.
-///
-/// # Errors
-/// A panic, or an error without message, help or place.
-pub fn verdict(text: &str) -> Result<Option<Diagnostics>, String> {
-    let Ok(tokens) = text.parse::<TokenStream>() else { return Ok(None) };
-    let Ok(errors) = catch_unwind(|| compile(&Graph::new(), tokens).err()) else {
-        return Err(format!("a panic:\n{text}"));
-    };
-    let Some(errors) = errors else { return Ok(None) };
-    helps(&errors, text)?;
-    Ok(Some(errors))
-}
-
-/// Every error has a message, a help or a note, and a place in the text.
-fn helps(errors: &Diagnostics, text: &str) -> Result<(), String> {
-    let broken = |what: &str| Err(format!("{what}:\n{errors}\n{text}"));
-    let found = errors.clone().into_vec();
-    if found.is_empty() {
-        return broken("refused without an error");
-    }
-    for error in &found {
-        let said = error.to_string();
-        let first = said.lines().next().unwrap_or_default();
-        if first.trim().is_empty() || first.ends_with('.') || first.starts_with(char::is_uppercase) {
-            return broken("an error without a first line, or with a sentence there");
-        }
-        if !said.contains("\nhelp: ") && !said.contains("\nnote: ") {
-            return broken("an error without a help or a note");
-        }
-    }
-    // `compile_error! { … }` carries the first and the last token of the place
-    for token in errors.to_compile_errors() {
-        let (from, to) = (token.span().start(), token.span().end());
-        if from.line == 0 || from >= to || text.lines().nth(to.line - 1).is_none_or(|line| line.len() < to.column) {
-            return broken(&format!("an error without a place, `{token}` at {from:?} to {to:?}"));
-        }
-    }
-    Ok(())
 }

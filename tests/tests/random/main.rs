@@ -13,15 +13,20 @@ mod formula;
 mod generator;
 mod groups;
 mod kernels;
+#[path = "../../../macros/compiler/tests/fuzz/mutation.rs"]
+mod mutation;
 mod problem;
 mod shrinking;
 mod stepping;
+#[path = "../../../macros/compiler/tests/fuzz/verdict.rs"]
+mod verdict;
 
 use std::ops::Range;
 
 use checks::{Found, check};
-use clebsch_tests::oracle::random::Random;
 use generator::problem;
+use mutation::{Choices, mutated};
+use verdict::verdict;
 
 /// The seeds of a test that takes `count` of them unless it is told otherwise.
 fn seeds(count: u64) -> Range<u64> {
@@ -120,7 +125,7 @@ fn what_is_refused_says_why() {
     for seed in seeds(100) {
         for mistake in broken::mistakes(&problem(seed)) {
             count += 1;
-            match broken::verdict(&mistake.text) {
+            match verdict(&mistake.text) {
                 Ok(Some(_)) => {}
                 Ok(None) => failures.push(format!("seed {seed}, {}: not refused\n{}", mistake.name, mistake.text)),
                 Err(failure) => failures.push(format!("seed {seed}, {}: {failure}", mistake.name)),
@@ -137,9 +142,8 @@ fn mutilated_declarations_are_refused_or_compiled() {
     let mut failures = Vec::new();
     let mut refused = 0;
     for seed in seeds(300) {
-        let random = &mut Random::new(seed + 77);
-        let text = broken::mutilated(&problem(seed).text(), random);
-        match broken::verdict(&text) {
+        let text = mutated(&problem(seed).text(), &problem(seed + 1).text(), &mut Choices::new(seed));
+        match verdict(&text) {
             Ok(errors) => refused += usize::from(errors.is_some()),
             Err(failure) => failures.push(format!("seed {seed}: {failure}")),
         }
@@ -156,7 +160,7 @@ fn the_end_of_a_declaration_has_a_place() {
         format!("#[clebsch({rest}, potential = |q| {potential})]\npub struct P;")
     };
     for potential in ["q.", "q.x +", "vector![1, 2 +, 3].dot(&q)", "q.dot(&vector![1, 2, 3 +])", ""] {
-        match broken::verdict(&declaration(potential)) {
+        match verdict(&declaration(potential)) {
             Ok(Some(_)) => {}
             Ok(None) => panic!("`{potential}` is compiled"),
             Err(failure) => panic!("{failure}"),

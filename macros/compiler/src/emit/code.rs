@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use clebsch_symbolic::{Function, Group, Rational, Role, Shape, Table, integer};
+use clebsch_symbolic::{Function, Group, Rational, Role, Shape, Table, integer, work};
 use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use quote::{TokenStreamExt, format_ident, quote};
 
@@ -157,6 +157,7 @@ impl Scope<'_, '_> {
 
     /// Appends the tokens of a code: sums and products are long, and would be copied at each level.
     fn write(&self, tokens: &mut TokenStream, code: &Code, tight: bool) {
+        work::spend(4);
         match code {
             Code::Read(input) => tokens.extend(self.read(input)),
             Code::Number(value) => tokens.extend(self.number(value)),

@@ -1,6 +1,6 @@
 //! Common factors of the terms of a sum: a x + a y is a (x + y), where that saves multiplications.
 
-use clebsch_symbolic::{Rational, Table, Zero, integer};
+use clebsch_symbolic::{Rational, Table, Zero, integer, work};
 
 use super::kernel::{Id, Operation, Operations};
 
@@ -47,6 +47,7 @@ struct Choice {
 impl Factored {
     /// One use more.
     fn take(&mut self, operations: &Operations, id: Id) {
+        work::spend(1);
         self.uses[id] += 1;
         if self.uses[id] > 1 {
             return;
@@ -97,6 +98,8 @@ impl Factored {
         for (position, (_, term)) in terms.iter().enumerate() {
             let Operation::Product(factors) = operations.value(*term) else { continue };
             for (i, factor) in factors.iter().enumerate() {
+                // the product without it is looked for
+                work::spend(1 + factors.len() / 2);
                 if i == 0 || factors[i - 1] != *factor {
                     positions.entry(*factor).push(position);
                 }
@@ -137,6 +140,7 @@ impl Factored {
         terms: Vec<(Rational, Id)>,
         choice: &Choice,
     ) -> Vec<(Rational, Id)> {
+        work::spend(terms.len() * (1 + choice.positions.len() / 16));
         let (taken, mut rest): (Vec<_>, Vec<_>) =
             terms.into_iter().enumerate().partition(|(position, _)| choice.positions.contains(position));
         let (first, sign) = (taken[0].0, integer(if taken[0].1.0.is_negative() { -1 } else { 1 }));

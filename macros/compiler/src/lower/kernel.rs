@@ -2,7 +2,7 @@
 
 mod shorten;
 
-use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
 use super::pairs::Pairs;
@@ -141,6 +141,7 @@ pub struct Hoisted {
 
 impl Hoisted {
     fn index(&mut self, scalar: Scalar) -> usize {
+        work::spend(1 + self.scalars.len() / 32);
         self.scalars.iter().position(|&known| known == scalar).unwrap_or_else(|| {
             self.scalars.push(scalar);
             self.scalars.len() - 1
@@ -180,6 +181,8 @@ fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
 
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
 const LONGEST_EXPRESSION: usize = 256;
+/// An expression that nests deeper is cut too: a parser takes more of its stack for a level than for an operation.
+const DEEPEST_EXPRESSION: usize = 24;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
 /// The index of an operation of a kernel.
@@ -255,6 +258,7 @@ impl Builder<'_, '_> {
     }
 
     fn intern(&mut self, operation: Operation) -> Id {
+        work::spend(2 + operation.operands().len());
         self.operations.intern(operation).0
     }
 
@@ -437,6 +441,7 @@ impl Builder<'_, '_> {
 
     /// What the outputs are made of, in the order in which it was met.
     fn used(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<Id> {
+        work::spend(self.operations.len() / 4);
         let mut is_used = vec![false; self.operations.len()];
         let mut waiting: Vec<Id> = entries(outputs).collect();
         while let Some(id) = waiting.pop() {
@@ -467,21 +472,18 @@ impl Builder<'_, '_> {
         }
         let mut locals = Vec::new();
         let mut names: Table<Id, usize> = Table::default();
-        let mut sizes = vec![0; self.operations.len()];
+        let (mut sizes, mut depths) = (vec![0; self.operations.len()], vec![0; self.operations.len()]);
         let delays = self.delays_in(&order);
         // where it is not, sums by pairs would only take registers
         if !self.scalars.keeps_sums && self.waits(outputs, &delays) {
             self.delays = delays;
         }
         for id in order {
-            let inner: usize = self
-                .operands(id)
-                .iter()
-                .filter(|&operand| !names.contains(operand))
-                .map(|&operand| sizes[operand])
-                .sum();
-            sizes[id] = 1 + inner;
-            let long = sizes[id] > LONGEST_EXPRESSION;
+            let operands = self.operands(id);
+            let inner = || operands.iter().filter(|&operand| !names.contains(operand));
+            sizes[id] = 1 + inner().map(|&operand| sizes[operand]).sum::<usize>();
+            depths[id] = 1 + inner().map(|&operand| depths[operand]).max().unwrap_or(0);
+            let long = sizes[id] > LONGEST_EXPRESSION || depths[id] > DEEPEST_EXPRESSION;
             if matches!(self.operations.value(id), Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id)
             {
                 let code = self.operation(id, &names);
@@ -497,6 +499,7 @@ impl Builder<'_, '_> {
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
+        work::spend(1);
         uses[id] += 1;
         let is_first = uses[id] == 1;
         // what has no name of its own is written out at each use

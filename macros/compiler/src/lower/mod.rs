@@ -182,10 +182,15 @@ fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
 fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
     let groups: Vec<String> =
         formulas.model.factors.iter().map(|factor| factor.group.name(formulas.model.graph)).collect();
-    Diagnostic::new(formulas.model.spans.action.place, format!("{} is too large to unroll: {size}", groups.join(" × ")))
-        .help("use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller")
-        .note("code that keeps its matrix operations for large systems comes with a later version of clebsch")
-        .into()
+    Diagnostic::new(
+        formulas.model.spans.action.place,
+        format!("`{}` is too large to unroll: {size}", groups.join(" × ")),
+    )
+    .help(
+        "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
+    )
+    .note("code that keeps its matrix operations for large systems comes with a later version of clebsch")
+    .into()
 }
 
 /// F⁻¹ of each factor, by the formula that its group has for it, and log F.

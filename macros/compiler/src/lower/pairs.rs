@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use clebsch_symbolic::Table;
+use clebsch_symbolic::{Table, work};
 
 /// The index of an operation of a kernel.
 type Id = usize;
@@ -68,6 +68,7 @@ impl Pairs {
     }
 
     fn count(&mut self, product: Id, length: usize, pair: Pair) {
+        work::spend(2);
         let uses = self.uses.entry(pair);
         uses.all += 1;
         uses.long += usize::from(length > 2);
@@ -77,6 +78,7 @@ impl Pairs {
     /// The pair that most products share, the first of several; `None` if no product of more than two factors shares one.
     pub fn most_common(&mut self) -> Option<Pair> {
         while let Some((count, Reverse(pair))) = self.queue.pop() {
+            work::spend(1);
             let uses = &self.uses[&pair];
             match uses.are_shared() {
                 true if uses.all == count => return Some(pair),

@@ -1,6 +1,6 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
-use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product};
+use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product, work};
 
 use super::grid::Grids;
 
@@ -96,6 +96,17 @@ pub enum Node {
     Output(CallId, Output),
 }
 
+impl Node {
+    /// About the work that it takes to make it once its parts are there.
+    fn size(&self) -> usize {
+        2 + match self {
+            Node::Sum(_, terms) => terms.len(),
+            Node::Product(factors) => factors.len() / 2,
+            _ => 0,
+        }
+    }
+}
+
 /// Owns scalars.
 #[derive(Default)]
 pub struct Scalars {
@@ -120,6 +131,7 @@ impl Scalars {
     }
 
     fn intern(&mut self, node: Node, rate: Rate) -> Scalar {
+        work::spend(node.size());
         let (position, is_new) = self.nodes.intern(node);
         if is_new {
             self.rates.push(rate);

@@ -17,7 +17,7 @@ pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> 
     match argument {
         GenericArgument::Const(expr) => size(expr, generics),
         GenericArgument::Type(ty) => Err(no_size(Place::of(ty), &spell_type(ty), generics)),
-        other => Err(Diagnostic::new(Place::of(other), "a size is a number")),
+        other => Err(Diagnostic::new(Place::of(other), "a size is a number").help("write a number, as in `SO<3>`")),
     }
 }
 

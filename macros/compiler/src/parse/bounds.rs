@@ -1,15 +1,23 @@
 //! Limits on the size of a declaration, checked before anything recurses: for any tokens at all the compiler must come to an end.
+//!
+//! Parsers recurse into brackets and behind operators in front of operands, and what is parsed is as deep as chains of operators are long.
+//! All of it together, on the way from the item to any of its tokens, has to fit into the two megabytes of stack that threads have, also
+//! where neither syn nor this compiler is optimised: there a bracket in a type takes 35 kilobytes.
 
 use proc_macro2::{Spacing, Span, TokenStream, TokenTree};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
-/// Brackets inside brackets.
-const DEPTH: usize = 64;
-/// Tokens between two separators at one level, which bounds the length of chains of operators and methods.
+/// Levels of brackets and of operators in front of their operands, in the stack that [`LEVEL`] stands for.
+const DEPTH: usize = 41;
+/// The weight of a level, in half kilobytes of stack.
+const LEVEL: usize = 72;
+/// The weight of a token in a chain of operators or methods.
+const LINK: usize = 1;
+/// Tokens between two separators at one level.
 const RUN: usize = 2000;
-/// Tokens of one kind in such a run that open a new level of the grammar without a bracket.
-const OPENERS: usize = 100;
+/// Characters of a number: syn reads it digit by digit with all digits before.
+const DIGITS: usize = 500;
 /// Tokens of the whole item.
 const TOTAL: usize = 60_000;
 
@@ -17,22 +25,20 @@ const TOTAL: usize = 60_000;
 pub fn check(item: &TokenStream) -> Result<(), Diagnostics> {
     let mut pending: Vec<(TokenStream, usize)> = vec![(item.clone(), 0)];
     let mut total = 0;
-    while let Some((stream, depth)) = pending.pop() {
+    while let Some((stream, outside)) = pending.pop() {
         let mut run = Run::default();
         for token in stream {
             total += 1;
-            let span = token.span();
             if total > TOTAL {
-                return Err(too("long", span, format!("more than {TOTAL} tokens")));
+                return Err(too("long", token.span(), format!("more than {TOTAL} tokens")));
             }
-            run.add(&token)?;
-            if let TokenTree::Group(group) = token {
-                if depth == DEPTH {
-                    return Err(too("deep", span, format!("more than {DEPTH} brackets inside each other")));
-                }
-                pending.push((group.stream(), depth + 1));
+            if matches!(&token, TokenTree::Punct(mark) if matches!(mark.as_char(), ',' | ';' | '#')) {
+                run.end(outside, &mut pending);
+                continue;
             }
+            run.add(&token, outside)?;
         }
+        run.end(outside, &mut pending);
     }
     Ok(())
 }
@@ -43,45 +49,93 @@ fn too(what: &str, span: Span, how: String) -> Diagnostics {
         .into()
 }
 
+fn is_long_number(token: &TokenTree) -> bool {
+    let TokenTree::Literal(literal) = token else { return false };
+    let text = literal.to_string();
+    text.len() > DIGITS && text.starts_with(|first: char| first.is_ascii_digit())
+}
+
 /// The tokens since the last separator.
 #[derive(Default)]
 struct Run {
     length: usize,
-    openers: usize,
-    after_operator: bool,
+    /// Levels that last to the end of the run.
+    lasting: usize,
+    /// `<` without their `>`.
+    angles: usize,
+    /// Operators without an operand between them.
+    prefixes: usize,
+    last: Option<char>,
+    /// What is in brackets, with the levels on the way to it.
+    groups: Vec<(TokenStream, usize)>,
 }
 
 impl Run {
-    fn add(&mut self, token: &TokenTree) -> Result<(), Diagnostics> {
-        let separator = matches!(token, TokenTree::Punct(punct) if matches!(punct.as_char(), ',' | ';' | '#'));
-        if separator {
-            *self = Run::default();
-            return Ok(());
-        }
+    fn add(&mut self, token: &TokenTree, outside: usize) -> Result<(), Diagnostics> {
         self.length += 1;
-        self.openers += usize::from(self.opens(token));
-        self.after_operator = matches!(token, TokenTree::Punct(punct) if punct.as_char() != '.');
-        match (self.length > RUN, self.openers > OPENERS) {
-            (true, _) => Err(too("long", token.span(), format!("more than {RUN} tokens in one expression"))),
-            (_, true) => Err(too("deep", token.span(), format!("more than {OPENERS} operators that nest"))),
-            _ => Ok(()),
+        if is_long_number(token) {
+            return Err(Diagnostic::new(
+                token.span(),
+                format!("this number is beyond the range of `f64`: it has more than {DIGITS} digits"),
+            )
+            .help("round it, and write it with an exponent, as in `6.674e-11`")
+            .into());
+        }
+        if self.length > RUN {
+            return Err(too("long", token.span(), format!("more than {RUN} tokens in one expression")));
+        }
+        self.open(token);
+        let levels = self.lasting + self.angles + self.prefixes;
+        if !matches!(token, TokenTree::Punct(_)) {
+            self.prefixes = 0;
+        }
+        if let TokenTree::Group(group) = token {
+            self.groups.push((group.stream(), levels + 1));
+        }
+        let inside = usize::from(matches!(token, TokenTree::Group(_)));
+        match outside + (levels + inside) * LEVEL + self.length * LINK > DEPTH * LEVEL {
+            true => Err(too(
+                "deep",
+                token.span(),
+                format!(
+                    "brackets and operators nest {DEPTH} levels deep, or fewer with long chains of operators on the way"
+                ),
+            )),
+            false => Ok(()),
         }
     }
 
-    /// Whether a token may start a level of the grammar that its end does not mark.
-    fn opens(&self, token: &TokenTree) -> bool {
+    /// Counts the levels of the grammar that a token may start and that no bracket marks.
+    fn open(&mut self, token: &TokenTree) {
         const WORDS: [&str; 22] = [
             "return", "break", "yield", "if", "else", "match", "while", "for", "loop", "unsafe", "async", "const",
             "move", "static", "let", "as", "fn", "impl", "dyn", "mut", "ref", "box",
         ];
+        let after_operator = self.last.is_some_and(|last| last != '.');
         match token {
-            TokenTree::Punct(punct) => match punct.as_char() {
-                '|' | '<' | '=' | '@' => true,
-                '.' => punct.spacing() == Spacing::Joint,
-                _ => self.after_operator,
-            },
-            TokenTree::Ident(ident) => WORDS.iter().any(|word| ident == word),
-            _ => false,
+            TokenTree::Punct(punct) => {
+                match punct.as_char() {
+                    '<' => self.angles += 1,
+                    '>' if matches!(self.last, Some('-' | '=')) => {}
+                    '>' => self.angles = self.angles.saturating_sub(1),
+                    '|' | '=' | '@' => self.lasting += 1,
+                    '.' => self.lasting += usize::from(punct.spacing() == Spacing::Joint),
+                    _ => self.prefixes += usize::from(after_operator),
+                }
+                self.last = Some(punct.as_char());
+            }
+            other => {
+                self.lasting +=
+                    usize::from(matches!(other, TokenTree::Ident(word) if WORDS.iter().any(|known| word == known)));
+                self.last = None;
+            }
         }
+    }
+
+    /// Hands on what is in brackets, as deep as the whole run makes it, and starts anew.
+    fn end(&mut self, outside: usize, pending: &mut Vec<(TokenStream, usize)>) {
+        let run = std::mem::take(self);
+        let chain = outside + run.length * LINK;
+        pending.extend(run.groups.into_iter().map(|(stream, levels)| (stream, chain + levels * LEVEL)));
     }
 }

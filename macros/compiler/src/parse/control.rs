@@ -169,12 +169,14 @@ fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &mut Diagnostics) 
     };
     let ty = dynamics.arguments[state].ty.take()?;
     let pattern = dynamics.arguments[state].pattern.clone();
-    let (Some(size), Pattern::Name(name)) = (length(&ty), &pattern) else {
+    let (Some(mut size), Pattern::Name(name)) = (length(&ty), &pattern) else {
         let error = Diagnostic::new(Place::of(&ty), "dynamics move one vector");
         diagnostics
             .push(error.help(format!("write `dynamics = {example}`, with all of the configuration in one vector")));
         return None;
     };
+    // what is wrong with the size is so where it was written
+    size.set_span(Place::of(&ty).start());
     let span = name.span();
     let shift = shift_beside(&dynamics, span);
     let group: Type = parse_quote_spanned!(span=> Translation<#size>);

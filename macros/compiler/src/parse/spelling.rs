@@ -6,15 +6,24 @@ use syn::{Block, Expr, Lit, Member, RangeLimits, Stmt, Type};
 
 use super::Pattern;
 
-/// The text of an expression.
+/// Parts within parts that are spelled: messages are read by people, and chains of operators are deeper than a stack.
+const LEVELS: usize = 100;
+
+/// The text of an expression; what is deeper than any message needs is left out.
 pub fn spell(expr: &Expr) -> String {
+    spell_within(expr, LEVELS)
+}
+
+fn spell_within(expr: &Expr, levels: usize) -> String {
+    let Some(levels) = levels.checked_sub(1) else { return "…".into() };
+    let spell = |expr: &Expr| spell_within(expr, levels);
     match expr {
-        Expr::Array(array) => format!("[{}]", list(&array.elems)),
+        Expr::Array(array) => format!("[{}]", list(&array.elems, levels)),
         Expr::Binary(binary) => {
             format!("{} {} {}", spell(&binary.left), tokens(&binary.op).trim(), spell(&binary.right))
         }
-        Expr::Block(block) => spell_block(&block.block),
-        Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args)),
+        Expr::Block(block) => spell_block(&block.block, levels),
+        Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args, levels)),
         Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),
         Expr::Closure(closure) => {
             let arguments: Vec<String> = closure.inputs.iter().map(tokens).collect();
@@ -26,7 +35,7 @@ pub fn spell(expr: &Expr) -> String {
         Expr::Lit(literal) => spell_literal(&literal.lit),
         Expr::MethodCall(call) => {
             let turbofish = call.turbofish.as_ref().map(tokens).unwrap_or_default();
-            format!("{}.{}{turbofish}({})", spell(&call.receiver), call.method, list(&call.args))
+            format!("{}.{}{turbofish}({})", spell(&call.receiver), call.method, list(&call.args, levels))
         }
         Expr::Paren(inner) => format!("({})", spell(&inner.expr)),
         Expr::Range(range) => {
@@ -36,15 +45,15 @@ pub fn spell(expr: &Expr) -> String {
         }
         Expr::Reference(reference) => format!("&{}", spell(&reference.expr)),
         Expr::Repeat(repeat) => format!("[{}; {}]", spell(&repeat.expr), spell(&repeat.len)),
-        Expr::Tuple(tuple) if tuple.elems.len() == 1 => format!("({},)", list(&tuple.elems)),
-        Expr::Tuple(tuple) => format!("({})", list(&tuple.elems)),
+        Expr::Tuple(tuple) if tuple.elems.len() == 1 => format!("({},)", list(&tuple.elems, levels)),
+        Expr::Tuple(tuple) => format!("({})", list(&tuple.elems, levels)),
         Expr::Unary(unary) => format!("{}{}", tokens(&unary.op), spell(&unary.expr)),
         other => tokens(other),
     }
 }
 
-fn list<'a>(items: impl IntoIterator<Item = &'a Expr>) -> String {
-    items.into_iter().map(spell).collect::<Vec<_>>().join(", ")
+fn list<'a>(items: impl IntoIterator<Item = &'a Expr>, levels: usize) -> String {
+    items.into_iter().map(|item| spell_within(item, levels)).collect::<Vec<_>>().join(", ")
 }
 
 fn spell_member(member: &Member) -> String {
@@ -63,12 +72,13 @@ fn spell_literal(literal: &Lit) -> String {
 }
 
 /// A block on one line.
-fn spell_block(block: &Block) -> String {
-    let statements: Vec<String> = block.stmts.iter().map(spell_statement).collect();
+fn spell_block(block: &Block, levels: usize) -> String {
+    let statements: Vec<String> = block.stmts.iter().map(|statement| spell_statement(statement, levels)).collect();
     format!("{{ {} }}", statements.join(" "))
 }
 
-fn spell_statement(statement: &Stmt) -> String {
+fn spell_statement(statement: &Stmt, levels: usize) -> String {
+    let spell = |expr: &Expr| spell_within(expr, levels);
     match statement {
         Stmt::Local(local) => match &local.init {
             Some(init) => format!("let {} = {};", tokens(&local.pat), spell(&init.expr)),

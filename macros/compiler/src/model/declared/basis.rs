@@ -45,7 +45,7 @@ fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matr
     }
     let value = elaborate(graph, &key, empty_scope(), |elaborator| elaborator.elaborate(element))?;
     let Value::Matrix(expr) = value else {
-        let message = format!("E{} of `{name}` is {}, not a matrix", k + 1, value.describe());
+        let message = format!("`E{}` of `{name}` is {}, not a matrix", k + 1, value.describe());
         let example = match value {
             Value::Identity(_) => "Matrix3::identity()",
             _ => "Matrix3::new(0, 1, 0, 0, 0, 0, 0, 0, 0)",
@@ -74,13 +74,13 @@ fn exact(expr: Expr<'_>) -> Option<Vec<Rational>> {
 fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<Shape, Vec<Diagnostic>> {
     let first = matrices[0].shape;
     if !first.is_square() {
-        let message = format!("E1 of `{name}` is {first}, but a Lie algebra is made of square matrices");
+        let message = format!("`E1` of `{name}` is {first}, but a Lie algebra is made of square matrices");
         let error = Diagnostic::new(Place::of(&elements[0]), message);
         return Err(vec![error.note("its elements are multiplied, E1*E2 - E2*E1")]);
     }
     match matrices.iter().position(|matrix| matrix.shape != first) {
         Some(k) => {
-            let message = format!("E1 of `{name}` is {first} and E{} is {}", k + 1, matrices[k].shape);
+            let message = format!("`E1` of `{name}` is {first} and `E{}` is {}", k + 1, matrices[k].shape);
             let error = Diagnostic::new(Place::of(&elements[k]), message);
             Err(vec![error.note("the matrices of a basis have one shape")])
         }

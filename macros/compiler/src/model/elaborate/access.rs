@@ -145,7 +145,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 Place::of(syntax),
                 format!("`{}` is no index: an index is a whole number known here", spell(syntax)),
             );
-            return self.error(error);
+            return self.error(error.help("write a number, as in `[0]`"));
         };
         match number.parts().and_then(|(position, _)| usize::try_from(position).ok()) {
             Some(position) if position < length => Some(position),

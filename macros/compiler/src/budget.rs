@@ -1,0 +1,117 @@
+//! The end of every expansion: within a budget of work, or with an error that says so; and what a panic of ours becomes.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use clebsch_symbolic::work::{self, Exhausted};
+use proc_macro2::{Span, TokenStream, TokenTree};
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::parse::{ChartChoice, Declaration, Discretization, Kinetic, Order};
+
+/// The work of one expansion: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
+/// the systems of the tests take less than a tenth of it.
+pub const WORK: u64 = 20_000_000;
+
+/// The stages behind the first one.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Model,
+    Derive,
+    Lower,
+    Emit,
+}
+
+/// Runs the stages behind the first one, which say where they are, on the budget of one expansion.
+///
+/// # Errors
+/// Those of the stages, and one that names the declaration too large.
+pub(crate) fn within<T>(
+    declaration: &Declaration,
+    stages: impl FnOnce(&Cell<Stage>) -> Result<T, Diagnostics>,
+) -> Result<T, Diagnostics> {
+    let stage = Cell::new(Stage::Model);
+    work::within(WORK, || stages(&stage)).unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
+}
+
+/// The error for a declaration on which the budget was used up.
+fn too_large(declaration: &Declaration, stage: Stage) -> Diagnostic {
+    let (place, what) = match stage {
+        Stage::Model => (Place::of(&declaration.action.body), "the laws of this action take"),
+        Stage::Derive => {
+            (Place::of(&declaration.kinetic.closure().body), "the formulas that are derived from this take")
+        }
+        Stage::Lower => (Place::of(&declaration.kinetic.closure().body), "the code of a step with this takes"),
+        Stage::Emit => (Place::of(&declaration.kinetic.closure().body), "the text of a step with this takes"),
+    };
+    let message = format!("`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
+    let error = Diagnostic::new(place, message);
+    let error = smaller(declaration).into_iter().fold(error, |error, text| error.help(text));
+    error
+        .help("use a smaller group or fewer factors, or a struct for each part that moves by itself")
+        .note("formulas are written out at compile time, where products of sums have a term for each pair of terms")
+}
+
+/// What makes the formulas of a declaration long and can be left out.
+fn smaller(declaration: &Declaration) -> Vec<&'static str> {
+    let dials = &declaration.dials;
+    let chart = dials.chart.as_ref().map(|chart| chart.value);
+    let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
+    let is_lagrangian = matches!(declaration.kinetic, Kinetic::Lagrangian(_));
+    let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
+    let rows = [
+        (dials.emit.tangent, "leave `tangent` out of `emit`: it takes second derivatives of everything"),
+        (chart == Some(ChartChoice::Exponential), "leave out `chart = exponential`: formulas in Cayley's are shorter"),
+        (
+            is_lagrangian && discretization != Some(Discretization::Exponential),
+            "write `discretization = exponential`, whose formulas are often much shorter",
+        ),
+        (is_high, "write `order = 2`"),
+    ];
+    rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).collect()
+}
+
+/// What is made, or the error that a panic of ours becomes: it is our fault, and the user's item is where it shows.
+///
+/// # Errors
+/// Where it panics.
+pub(crate) fn without_panic<T>(item: &TokenStream, make: impl FnOnce() -> T) -> Result<T, Diagnostics> {
+    catch_unwind(AssertUnwindSafe(make)).map_err(|payload| bug(item, &*payload).into())
+}
+
+fn bug(item: &TokenStream, payload: &(dyn Any + Send)) -> Diagnostic {
+    let text = payload.downcast_ref::<String>().map(String::as_str).or(payload.downcast_ref::<&str>().copied());
+    Diagnostic::new(name(item), format!("this declaration has found a bug in clebsch: {}", text.unwrap_or("a panic")))
+        .help("report it with the declaration, which need not be right: any declaration is to have an integrator or an error that helps")
+}
+
+/// The name of an item; its first token where it has none.
+fn name(item: &TokenStream) -> Span {
+    let mut tokens = item.clone().into_iter().skip_while(|token| {
+        !matches!(token, TokenTree::Ident(word) if ["struct", "enum", "union"].iter().any(|keyword| word == keyword))
+    });
+    let keyword = tokens.next();
+    let found = tokens.next().or(keyword).or_else(|| item.clone().into_iter().next());
+    found.map_or_else(Span::call_site, |token| token.span())
+}
+
+#[cfg(test)]
+mod tests {
+    use quote::quote;
+
+    use super::without_panic;
+
+    #[test]
+    fn a_panic_is_an_error_that_asks_for_a_report() {
+        let item = quote!(
+            #[clebsch()]
+            pub struct Body;
+        );
+        let errors = without_panic(&item, || std::panic::resume_unwind(Box::new("no such thing"))).unwrap_err();
+        let text = errors.to_string();
+        assert!(text.starts_with("error: this declaration has found a bug in clebsch: no such thing"), "{text}");
+        assert!(text.contains("help: report it with the declaration"), "{text}");
+        assert_eq!(without_panic(&item, || 1).ok(), Some(1));
+    }
+}

@@ -1,0 +1,77 @@
+//! The work of an expansion, counted: what would take too much of it is given up, before it takes minutes or the memory of the machine.
+//!
+//! It is counted and never timed, so that the same declaration comes to the same end everywhere. One unit is about what it takes to
+//! make one term of a sum: some hundred bytes, or some hundred instructions. The count belongs to the thread, for terms and
+//! numbers know no graph that they could ask.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+thread_local! {
+    static SPENT: Cell<u64> = const { Cell::new(0) };
+    static LIMIT: Cell<u64> = const { Cell::new(u64::MAX) };
+}
+
+/// The work was not done within its limit.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Exhausted;
+
+/// Counts work. Beyond the limit of [`within`] it does not return.
+pub fn spend(units: usize) {
+    let spent = SPENT.get().saturating_add(units as u64);
+    SPENT.set(spent);
+    if spent > LIMIT.get() {
+        // an end that is expected: no panic hook runs, and nothing is printed
+        resume_unwind(Box::new(Exhausted));
+    }
+}
+
+/// What has been counted on this thread.
+pub fn spent() -> u64 {
+    SPENT.get()
+}
+
+/// Does what may take this much work at most, and no more than what is left where this stands within another limit. After an error
+/// what it worked on is in any state.
+///
+/// # Errors
+/// Where it takes more.
+pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
+    let outer = LIMIT.get();
+    LIMIT.set(SPENT.get().saturating_add(units).min(outer));
+    let result = catch_unwind(AssertUnwindSafe(work));
+    LIMIT.set(outer);
+    result.map_err(|payload| match payload.is::<Exhausted>() {
+        true => Exhausted,
+        false => resume_unwind(payload),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Exhausted, spend, spent, within};
+
+    #[test]
+    fn what_stays_within_its_limit_is_done() {
+        let before = spent();
+        assert_eq!(within(10, || (0..10).for_each(|_| spend(1))), Ok(()));
+        assert_eq!(spent() - before, 10);
+        assert_eq!(within(10, || spend(11)), Err(Exhausted));
+        spend(1000);
+    }
+
+    #[test]
+    fn a_limit_within_another_cannot_raise_it() {
+        let inner = || within(100, || spend(11));
+        assert_eq!(within(10, inner), Ok(Err(Exhausted)));
+        assert_eq!(within(10, || (within(5, || spend(6)), within(5, || spend(3)))), Ok((Err(Exhausted), Ok(()))));
+    }
+
+    #[test]
+    fn a_panic_stays_one() {
+        let caught = std::panic::catch_unwind(|| within(10, || std::panic::resume_unwind(Box::new("ours"))));
+        assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"ours"));
+        // and the limit is gone
+        spend(1000);
+    }
+}
