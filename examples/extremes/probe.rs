@@ -173,7 +173,7 @@ pub struct Sample {
     pub others: u64,
     /// Numbers that are not finite, handed out as results.
     pub hidden: u64,
-    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of one in a hundred steps with h|ω| below one.
+    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of one in a hundred steps with h|ω| below a thousandth.
     pub missed: f64,
 }
 
@@ -357,7 +357,7 @@ pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Samp
                 sample.iterations[count.min(63) as usize] += 1;
                 sample.most = sample.most.max(count);
                 sample.hidden += u64::from(!is_finite(&next));
-                if number % 100 == 0 && S::ORDER == 2 && part < 1.0 {
+                if number % 100 == 0 && S::ORDER == 2 && part < 1e-3 {
                     sample.missed = sample.missed.max(residual(&stepper, &start));
                 }
                 continue;

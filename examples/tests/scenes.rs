@@ -260,3 +260,21 @@ fn mistakes_are_explained() {
         assert!(errors.contains(expected), "{scene} {arguments:?}: {errors}");
     }
 }
+
+/// The sections of the map that take seconds: each prints its tables, and its claims hold.
+#[test]
+fn the_map_of_the_edge_holds_its_claims() {
+    let csv = file("extremes.csv");
+    for (section, word) in [("magnitudes", "singular"), ("potentials", "order 16"), ("random-states", "iterations")] {
+        let arguments = ["--section", section, "--states", "20000", "--csv", text(&csv)];
+        let output = run("extremes", &arguments);
+        let report = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{report}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(report.contains("  holds  ") && report.contains(word), "{report}");
+        let written = std::fs::read_to_string(&csv).expect("the cells");
+        assert!(written.starts_with("section,scene,dial,scalar,value,outcome,"));
+        assert!(written.lines().all(|line| line.split(',').count() == 13), "{section}");
+    }
+    let errors = refusal("extremes", &["--section", "nothing"]);
+    assert!(errors.contains("step-sizes"), "{errors}");
+}
