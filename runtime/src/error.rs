@@ -74,6 +74,10 @@ pub enum Error {
         solvable_fraction: f64,
         /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
         step_size: Option<f64>,
+        /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
+        /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
+        /// found by trying: some ten steps, at most 32.
+        solvable_step: Option<f64>,
     },
     /// The gradient method of an opaque potential disagrees with differences of its value method.
     WrongGradient {
@@ -159,16 +163,6 @@ pub enum Error {
     },
 }
 
-impl Error {
-    /// The same error, telling the step size in which it happened.
-    pub(crate) fn with_step_size(self, h: f64) -> Self {
-        match self {
-            Self::Unsolvable { solvable_fraction, .. } => Self::Unsolvable { solvable_fraction, step_size: Some(h) },
-            other => other,
-        }
-    }
-}
-
 impl Display for Error {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
@@ -225,17 +219,21 @@ impl Display for Error {
                  {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
                  where such motions are motions of the body, declare `isotropy = free`"
             ),
-            Self::Unsolvable { solvable_fraction, step_size: None } => write!(
-                f,
-                "the step is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} of it; \
-                 reduce the step size by at least that factor"
-            ),
-            Self::Unsolvable { solvable_fraction, step_size: Some(h) } => write!(
-                f,
-                "the step of {h:.3e} is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} \
-                 of it; reduce the step size below about {:.3e}",
-                solvable_fraction * h
-            ),
+            Self::Unsolvable { solvable_fraction, step_size, solvable_step } => {
+                f.write_str("the step ")?;
+                if let Some(h) = step_size {
+                    write!(f, "of {h:.3e} ")?;
+                }
+                write!(
+                    f,
+                    "is too long for this momentum: its equation has a solution up to {solvable_fraction:.3} times it; "
+                )?;
+                match solvable_step {
+                    // rounded down
+                    Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
+                    None => f.write_str("reduce the step size, by that factor or more"),
+                }
+            }
             Self::WrongGradient { entry, gradient, difference } => write!(
                 f,
                 "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \

@@ -1,0 +1,8 @@
+//! NaN, infinite, huge and tiny numbers in every place of every accepted fixture: an error that names the input, or a finite result. Nothing
+//! panics, nothing runs for ever, and no NaN is handed on as a result.
+
+#![allow(missing_docs)]
+
+mod checks;
+mod slots;
+mod systems;
