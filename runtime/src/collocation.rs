@@ -123,10 +123,13 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
         open = open & change.finite();
         let arrived = open & (change.at_most(tolerance * tolerance) | stays & change.at_most(rounding()));
         (solved, open) = (solved | arrived, open & !arrived);
-        before = change;
+        // the last that was finite
+        before = T::select(change.finite(), change, before);
     }
     if !solved.any() {
-        return Err(match (count < SWEEPS, before.sqrt().to_f64()) {
+        // an iteration that diverges overflows too: the step is too long
+        let diverges = count == SWEEPS || count > 1 && T::from_ratio(1, 256).below(before).any();
+        return Err(match (!diverges, before.sqrt().to_f64()) {
             (true, _) => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
             (false, residual) => Error::NotConverged { residual, iterations: count },
         });

@@ -181,7 +181,7 @@ impl Display for Error {
             Self::BelowRounding { error, rounding } => write!(
                 f,
                 "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: ask for more than \
-                 that"
+                 that, or for a shorter duration"
             ),
             Self::NotSymmetric { field, defect, tolerance } => write!(
                 f,
@@ -255,7 +255,7 @@ impl Display for Error {
             Self::NoExtremal { correction, iterations } => write!(
                 f,
                 "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): \
-                 give a better guess, or go there by targets between"
+                 give a better guess, or go there by targets between; of a plan, check that its price cannot fall for ever"
             ),
             Self::Uncontrollable { distance } => write!(
                 f,
@@ -283,7 +283,7 @@ impl Display for Error {
                  that can be"
             ),
             Self::NoBody { body, bodies } => {
-                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0")
+                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below {bodies}")
             }
             Self::NoCovector => f.write_str(
                 "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the configuration to step: step in (q, N), by `Stepper::step`",

@@ -127,13 +127,16 @@ pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option
     })
 }
 
+/// For derivatives that overflow.
+const DERIVATIVE: Error = Error::NotFinite { name: "the derivative of the step" };
+
 /// The tangent map of a step if it is finite.
 fn finite_tangent<T: Scalar, const M: usize>(tangent: Tangent<T, M>) -> Result<Tangent<T, M>, Error> {
     let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
         &tangent;
     match [a, b, c, d].into_iter().all(Space::is_finite) {
         true => Ok(tangent),
-        false => Err(Error::NotFinite { name: "the derivative of the step" }),
+        false => Err(DERIVATIVE),
     }
 }
 
@@ -200,7 +203,12 @@ where
         let increment = system.drift(constants, number, t, q, mu, u)?;
         let next = system.advance(q, &increment);
         let edge = system.carried(constants, number, t, q, &increment, &next, u);
-        let tangent = of_edge(&edge).ok_or(Error::SingularTangent { step_size: self.step_size().to_f64() })?;
+        let Some(tangent) = of_edge(&edge) else {
+            return Err(match edge.before_by_end.is_finite() {
+                true => Error::SingularTangent { step_size: self.step_size().to_f64() },
+                false => DERIVATIVE,
+            });
+        };
         Ok(Passed { increment, next, edge, tangent })
     }
 

@@ -72,7 +72,7 @@ fn failures_say_what_they_are() {
     assert!(matches!(root, Err(Error::NotFinite { .. })), "{root:?}");
     // exponential growth overflows before it could converge
     let steep = step(1e3, 0.0, [1.0, 1.0], |_, y| [y[1] * y[1] * y[1], y[0] * y[0] * y[0]]);
-    assert!(matches!(steep, Err(Error::NotFinite { .. } | Error::NotConverged { .. })), "{steep:?}");
+    assert!(matches!(steep, Err(Error::NotConverged { iterations, .. }) if iterations < 64), "{steep:?}");
 }
 
 /// A step back undoes a step.

@@ -1,6 +1,7 @@
 //! The accepted fixtures with ordinary parameters.
 
 use crate::checks::{Scene, check};
+use crate::longest::longest_steps;
 use crate::slots::Slots;
 use clebsch_tests::fixtures::*;
 use nalgebra::*;
@@ -34,18 +35,26 @@ macro_rules! scenes {
 
             #[test]
             fn $name() {
-                let report = check::<$module::$system$(<$number>)?>();
-                let [results, errors] = report.counts;
-                println!("{results} results, {errors} errors");
-                let count = report.failures.len();
-                let shown: Vec<_> = report.failures.iter().take(40).cloned().collect();
-                assert!(count == 0, "{count} failures\n{}", shown.join("\n"));
+                check_scene::<$module::$system$(<$number>)?>();
             }
         )*
 
         /// The modules of all scenes.
         const MODULES: &[&str] = &[$(stringify!($module)),*];
     };
+}
+
+/// All checks of a scene.
+fn check_scene<S: Scene>() {
+    let report = check::<S>();
+    let [results, errors] = report.counts;
+    let count = report.failures.len();
+    let shown: Vec<_> = report.failures.into_iter().take(40).collect();
+    assert!(count == 0, "{count} failures\n{}", shown.join("\n"));
+    let [refused, bent] = longest_steps::<S>();
+    println!(
+        "{results} results, {errors} errors, {refused} steps too long, {bent} of which not in proportion to the momentum"
+    );
 }
 
 fn principal() -> Vector3<f64> {
