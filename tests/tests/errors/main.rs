@@ -2,6 +2,7 @@
 
 #![allow(missing_docs)]
 
+mod inputs;
 mod scenes;
 
 use std::collections::BTreeSet;

@@ -239,7 +239,7 @@ fn plans() -> Vec<Scene> {
                 "check that its price cannot fall for ever",
             ],
         ),
-        scene(steered(-0.1), &["`-self.top <= torque.x`", "relax it, or guess inputs that keep it"]),
+        scene(steered(-0.1), &["`torque.x <= self.top` is violated by", "relax it, or guess inputs that keep it"]),
         scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
     ]
 }
