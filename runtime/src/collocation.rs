@@ -19,6 +19,7 @@
 
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
+use num_traits::Zero;
 
 /// The most sweeps of one step.
 const SWEEPS: u32 = 64;
@@ -129,7 +130,7 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     if !solved.any() {
         // an iteration that diverges overflows too: the step is too long
         let diverges = count == SWEEPS || count > 1 && T::from_ratio(1, 256).below(before).any();
-        return Err(match (!diverges, before.sqrt().to_f64()) {
+        return Err(match (!diverges, largest_lane(before).sqrt().to_f64()) {
             (true, _) => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
             (false, residual) => Error::NotConverged { residual, iterations: count },
         });
@@ -243,6 +244,12 @@ fn sizes<T: Scalar, const N: usize, const S: usize>(h: T, start: &[T; N], slopes
         sizes[2 * v / N] += start[v] * start[v] + (one * one + other * other);
     }
     sizes
+}
+
+/// The largest of the lanes, of which those without numbers are 0.
+#[cold]
+fn largest_lane<T: Scalar>(x: T) -> T::Lane {
+    (0..T::LANES).map(|lane| x.lane(lane)).fold(T::Lane::zero(), larger)
 }
 
 /// (1024 ε)²

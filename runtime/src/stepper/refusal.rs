@@ -104,12 +104,12 @@ fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) ->
     let (mut refused, mut edge) = (h, h * fraction);
     let mut solved: Option<f64> = None;
     for _ in 0..TRIALS {
-        let beyond = edge * 1.01;
+        let beyond = edge * 1.0095;
         let next = match solved {
             None if edge / refused > 0.0 && edge / refused < 0.99 => edge * 0.99,
             None => refused * 0.5,
             Some(longest) if refused / longest <= WIDTH => break,
-            Some(longest) if beyond / longest > 1.0 && beyond / refused < 1.0 => beyond,
+            Some(longest) if beyond / longest > 1.0 && beyond / refused < 0.9 => beyond,
             Some(longest) => longest * Scalar::sqrt(refused / longest),
         };
         match tried(next) {
@@ -123,7 +123,7 @@ fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::{TRIALS, longest};
+    use super::{TRIALS, WIDTH, longest};
     use crate::Error;
     use core::cell::Cell;
     use proptest::prelude::*;
@@ -139,14 +139,19 @@ mod tests {
             let size = |h: f64| (h * momentum + h * h * kick).abs();
             let h = (1.0 + excess) * if sign { 1.0 } else { -1.0 };
             prop_assume!(size(h) > 1.0);
-            let count = Cell::new(0);
+            let (count, shortest) = (Cell::new(0), Cell::new(h));
             let found = longest(h, 1.0 / size(h), |h| {
                 count.set(count.get() + 1);
-                if size(h) <= 1.0 { Ok(true) } else { unsolvable(1.0 / size(h)) }
+                if size(h) <= 1.0 {
+                    return Ok(true);
+                }
+                shortest.set(h);
+                unsolvable(1.0 / size(h))
             });
             let found = found.expect("short steps can be solved");
-            prop_assert!(size(found) <= 1.0 && size(found * 1.02 * (1.0 + 1e-9)) > 1.0 || found / h > 1.0 / 1.021);
-            prop_assert!(count.get() <= TRIALS);
+            prop_assert!(size(found) <= 1.0 && count.get() <= TRIALS);
+            let ratio = shortest.get() / found;
+            prop_assert!(ratio > 1.0 && ratio <= WIDTH, "{} was refused beside {found}", shortest.get());
         }
     }
 
