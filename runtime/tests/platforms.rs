@@ -144,7 +144,10 @@ fn check(length: usize) {
 
 #[test]
 fn short_runs_have_the_same_bits_everywhere() {
-    check(0);
+    assert_eq!(digests::<f64>(STEPS[0]), DOUBLE[0]);
+    if !cfg!(miri) {
+        check(0);
+    }
 }
 
 #[test]
