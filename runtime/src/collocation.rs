@@ -19,6 +19,7 @@
 
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
+use num_traits::Zero;
 
 /// The most sweeps of one step, unless fewer are asked for.
 pub const SWEEPS: u32 = 64;
@@ -124,10 +125,11 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
         open = open & change.finite();
         let arrived = open & (change.at_most(tolerance) | stays & change.at_most(rounding()));
         (solved, open) = (solved | arrived, open & !arrived);
+        // the last that was finite
         before = T::select(change.finite(), change, before);
     }
     if !solved.any() {
-        return Err(failure(before, count));
+        return Err(failure(before, count, most));
     }
     for _ in 0..T::DERIVATIVES * SWEEPS_OF_DERIVATIVES {
         table.stages(start, &slopes, &mut stages);
@@ -245,14 +247,16 @@ fn rounding<T: Scalar>() -> T {
     T::EPSILON * T::from_ratio(ROUNDING, 1)
 }
 
-/// Why sweeps have found nothing: slopes near the guess that are no numbers, so that no change was one, or changes that do not shrink, whether or
-/// not they have overflowed since.
+/// Why sweeps have found nothing: changes that did not shrink, whether or not they have overflowed since, or slopes that are no numbers near a place
+/// where the last of them was small.
 #[cold]
-fn failure<T: Scalar>(last_change: T, sweeps: u32) -> Error {
-    match last_change.to_f64() {
-        0.0 => Error::NotFinite { name: "a slope of Hamilton's equations within the step" },
-        residual => Error::NotConverged { residual, iterations: sweeps },
+fn failure<T: Scalar>(last_change: T, sweeps: u32, most: u32) -> Error {
+    let is_large = T::from_ratio(1, 16).below(last_change).any();
+    if sweeps < most && !(sweeps > 1 && is_large) {
+        return Error::NotFinite { name: "a slope of Hamilton's equations within the step" };
     }
+    let largest = (0..T::LANES).map(|lane| last_change.lane(lane)).fold(T::Lane::zero(), larger);
+    Error::NotConverged { residual: largest.to_f64(), iterations: sweeps }
 }
 
 /// x, or 1 where x = 0.

@@ -145,7 +145,10 @@ mod tests {
             let root = Scalar::sqrt(1.0 - 2.0 * t);
             [2.0 * t / (1.0 + root), 1.0 / root, 1.0 / (root * root * root)]
         };
-        for size in (-40..=60).map(|tenths| Scalar::powf(10.0, f64::from(tenths) / 10.0)) {
+        for size in (-40..=60)
+            .step_by(if cfg!(miri) { 50 } else { 1 })
+            .map(|tenths| Scalar::powf(10.0, f64::from(tenths) / 10.0))
+        {
             let momentum = Vector2::new(0.6, -0.8) * size;
             let exact = size * size / (1.0 + Scalar::sqrt(1.0 + size * size));
             let found = energy(lagrangian, momentum);

@@ -74,6 +74,10 @@ pub enum Error {
         solvable_fraction: f64,
         /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
         step_size: Option<f64>,
+        /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
+        /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
+        /// found by trying: some ten steps, at most 32.
+        solvable_step: Option<f64>,
     },
     /// The gradient method of an opaque potential disagrees with differences of its value method.
     WrongGradient {
@@ -159,16 +163,6 @@ pub enum Error {
     },
 }
 
-impl Error {
-    /// The same error, telling the step size in which it happened.
-    pub(crate) fn with_step_size(self, h: f64) -> Self {
-        match self {
-            Self::Unsolvable { solvable_fraction, .. } => Self::Unsolvable { solvable_fraction, step_size: Some(h) },
-            other => other,
-        }
-    }
-}
-
 impl Display for Error {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
@@ -187,7 +181,7 @@ impl Display for Error {
             Self::BelowRounding { error, rounding } => write!(
                 f,
                 "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: ask for more than \
-                 that"
+                 that, or for a shorter duration"
             ),
             Self::NotSymmetric { field, defect, tolerance } => write!(
                 f,
@@ -225,17 +219,21 @@ impl Display for Error {
                  {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
                  where such motions are motions of the body, declare `isotropy = free`"
             ),
-            Self::Unsolvable { solvable_fraction, step_size: None } => write!(
-                f,
-                "the step is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} of it; \
-                 reduce the step size by at least that factor"
-            ),
-            Self::Unsolvable { solvable_fraction, step_size: Some(h) } => write!(
-                f,
-                "the step of {h:.3e} is too long for this momentum: its equation is solvable up to {solvable_fraction:.3} \
-                 of it; reduce the step size below about {:.3e}",
-                solvable_fraction * h
-            ),
+            Self::Unsolvable { solvable_fraction, step_size, solvable_step } => {
+                f.write_str("the step ")?;
+                if let Some(h) = step_size {
+                    write!(f, "of {h:.3e} ")?;
+                }
+                write!(
+                    f,
+                    "is too long for this momentum: its equation has a solution up to {solvable_fraction:.3} times it; "
+                )?;
+                match solvable_step {
+                    // rounded down
+                    Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
+                    None => f.write_str("reduce the step size, by that factor or more"),
+                }
+            }
             Self::WrongGradient { entry, gradient, difference } => write!(
                 f,
                 "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
@@ -257,7 +255,7 @@ impl Display for Error {
             Self::NoExtremal { correction, iterations } => write!(
                 f,
                 "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): \
-                 give a better guess, or go there by targets between"
+                 give a better guess, or go there by targets between; of a plan, check that its price cannot fall for ever"
             ),
             Self::Uncontrollable { distance } => write!(
                 f,
@@ -285,7 +283,7 @@ impl Display for Error {
                  that can be"
             ),
             Self::NoBody { body, bodies } => {
-                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0")
+                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below {bodies}")
             }
             Self::NoCovector => f.write_str(
                 "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the configuration to step: step in (q, N), by `Stepper::step`",

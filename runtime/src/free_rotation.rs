@@ -393,7 +393,7 @@ impl<T: Scalar> FreeRotation<T> {
         let [.., reach] = of_lane(&self.reach, lane);
         let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
         let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach / square).sqrt();
-        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None })
+        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None })
     }
 
     /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.

@@ -226,7 +226,11 @@ impl<T: Real> FreeRotation4<T> {
         let angle = dot(&velocity, &velocity).sqrt().to_f64();
         let is_short = angle < f64::from(PARTS);
         if !is_short {
-            return Err(Error::Unsolvable { solvable_fraction: 0.999 * f64::from(PARTS) / angle, step_size: None });
+            return Err(Error::Unsolvable {
+                solvable_fraction: 0.999 * f64::from(PARTS) / angle,
+                step_size: None,
+                solvable_step: None,
+            });
         }
         // parts of no more than a radian, or so few that their series end
         let fewest = (0..10).fold(1, |parts, _| if f64::from(parts) < angle { 2 * parts } else { parts });

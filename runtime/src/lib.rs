@@ -60,7 +60,7 @@
 //!
 //! | feature | gives |
 //! |---|---|
-//! | `std` | elementary functions of the standard library in place of `libm` |
+//! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
 //! | `alloc` | `Ensemble`: many bodies, on the heap |
 //! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
@@ -82,8 +82,20 @@
 //!
 //! * Momenta are components in a documented basis; those of a right action (`R * F`) are in the body frame.
 //! * A step changes nothing but what it returns: on an [`Error`] the state that was passed in is still good.
-//! * Nothing allocates and no input makes it panic. Without the feature `std` (the default) elementary functions come from
-//!   `libm`; with it, from the standard library.
+//! * Nothing allocates and no input makes it panic.
+//! * What comes in a [`Result`] is finite where it is `Ok`: a number that is not is refused by its name, and so is what overflows on the way. Formulas
+//!   without one, such as [`Stepper::energy`], [`Stepper::legendre`], [`Stepper::momentum_map`] or [`Stepper::synchronized`], are evaluated as they stand, and so are
+//!   the methods of the trait [`Clebsch`]: NaN in is NaN out, and what overflows is infinite or NaN.
+//!
+//! # The same bits everywhere
+//!
+//! Without the feature `std` (the default) a run takes from the platform nothing but additions, multiplications, divisions and square roots of IEEE 754;
+//! elementary functions are those of `libm`. So it has the same bits on every processor and operating system, in debug and in release builds, in
+//! lanes and alone: `runtime/tests/platforms.rs` pins them, on x86-64, aarch64, i686 and the big-endian s390x.
+//!
+//! With `std`, sines, exponentials, logarithms, powers and the like are those of the platform's mathematical library. They differ in their last place from one
+//! platform, and from one release of it, to another, and so does every step whose declaration or discretization has such functions in it. Steps without them,
+//! such as those of tops by a cost with (F − I), stay the same.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -1,6 +1,6 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
-use crate::{Clebsch, Clock, Space, Time};
+use crate::{Clebsch, Clock, Mask, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
@@ -42,6 +42,18 @@ impl<S: Clebsch> State<S> {
     #[inline]
     pub fn lane(&self, lane: usize) -> Body<S> {
         (self.configuration.lane(lane), self.momentum.lane(lane))
+    }
+
+    /// The lanes in which all of it is finite.
+    #[inline]
+    pub(crate) fn finite(&self) -> <S::Scalar as Scalar>::Mask {
+        self.configuration.finite() & self.momentum.finite() & Scalar::finite(self.time.now())
+    }
+
+    /// Whether all of it is finite in all lanes.
+    #[inline]
+    pub(crate) fn is_finite(&self) -> bool {
+        self.configuration.is_finite() & self.momentum.is_finite() & Scalar::is_finite(self.time.now())
     }
 
     /// Takes lane `lane` of another state.
@@ -112,6 +124,23 @@ impl<S: Clebsch> CotangentState<S> {
     #[inline]
     pub fn covector(&self) -> &S::Configuration {
         &self.covector
+    }
+
+    /// The lanes in which all of it is finite.
+    #[inline]
+    pub(crate) fn finite(&self) -> <S::Scalar as Scalar>::Mask {
+        self.configuration.finite() & self.covector.finite() & Scalar::finite(self.time.now())
+    }
+
+    /// What is not finite in this lane after a step.
+    pub(crate) fn overflowed(&self, lane: usize) -> &'static str {
+        if !self.configuration.finite().lane(lane) {
+            "the configuration after the step"
+        } else if !Scalar::finite(self.time.now()).lane(lane) {
+            "the time after the step"
+        } else {
+            "the covector after the step"
+        }
     }
 
     /// (q, p)

@@ -2,6 +2,7 @@
 
 mod each;
 mod formulas;
+mod refusal;
 mod staggered;
 mod step_size;
 
@@ -89,10 +90,10 @@ impl<S: Clebsch> Stepper<S> {
         }
         let next = match self.attempt(state, u) {
             Ok(next) => next,
-            Err(error) => return Err(whole_or_lane::<S::Scalar>(0, error)),
+            Err(error) => return Err(self.refused(state, u, error)),
         };
-        if !(next.configuration.is_finite() & next.momentum.is_finite()) {
-            return Err(self.beyond(next.configuration.finite() & next.momentum.finite()));
+        if !next.is_finite() {
+            return Err(self.beyond(&next));
         }
         Ok(next)
     }
@@ -112,13 +113,29 @@ impl<S: Clebsch> Stepper<S> {
             self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, momentum, &impulse, &none);
         let (configuration, momentum, impulse) = match advanced {
             Ok(next) => next,
-            Err(error) => return Err(whole_or_lane::<S::Scalar>(0, error.with_step_size(self.h.to_f64()))),
+            Err(error) => return Err(self.refused_after(state, steps, error)),
         };
-        if !(configuration.is_finite() & momentum.is_finite()) {
-            return Err(self.beyond(configuration.finite() & momentum.finite()));
-        }
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
-        Ok(State { time, configuration, momentum, impulse, h: self.h })
+        let next = State { time, configuration, momentum, impulse, h: self.h };
+        if !next.is_finite() {
+            let error = self.beyond(&next);
+            return Err(self.refused_after(state, steps, error));
+        }
+        Ok(next)
+    }
+
+    /// The error of the first of so many steps that fails, each made by itself; `known` where none does.
+    #[cold]
+    #[inline(never)]
+    fn refused_after(&self, start: &State<S>, steps: usize, known: Error) -> Error {
+        let mut state = *start;
+        for _ in 0..steps {
+            match self.step(&state) {
+                Ok(next) => state = next,
+                Err(error) => return error,
+            }
+        }
+        whole_or_lane::<S::Scalar>(0, known)
     }
 
     /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN.
@@ -141,15 +158,22 @@ impl<S: Clebsch> Stepper<S> {
             Ok((configuration, momentum, impulse)) => {
                 Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
             }
-            Err(error) => Err(error.with_step_size(self.h.to_f64())),
+            Err(error) => Err(error),
         }
     }
 
-    /// The error of a step whose state is finite in these lanes alone.
+    /// The error of a step that no lane can make.
     #[cold]
-    fn beyond(&self, finite: <S::Scalar as Scalar>::Mask) -> Error {
+    fn refused(&self, state: &State<S>, u: &S::Input, error: Error) -> Error {
+        if S::Scalar::LANES == 1 { self.refusal(state, u, 0, error) } else { Error::InLane { lane: 0 } }
+    }
+
+    /// The error of a step whose state is not finite in some lane.
+    #[cold]
+    fn beyond(&self, next: &State<S>) -> Error {
+        let finite = next.finite();
         let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
-        whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the state after the step" })
+        whole_or_lane::<S::Scalar>(lane, self.overflow(next, lane))
     }
 
     /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
@@ -173,14 +197,15 @@ impl<S: Clebsch> Stepper<S> {
         let (configuration, covector) =
             match self.system.step_symmetric(&self.constants, time.now(), configuration, covector) {
                 Ok(next) => next,
-                Err(error) => {
-                    return Err(whole_or_lane::<S::Scalar>(0, error.with_step_size(self.h.to_f64())));
-                }
+                Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
+                Err(error) => return Err(self.refusal_of_covector(state, error)),
             };
-        if !(configuration.is_finite() & covector.is_finite()) {
-            return Err(self.beyond(configuration.finite() & covector.finite()));
+        let next = CotangentState { time: time.after_step(self.h), configuration, covector };
+        let finite: <S::Scalar as Scalar>::Mask = next.finite();
+        match (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)) {
+            None => Ok(next),
+            Some(lane) => Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) })),
         }
-        Ok(CotangentState { time: time.after_step(self.h), configuration, covector })
     }
 
     /// The states of all steps, `start` first; ends after the first error.
@@ -231,7 +256,11 @@ impl<S: Clebsch> Stepper<S> {
     /// The state (q, N) with what its first step takes.
     fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
         let impulse = self.system.impulse(&self.constants, t, &q, &mu);
-        check_gradient(&impulse)?;
+        if !impulse.is_finite() {
+            let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
+            let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
+            return Err(Error::NotFinite { name });
+        }
         Ok(State { time: S::Time::at(t), configuration: q, momentum: mu, impulse, h: self.h })
     }
 
@@ -284,7 +313,11 @@ pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result
         if defect <= tolerance {
             return Ok(());
         }
-        Err(Error::OffOrbit { defect: defect.to_f64(), tolerance: tolerance.to_f64() })
+        let size = q.max_abs().lane(lane);
+        // NaN, or infinite though of the right component
+        let overflows = defect.partial_cmp(&tolerance).is_none() || !(size * size).is_finite();
+        let defect = if overflows { f64::MAX } else { defect.to_f64() };
+        Err(Error::OffOrbit { defect, tolerance: tolerance.to_f64() })
     })
 }
 
@@ -331,11 +364,11 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
     }
 }
 
+/// What is not finite where a kick is not.
+const GRADIENT: &str = "the gradient of the potential at the configuration";
+
 fn check_gradient<T: Scalar, I: Space<T>>(kick: &I) -> Result<(), Error> {
-    match kick.is_finite() {
-        true => Ok(()),
-        false => Err(Error::NotFinite { name: "the gradient of the potential at the configuration" }),
-    }
+    if kick.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: GRADIENT }) }
 }
 
 pub(crate) fn check_time<T: Scalar>(t: T) -> Result<(), Error> {

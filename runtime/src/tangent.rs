@@ -127,6 +127,19 @@ pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option
     })
 }
 
+/// For derivatives that overflow.
+const DERIVATIVE: Error = Error::NotFinite { name: "the derivative of the step" };
+
+/// The tangent map of a step if it is finite.
+fn finite_tangent<T: Scalar, const M: usize>(tangent: Tangent<T, M>) -> Result<Tangent<T, M>, Error> {
+    let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
+        &tangent;
+    match [a, b, c, d].into_iter().all(Space::is_finite) {
+        true => Ok(tangent),
+        false => Err(DERIVATIVE),
+    }
+}
+
 /// A⁻¹B
 fn solve<T: Scalar, const M: usize, const K: usize>(
     a: &SMatrix<T, M, M>,
@@ -168,11 +181,11 @@ where
         let (mut q, mut mu) = (*state.configuration(), *state.momentum());
         let mut tangent = Tangent::identity();
         for number in 0..S::EDGES {
-            let passed = self.pass(number, state.time.now(), &q, &mu, u)?;
+            let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(|error| self.told(state, u, error))?;
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.momentum);
         }
-        Ok((self.stepped(state, q, mu)?, tangent))
+        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
     }
 
     fn pass(
@@ -187,24 +200,30 @@ where
             return Err(Error::NotFinite { name: "the input" });
         }
         let (system, constants) = (self.system(), self.constants());
-        let increment = match system.drift(constants, number, t, q, mu, u) {
-            Ok(increment) => increment,
-            Err(error) => return Err(error.with_step_size(self.step_size().to_f64())),
-        };
+        let increment = system.drift(constants, number, t, q, mu, u)?;
         let next = system.advance(q, &increment);
         let edge = system.carried(constants, number, t, q, &increment, &next, u);
-        let tangent = of_edge(&edge).ok_or(Error::SingularTangent { step_size: self.step_size().to_f64() })?;
+        let Some(tangent) = of_edge(&edge) else {
+            return Err(match edge.before_by_end.is_finite() {
+                true => Error::SingularTangent { step_size: self.step_size().to_f64() },
+                false => DERIVATIVE,
+            });
+        };
         Ok(Passed { increment, next, edge, tangent })
     }
 
     fn stepped(&self, state: &State<S>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S>, Error> {
-        if !(q.is_finite() & mu.is_finite()) {
-            return Err(Error::NotFinite { name: "the state after the step" });
-        }
         let time = state.time.after_step(self.step_size());
         // of the same size, but at another configuration: what does not depend on either stays
         let impulse = self.system().impulse_after(self.constants(), time.now(), &q, &mu, &state.impulse);
-        Ok(State { time, configuration: q, momentum: mu, impulse, h: self.step_size() })
+        let next = State { time, configuration: q, momentum: mu, impulse, h: self.step_size() };
+        if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
+    }
+
+    /// The error of an edge as that of the step that it is a part of.
+    #[cold]
+    fn told(&self, state: &State<S>, u: &S::Input, error: Error) -> Error {
+        if T::LANES == 1 { self.refusal(state, u, 0, error) } else { error }
     }
 
     /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time,
@@ -240,7 +259,7 @@ where
         let (mut tangent, mut sensitivity) = (Tangent::identity(), Sensitivity::zero());
         for number in 0..S::EDGES {
             let t = state.time.now();
-            let passed = self.pass(number, t, &q, &mu, u)?;
+            let passed = self.pass(number, t, &q, &mu, u).map_err(|error| self.told(state, u, error))?;
             let (before, after) =
                 self.system().edge_slopes(self.constants(), number, t, &q, &passed.increment, &passed.next, u);
             let motion = -times(&passed.tangent.motion_by_momentum, &before);
@@ -249,7 +268,10 @@ where
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.momentum);
         }
-        Ok((self.stepped(state, q, mu)?, tangent, sensitivity))
+        if !(sensitivity.motion.is_finite() && sensitivity.momentum.is_finite()) {
+            return Err(Error::NotFinite { name: "the sensitivity of the step" });
+        }
+        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?, sensitivity))
     }
 
     /// ξ_Q(q): how the configuration moves under the motion η of a [`Variation`].

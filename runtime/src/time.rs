@@ -95,9 +95,13 @@ mod tests {
     #[test]
     fn clocks_do_not_drift() {
         let mut clock = Clock::at(0.0_f64);
-        for k in 1..=100_000 {
+        let steps = if cfg!(miri) { 100 } else { 100_000 };
+        for k in 1..=steps {
             clock = clock.after_step(0.1);
             assert_eq!(clock.now(), f64::from(k) * 0.1, "step {k}");
+        }
+        if cfg!(miri) {
+            return;
         }
         let mut clock = Clock::at(0.0_f32);
         for _ in 0..10_000_000 {
@@ -111,11 +115,12 @@ mod tests {
     fn clocks_return() {
         let start = 1.0_f64 / 3.0;
         let mut clock = Clock::at(start);
+        let rounds = if cfg!(miri) { 100 } else { 10_000 };
         let sizes = [0.1, -0.7, 1e-9, 123.456, 1e3];
-        for k in 0..10_000 {
+        for k in 0..rounds {
             clock = clock.after_step(sizes[k % 5]);
         }
-        for k in (0..10_000).rev() {
+        for k in (0..rounds).rev() {
             clock = clock.after_step(-sizes[k % 5]);
         }
         assert_eq!(clock.now(), start);

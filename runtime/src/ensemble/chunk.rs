@@ -48,7 +48,7 @@ impl<S: Clebsch> Chunk<S> {
         // the impulse has been made by this stepper
         if let Ok(next) = stepper.attempt_with(&self.state, &self.state.impulse, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
-            let finite = (next.configuration.sum() + next.momentum.sum()).finite();
+            let finite = (next.configuration.sum() + next.momentum.sum() + next.time.now()).finite();
             if finite.bits() & self.live == self.live {
                 let State { time, configuration, momentum, impulse, h: _ } = next;
                 self.state = State { time, configuration, momentum, impulse, h: self.state.h };

@@ -64,7 +64,7 @@ pub(super) fn follow<T: Real, const M: usize, const N: usize>(
 
 /// The error for a path that ends at s.
 fn unsolvable<T: Real>(s: T) -> Error {
-    Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None }
+    Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None, solvable_step: None }
 }
 
 impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {

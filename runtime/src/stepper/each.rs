@@ -13,7 +13,7 @@ impl<S: Clebsch> Stepper<S> {
         let Ok(next) = self.attempt(state, &S::Input::origin()) else {
             return (*state, <S::Scalar as Scalar>::Mask::nowhere());
         };
-        let stepped = next.configuration.finite() & next.momentum.finite();
+        let stepped = next.finite();
         if stepped.all() { (next, stepped) } else { (merged(&next, state, stepped), stepped) }
     }
 
@@ -29,9 +29,9 @@ impl<S: Clebsch> Stepper<S> {
         alone.impulse = S::Impulse::filled(S::Scalar::zero());
         alone.impulse.set_lane(lane, &state.impulse.lane(lane));
         match self.attempt(&alone, &S::Input::origin()) {
-            Err(error) => Some(error.with_step_size(self.h.lane(lane).to_f64())),
-            Ok(next) if (next.configuration.finite() & next.momentum.finite()).lane(lane) => None,
-            Ok(_) => Some(Error::NotFinite { name: "the state after the step" }),
+            Err(error) => Some(self.refusal(&alone, &S::Input::origin(), lane, error)),
+            Ok(next) if next.finite().lane(lane) => None,
+            Ok(next) => Some(self.overflow(&next, lane)),
         }
     }
 }

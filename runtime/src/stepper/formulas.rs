@@ -1,7 +1,8 @@
 //! The derived formulas as methods of a stepper, which knows the step size.
 
 use super::Stepper;
-use crate::{Clebsch, Error, Scalar};
+use super::whole_or_lane;
+use crate::{Clebsch, Error, Mask, Scalar, Space};
 use num_traits::Zero;
 
 impl<S: Clebsch> Stepper<S> {
@@ -34,9 +35,22 @@ impl<S: Clebsch> Stepper<S> {
         q: &S::Configuration,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
+        for (is_finite, name) in
+            [(t.is_finite(), "the time"), (q.is_finite(), "the configuration"), (mu.is_finite(), "the momentum")]
+        {
+            if !is_finite {
+                return Err(Error::NotFinite { name });
+            }
+        }
         match self.system.inverse_legendre(&self.constants, t, q, mu) {
-            Ok(element) => Ok(element),
-            Err(error) => Err(error.with_step_size(self.h.to_f64())),
+            Ok(element) if element.is_finite() => Ok(element),
+            Ok(element) => {
+                let finite = element.finite();
+                let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
+                Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the group element of the step" }))
+            }
+            Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
+            Err(error) => Err(self.refusal_of_element(t, q, mu, error)),
         }
     }
 

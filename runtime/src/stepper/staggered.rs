@@ -1,7 +1,7 @@
 //! Momenta of steps of first order, which are staggered: read at the time of their configuration, and started from there.
 
 use super::{Stepper, check_gradient, check_momentum, check_time};
-use crate::{Clebsch, Clock, Error, State, Time};
+use crate::{Clebsch, Clock, Error, Space, State, Time};
 use num_traits::Zero;
 
 /// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
@@ -76,7 +76,11 @@ impl<S: Clebsch> Stepper<S> {
         check_momentum(&self.system, &q, &mu)?;
         let stagger = self.system.stagger(self.h, t, &q);
         check_gradient(&stagger)?;
-        self.made_state(t, q, mu + stagger)
+        let staggered = mu + stagger;
+        if !staggered.is_finite() {
+            return Err(Error::NotFinite { name: "the momentum half a kick ahead" });
+        }
+        self.made_state(t, q, staggered)
     }
 }
 

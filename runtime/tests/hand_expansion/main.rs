@@ -175,14 +175,16 @@ fn a_step_that_is_too_long_says_how_much() -> Result<(), Error> {
     // About the second axis, of moment 3, the equation is sin θ = h π / I = 1.25.
     let start = stepper.state(attitude(), Vector3::new(0.0, 7.5, 0.0))?;
     let error = stepper.step(&start).expect_err("sin θ cannot be 1.25");
-    let Error::Unsolvable { solvable_fraction, step_size } = error else { panic!("{error}") };
+    let Error::Unsolvable { solvable_fraction, step_size, solvable_step: Some(longest) } = error else {
+        panic!("{error}")
+    };
     assert!((solvable_fraction - 0.8).abs() < 1e-3, "{solvable_fraction}");
     assert_eq!(step_size, Some(0.5));
-    assert_eq!(
-        error.to_string(),
-        "the step of 5.000e-1 is too long for this momentum: its equation is solvable up to 0.800 of it; \
-         reduce the step size below about 4.000e-1"
-    );
+    let (text, longest_told) = (error.to_string(), format!("reduce the step size to {:.3e} or less", 0.9995 * longest));
+    assert!(text.contains("the step of 5.000e-1 is too long for this momentum"), "{text}");
+    assert!(text.contains("a solution up to 0.800 times it") && text.contains(&longest_told), "{text}");
+    let stepped = |h: f64| stepper.system().stepper(h)?.step(&start);
+    assert!(stepped(longest).is_ok() && stepped(1.05 * longest).is_err(), "{longest} is not the longest");
     let items: Vec<_> = stepper.trajectory(start).take(5).collect();
     assert_eq!(items, [Ok(start), Err(error)]);
     Ok(())

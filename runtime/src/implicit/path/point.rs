@@ -85,7 +85,12 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     /// The error for too much work.
     pub fn exhausted(&mut self, here: &Point<T, M>) -> Error {
         let (residual, _) = self.equation.linearize(&self.moving, &here.xi);
-        Error::NotConverged { residual: (size(&residual) / self.weight).to_f64(), iterations: self.made + self.count }
+        match size(&residual) / self.weight {
+            residual if residual.is_finite() => {
+                Error::NotConverged { residual: residual.to_f64(), iterations: self.made + self.count }
+            }
+            _ => Error::NotFinite { name: "the implicit equation of the step" },
+        }
     }
 
     /// Whether a residual is no more than the rounding of terms of the size `terms`.

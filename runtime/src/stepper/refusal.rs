@@ -1,0 +1,174 @@
+//! What is told of a step that fails: what it is that is not finite, and how long a step would do.
+
+use super::Stepper;
+use crate::{Clebsch, CotangentState, Error, Mask, Scalar, Space, State, Time};
+
+/// Step sizes that are tried to find the longest one that can be solved, at most.
+const TRIALS: usize = 32;
+
+/// The ratio of the shortest step that was found to have no solution to the longest that has one.
+const WIDTH: f64 = 1.02;
+
+/// What solvers call the momentum that they are given.
+const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
+
+impl<S: Clebsch> Stepper<S> {
+    /// The error of a step from `state`, which is finite, in this lane.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn refusal(&self, state: &State<S>, u: &S::Input, lane: usize, error: Error) -> Error {
+        let State { time, configuration, momentum, impulse, .. } = state;
+        self.explained(lane, error, |constants| {
+            let t = time.now();
+            let kick = self.system.impulse_after(constants, t, configuration, momentum, impulse);
+            let (q, mu, _) = self.system.step(constants, t, configuration, momentum, &kick, u)?;
+            Ok((q.finite() & mu.finite()).lane(lane))
+        })
+    }
+
+    /// The same of a step on T*Q.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn refusal_of_covector(&self, state: &CotangentState<S>, error: Error) -> Error {
+        let CotangentState { time, configuration, covector } = state;
+        self.explained(0, error, |constants| {
+            let (q, p) = self.system.step_symmetric(constants, time.now(), configuration, covector)?;
+            Ok((q.finite() & p.finite()).lane(0))
+        })
+    }
+
+    /// The same of a solve for the group element.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn refusal_of_element(
+        &self,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+        error: Error,
+    ) -> Error {
+        self.explained(0, error, |constants| Ok(self.system.inverse_legendre(constants, t, q, mu)?.finite().lane(0)))
+    }
+
+    /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
+    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&S::Constants) -> Result<bool, Error>) -> Error {
+        match error {
+            // the one that was given is finite
+            error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
+            Error::Unsolvable { solvable_fraction, .. } => {
+                let h = self.h.lane(lane).to_f64();
+                let tried = |h: f64| match self.system.constants(S::Scalar::from_f64(h)) {
+                    Ok(constants) => stepped(&constants),
+                    Err(error) => Err(error),
+                };
+                Error::Unsolvable {
+                    solvable_fraction,
+                    step_size: Some(h),
+                    solvable_step: longest(h, solvable_fraction, tried),
+                }
+            }
+            other => other,
+        }
+    }
+
+    /// The error of a step to a state that is not finite in this lane.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn overflow(&self, next: &State<S>, lane: usize) -> Error {
+        let State { time, configuration, momentum, .. } = next;
+        let name = if !configuration.finite().lane(lane) {
+            "the configuration after the step"
+        } else if !time.now().finite().lane(lane) {
+            "the time after the step"
+        } else if !self.has_gradient(time.now(), configuration, lane) {
+            "the gradient of the potential after the step"
+        } else {
+            let _ = momentum;
+            "the momentum after the step"
+        };
+        Error::NotFinite { name }
+    }
+
+    /// Whether the impulse at q, without momentum, is finite: that of the potential.
+    pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
+        self.system.impulse(&self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
+    }
+}
+
+/// The longest step that `tried` solves, to [`WIDTH`], given the step `h` that has no solution and the fraction of its momentum that has one;
+/// `None` if none was found.
+///
+/// Where momenta alone count, the longest is that fraction of h. What a potential or a force adds depends on h in its own way: where that
+/// shows, the interval is halved.
+fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) -> Option<f64> {
+    let (mut refused, mut edge) = (h, h * fraction);
+    let mut solved: Option<f64> = None;
+    for _ in 0..TRIALS {
+        let beyond = edge * 1.0095;
+        let next = match solved {
+            None if edge / refused > 0.0 && edge / refused < 0.99 => edge * 0.99,
+            None => refused * 0.5,
+            Some(longest) if refused / longest <= WIDTH => break,
+            Some(longest) if beyond / longest > 1.0 && beyond / refused < 0.9 => beyond,
+            Some(longest) => longest * Scalar::sqrt(refused / longest),
+        };
+        match tried(next) {
+            Ok(true) => solved = Some(next),
+            Err(Error::Unsolvable { solvable_fraction, .. }) => (refused, edge) = (next, next * solvable_fraction),
+            Ok(false) | Err(_) => (refused, edge) = (next, 0.0),
+        }
+    }
+    solved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TRIALS, WIDTH, longest};
+    use crate::Error;
+    use core::cell::Cell;
+    use proptest::prelude::*;
+
+    fn unsolvable(solvable_fraction: f64) -> Result<bool, Error> {
+        Err(Error::Unsolvable { solvable_fraction, step_size: None, solvable_step: None })
+    }
+
+    proptest! {
+        /// |h μ + h² k| ≤ 1 with a momentum μ and a kick k of any sign, forwards and backwards in time.
+        #[test]
+        fn the_longest_step_is_found(momentum in -3.0_f64..3.0, kick in -3.0_f64..3.0, excess in 0.01_f64..9.0, sign in prop::bool::ANY) {
+            let size = |h: f64| (h * momentum + h * h * kick).abs();
+            let h = (1.0 + excess) * if sign { 1.0 } else { -1.0 };
+            prop_assume!(size(h) > 1.0);
+            let (count, shortest) = (Cell::new(0), Cell::new(h));
+            let found = longest(h, 1.0 / size(h), |h| {
+                count.set(count.get() + 1);
+                if size(h) <= 1.0 {
+                    return Ok(true);
+                }
+                shortest.set(h);
+                unsolvable(1.0 / size(h))
+            });
+            let found = found.expect("short steps can be solved");
+            prop_assert!(size(found) <= 1.0 && count.get() <= TRIALS);
+            let ratio = shortest.get() / found;
+            prop_assert!(ratio > 1.0 && ratio <= WIDTH, "{} was refused beside {found}", shortest.get());
+        }
+    }
+
+    #[test]
+    fn momenta_alone_take_two_trials() {
+        let count = Cell::new(0);
+        let found = longest(0.3, 1e-9, |h| {
+            count.set(count.get() + 1);
+            if h <= 3e-10 { Ok(true) } else { unsolvable(3e-10 / h) }
+        });
+        assert!(found.is_some_and(|h| h <= 3e-10 && h > 2.9e-10) && count.get() == 2, "{found:?}");
+    }
+
+    #[test]
+    fn what_has_no_solution_ends() {
+        assert_eq!(longest(1.0, 0.5, |_| unsolvable(0.0)), None);
+        assert_eq!(longest(1.0, f64::NAN, |_| Ok(false)), None);
+        assert_eq!(longest(1.0, 0.5, |_| Err(Error::StepSize { value: 0.0 })), None);
+    }
+}

@@ -1,0 +1,63 @@
+//! Every error, provoked by a declared system in use: its text gives the names and numbers, and says what to change.
+
+#![allow(missing_docs)]
+
+mod inputs;
+mod scenes;
+
+use std::collections::BTreeSet;
+
+use clebsch::Error;
+use scenes::scenes;
+
+/// A scene that fails, and what a person has to be told.
+pub struct Scene {
+    /// Where the error comes from.
+    pub error: Error,
+    /// What its text has to contain: names, numbers, and what to do.
+    pub told: &'static [&'static str],
+}
+
+/// The name of the variant.
+fn variant(error: &Error) -> String {
+    format!("{error:?}").chars().take_while(|c| c.is_alphanumeric()).collect()
+}
+
+#[test]
+fn every_error_says_what_to_change() {
+    for Scene { error, told } in scenes() {
+        let text = error.to_string();
+        println!("{}: {text}", variant(&error));
+        for part in told {
+            assert!(text.contains(part), "{}: `{part}` is not in: {text}", variant(&error));
+        }
+        let is_sentence = text.starts_with(|c: char| c.is_lowercase() || c == '`') && !text.ends_with('.');
+        assert!(is_sentence && !text.contains("  ") && !text.contains("NaN,NaN"), "{text}");
+    }
+}
+
+/// The variants are those of the source, read as it is written.
+#[test]
+fn no_error_is_left_out() {
+    let source = include_str!("../../../runtime/src/error.rs");
+    let file = syn::parse_file(source).expect("error.rs is Rust");
+    let declared = file.items.iter().find_map(|item| match item {
+        syn::Item::Enum(declared) if declared.ident == "Error" => Some(declared),
+        _ => None,
+    });
+    let declared: BTreeSet<String> =
+        declared.expect("an enum `Error`").variants.iter().map(|variant| variant.ident.to_string()).collect();
+    let provoked: BTreeSet<String> = scenes().iter().map(|scene| variant(&scene.error)).collect();
+    assert_eq!(declared, provoked, "each variant needs a scene in tests/tests/errors/scenes.rs");
+}
+
+/// The sources of errors chain, and errors can be handed on as any other.
+#[test]
+fn errors_are_errors() {
+    fn check(error: impl std::error::Error + Send + Sync + 'static) -> Box<dyn std::error::Error + Send + Sync> {
+        Box::new(error)
+    }
+    for scene in scenes() {
+        assert_eq!(check(scene.error).to_string(), scene.error.to_string());
+    }
+}

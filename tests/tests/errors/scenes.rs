@@ -1,0 +1,245 @@
+//! Scenes that fail.
+
+use crate::Scene;
+use clebsch::{Clebsch, Controlled, Ensemble, Error, F64x4, Guess, Scalar, Target};
+use clebsch_tests::fixtures::collocated_top::CollocatedTop;
+use clebsch_tests::fixtures::damped_body::DampedBody;
+use clebsch_tests::fixtures::exact_body::ExactBody;
+use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
+use clebsch_tests::fixtures::generic_body::GenericBody;
+use clebsch_tests::fixtures::heavy_top::HeavyTop;
+use clebsch_tests::fixtures::promised_top::PromisedTop;
+use clebsch_tests::fixtures::regulator::Regulator;
+use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
+use clebsch_tests::fixtures::steered_body::SteeredBody;
+use nalgebra::{Matrix3, Quaternion, Vector2, Vector3};
+
+/// A potential whose gradient has the wrong sign.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<3>, x: Vector3| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = opaque(Self::value, Self::gradient),
+)]
+pub struct Mistaken;
+
+impl Mistaken {
+    fn value(&self, x: &Vector3<f64>) -> f64 {
+        x.y * x.y / 2.0
+    }
+    fn gradient(&self, x: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::y() * -x.y
+    }
+}
+
+/// A point on a sphere about the origin.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, q: Vector3| F * q,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    emit   = [boundary],
+)]
+pub struct Swivel;
+
+fn principal() -> Vector3<f64> {
+    Vector3::new(1.0, 1.4, 1.9)
+}
+
+fn top() -> HeavyTop {
+    HeavyTop { mass_matrix: Matrix3::from_diagonal(&principal()), weight: 1.3, center: Vector3::z() }
+}
+
+fn promised() -> PromisedTop {
+    PromisedTop {
+        inertia: Matrix3::from_diagonal(&principal()),
+        weight: 1.3,
+        up: Vector3::z(),
+        center: Vector3::new(0.1, 0.0, 0.3),
+    }
+}
+
+fn pendulum() -> SphericalPendulum {
+    SphericalPendulum { mass: 2.0, length: 0.5, gravity: 0.0 }
+}
+
+/// The error of a call that has to fail.
+#[track_caller]
+fn refused<T>(result: Result<T, Error>) -> Error {
+    result.err().expect("an error")
+}
+
+/// At least one for each variant.
+pub fn scenes() -> Vec<Scene> {
+    [parameters(), states(), steps(), extremals(), plans()].into_iter().flatten().collect()
+}
+
+fn scene(error: Error, told: &'static [&'static str]) -> Scene {
+    Scene { error, told }
+}
+
+fn parameters() -> Vec<Scene> {
+    let mut skew = Matrix3::identity();
+    skew[(0, 2)] = 0.1;
+    let massless = FreeRigidBody { inertia: Matrix3::zeros() };
+    let broken = HeavyTop { weight: f64::NAN, ..top() };
+    let wrong = Mistaken.check_potential(&Vector3::new(1.0, 2.0, 3.0));
+    vec![
+        scene(refused(top().stepper(0.0)), &["the step size is 0", "a finite number other than zero"]),
+        scene(
+            refused(broken.stepper(0.1)),
+            &["weight is not finite", "look for NaN, infinity, division by zero or overflow"],
+        ),
+        scene(
+            refused(FreeRigidBody { inertia: skew }.stepper(0.1)),
+            &[
+                "`inertia` is declared symmetric",
+                "1.000e-1",
+                "pass (inertia + inertiaᵀ)/2, or remove `#[clebsch(symmetric)]`",
+            ],
+        ),
+        scene(
+            refused(PromisedTop { inertia: skew, ..promised() }.stepper(0.1)),
+            &["`inertia` is declared diagonal", "1.000e-1", "set it to zero, or remove `#[clebsch(diagonal)]`"],
+        ),
+        scene(
+            refused(PromisedTop { up: Vector3::z() * 2.0, ..promised() }.stepper(0.1)),
+            &["`up` is declared a unit vector", "its length is 2", "pass up.normalize(), or remove `#[clebsch(unit)]`"],
+        ),
+        scene(
+            refused(massless.stepper(0.1)),
+            &["condition number inf", "check masses and moments of inertia for zeros"],
+        ),
+        scene(refused(wrong), &["entry 1", "-2.0", "differences of the value give 2.0", "check the sign"]),
+    ]
+}
+
+fn states() -> Vec<Scene> {
+    let stepper = top().stepper(0.1).expect("a top");
+    let (r, mu) = (Matrix3::identity(), Vector3::z());
+    let sphere = pendulum().stepper(0.1).expect("a pendulum");
+    let bodies = [(r, mu), (r, mu)];
+    let mut ensemble = Ensemble::new(stepper.clone(), bodies).expect("two tops");
+    let damped = DampedBody { inertia: Matrix3::identity(), damping: 0.1 }.into_stepper(0.1).expect("a body");
+    let covector = damped.cotangent_state(r, r).expect("a state");
+    vec![
+        scene(refused(stepper.state(r * f64::NAN, mu)), &["the configuration is not finite"]),
+        scene(
+            refused(stepper.state(r * 1.01, mu)),
+            &[
+                "off its space by 2.010e-2 where 1.5e-8 is accepted",
+                "normalise it",
+                "orthonormal columns to a rotation",
+            ],
+        ),
+        scene(
+            refused(stepper.state(-r, mu)),
+            &["a reflection instead of a rotation", "check the sign of its determinant"],
+        ),
+        scene(
+            refused(sphere.state(Vector3::y(), Vector3::new(1.0, 0.25, 0.5))),
+            &["a component of 2.500e-1", "project it by `Stepper::project` or compute it by `momentum_map`"],
+        ),
+        scene(refused(ensemble.set_body(2, (r, mu))), &["no body 2 in an ensemble of 2", "give a number below 2"]),
+        scene(refused(damped.step_symmetric(&covector)), &["no step in (q, p)", "step in (q, N), by `Stepper::step`"]),
+    ]
+}
+
+fn steps() -> Vec<Scene> {
+    let sphere = pendulum().stepper(0.1).expect("a pendulum");
+    let fast = sphere.state(Vector3::z(), Vector3::new(6.0, 8.0, 0.0)).expect("a state");
+    let long = CollocatedTop { moments: principal(), weight: 1.3 }.into_stepper(40.0).expect("a top");
+    let lying = long.state(Quaternion::new(0.8, 0.0, 0.6, 0.0), principal()).expect("a state");
+    let lanes = GenericBody {
+        mass_matrix: top().mass_matrix.map(F64x4::splat),
+        weight: F64x4::splat(1.0),
+        center: Vector3::z().map(F64x4::splat),
+    };
+    let lanes = lanes.into_stepper(F64x4::splat(0.1)).expect("tops");
+    let spin = |lane: usize| if lane == 2 { 1e3 } else { 1.0 };
+    let tops = lanes.state(Matrix3::identity(), Vector3::z().map(|z: f64| F64x4::from_lanes(|lane| z * spin(lane))));
+    let exact = ExactBody { moments: principal() }.into_stepper(0.1).expect("a body");
+    let turning = exact.state(Matrix3::identity(), Vector3::new(0.1, 2.0, 0.1)).expect("a state");
+    vec![
+        scene(
+            refused(sphere.step(&fast)),
+            &["the step of 1.000e-1 is too long", "up to 0.500 times it", "reduce the step size to 4.9"],
+        ),
+        scene(refused(long.step(&lying)), &["was not solved in", "reduce the step size"]),
+        scene(
+            refused(lanes.step(&tops.expect("states"))),
+            &[
+                "the step of lane 2 failed",
+                "`Stepper::failure` says why",
+                "`Stepper::step_each` steps those that can be",
+            ],
+        ),
+        scene(
+            refused(exact.suggest_step_size(&turning, 1e-17, 100.0)),
+            &["an error of 1.0e-17", "ask for more than that, or for a shorter duration"],
+        ),
+        // Made by hand: at the very edge of what can be solved rounding leads beside the singular point. Of 40 000 steps there, in single precision, none
+        // met it.
+        scene(
+            Error::SingularTangent { step_size: 1.0 },
+            &["the step of 1.000e0 has no derivative", "reduce the step size"],
+        ),
+    ]
+}
+
+fn extremals() -> Vec<Scene> {
+    let x = Vector3::x();
+    let stepper = Swivel.into_stepper(0.1).expect("a point");
+    let boundary = stepper.boundary();
+    let mut path = [boundary.rest(&x); 8];
+    vec![
+        scene(
+            refused(boundary.solve(&x, &Vector3::y(), Guess::Geodesic, &mut [])),
+            &["a path of 0 nodes was given", "give 1 for each step, and at least one step"],
+        ),
+        scene(
+            refused(boundary.solve(&x, &-x, Guess::Geodesic, &mut path)),
+            &["2.000e0 away", "give a velocity as the guess"],
+        ),
+        scene(
+            refused(boundary.solve(&x, &(Vector3::y() * 3.0), Guess::Geodesic, &mut path)),
+            &["2.000e0 were left", "check that the target is on the orbit", "give a velocity as the guess"],
+        ),
+    ]
+}
+
+fn plans() -> Vec<Scene> {
+    let regulator = Regulator { mass: 1.3, stiffness: 2.0, price: 0.5 }.control(0.1).expect("a regulator");
+    let start = Vector2::new(1.0, -0.4);
+    // a force moves the velocity in the first step, and the place in the second
+    let mut one = [regulator.stage(&start); 1];
+    // each newton more is paid for
+    let paid = Regulator { mass: 1.3, stiffness: 2.0, price: -0.5 }.control(0.1).expect("a regulator");
+    let mut many = [paid.stage(&start); 20];
+    let steered = |top: f64| {
+        let body = SteeredBody { inertia: Matrix3::identity(), damping: 0.1, top };
+        let control = body.control(0.1).expect("a body");
+        let (rest, goal) = ((Matrix3::identity(), Vector3::zeros()), (Matrix3::identity(), Vector3::x()));
+        let mut plan = [control.stage(&rest); 5];
+        refused(control.solve(&rest, Target::Place(goal), &mut plan).map(|_| ()))
+    };
+    vec![
+        scene(
+            refused(regulator.solve(&start, Target::Place(Vector2::zeros()), &mut one)),
+            &[
+                "no small change of the inputs",
+                "check that the inputs control all that the target fixes",
+                "enough steps",
+            ],
+        ),
+        scene(
+            refused(paid.solve(&start, Target::Free, &mut many)),
+            &[
+                "no extremal was found in 400 linearisations",
+                "give a better guess",
+                "check that its price cannot fall for ever",
+            ],
+        ),
+        scene(steered(-0.1), &["`torque.x <= self.top` is violated by", "relax it, or guess inputs that keep it"]),
+        scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
+    ]
+}
