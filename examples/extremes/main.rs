@@ -35,10 +35,10 @@ struct Flags {
     /// One section alone
     #[arg(long, value_name = "NAME")]
     section: Option<Section>,
-    /// Steps of each long run [default: 1e8 as 100000000]
+    /// Steps of each long run [default: 100000000]
     #[arg(long, value_name = "N", value_parser = count)]
     steps: Option<u64>,
-    /// Random states of each scene, shared by its dials and types [default: 10000000]
+    /// Random states of each scene, shared by its dials and types [default: 100000000]
     #[arg(long, value_name = "N", value_parser = count)]
     states: Option<u64>,
     /// Write all cells to FILE: section, scene, dial, scalar, value, outcome, steps, iterations, residual, energy, momentum, constraint, error
@@ -70,7 +70,7 @@ impl Flags {
     }
 
     fn states(&self) -> u64 {
-        self.states.unwrap_or(if self.full { 1_000_000_000 } else { 10_000_000 })
+        self.states.unwrap_or(if self.full { 1_000_000_000 } else { 100_000_000 })
     }
 
     /// Random bodies whose bound is looked for.

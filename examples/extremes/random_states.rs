@@ -16,6 +16,9 @@ const STATES: u64 = 10_000;
 /// most 64 sweeps.
 const ITERATIONS: u32 = 12 + LINEARIZATIONS + 8;
 
+/// Steps that are tried to tell the longest one that has a solution.
+const TRIALS: u32 = 32;
+
 /// Those with an iteration.
 fn dials() -> Vec<Dial> {
     let explicit = ["exact", "exact, order 4", "chord", "exponential, order 4"];
@@ -68,7 +71,8 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
         "other errors",
         "missed",
     ];
-    let (mut rows, mut most, mut hidden) = (vec![headings.map(str::to_owned).to_vec()], 0, 0);
+    let mut rows = vec![headings.map(str::to_owned).to_vec()];
+    let (mut most, mut most_refused, mut hidden) = (0, 0, 0);
     for (&(scalar, dial), sample) in kinds.iter().zip(&samples) {
         let name = format!("{}, {}, {}", dial.scene, dial.name, SCALARS[scalar]);
         let below = |most: usize| sample.iterations.iter().take(most + 1).sum::<u64>();
@@ -87,7 +91,8 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
             sample.others.to_string(),
             format!("{:.0e}", sample.missed),
         ]);
-        most = most.max(sample.most).max(sample.most_refused);
+        most = most.max(sample.most);
+        most_refused = most_refused.max(sample.most_refused);
         hidden += sample.hidden;
     }
     say(align(&rows));
@@ -96,6 +101,12 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
         f64::from(most),
         f64::from(ITERATIONS),
         "12 by Newton's method, then those along the path",
+    );
+    claims.at_most(
+        "random states: iterations of a step that is refused",
+        f64::from(most_refused),
+        f64::from((TRIALS + 1) * ITERATIONS),
+        "those of the step, and of the trials for the longest one that would do",
     );
     claims.at_most("random states: numbers that are not finite", hidden as f64, 0.0, "in steps that were made");
     Ok(())

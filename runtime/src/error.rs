@@ -76,7 +76,7 @@ pub enum Error {
         step_size: Option<f64>,
         /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
         /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
-        /// found by trying: some ten steps, at most 32.
+        /// found by trying: some ten steps, at most 32; none is tried where a stepper keeps more than two kilobytes of constants, as for exact drifts.
         solvable_step: Option<f64>,
     },
     /// The gradient method of an opaque potential disagrees with differences of its value method.

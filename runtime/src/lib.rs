@@ -68,6 +68,29 @@
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
 //! | `serde` | states that are written, and go on bit for bit where they are read back, by `Stepper::resume` |
 //!
+//! # Where dials end
+//!
+//! ω is the velocity J⁻¹π of a body, the frequency that of small oscillations. Beyond its end a step is refused with an [`Error`] that gives the longest one,
+//! unless the table says otherwise; `docs/extremes.md` of the repository shows each of them measured.
+//!
+//! | dial | ends at |
+//! |---|---|
+//! | `discretization = moser_veselov`, and costs by (F − I) | h\|ω\| = 1 about a principal axis, a little more about others |
+//! | `discretization = cayley` | nowhere; a step turns by less than π, and is of no use beyond h\|ω\| = 1 |
+//! | `discretization = exponential` | h\|ω\| = π, where log F becomes another; it goes on beyond, to be refused or not |
+//! | `discretization = projection` | h\|ω\| = ½ |
+//! | `discretization = exact` | h\|π\|/J of the least moment of inertia at 10⁷ in `f64`, at a thousand in `f32` |
+//! | `order = 16` | h\|ω\| of 2 to 3: sweeps do not contract, [`Error::NotConverged`] |
+//! | `order = 1` and `2` | h·frequency = 2: energies grow without an error |
+//! | `order = 4`, `6` and `8` | h·frequency = 3.1, likewise |
+//! | `solver = fixed_point` | h\|ω\| of a quarter: Newton's method takes over |
+//! | `iterations` | steps that need more of them: [`Error::NotConverged`] |
+//! | `tolerance` | energies drift, in proportion to it |
+//! | `summation = compensated` | momenta and configurations drift by a hundredth of the rounding of plain sums |
+//!
+//! A step ends after at most 12 linearisations by Newton's method (with `solver = fixed_point` 32 residuals before them), and where these do not decide
+//! after [`implicit::LINEARIZATIONS`] more along the path from the identity, or 64 sweeps with `order = 16`.
+//!
 //! # Many bodies
 //!
 //! A declaration over `T: Scalar` runs on lanes: with `F64x8` for `T` a [`State`] holds eight bodies, and a step makes the step of each. Lanes

@@ -67,8 +67,11 @@ fn unfinished<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     }
     let terms = equation.prepare(target);
     let [left, whole] = [*xi, SVector::from_element(T::zero())].map(|xi| size(&equation.residual(&terms, &xi)));
-    let residual = (left / whole).to_f64();
-    Error::NotConverged { residual: if residual.is_finite() { residual } else { f64::INFINITY }, iterations: made }
+    let residual = left / whole;
+    match residual.is_finite() {
+        true => Error::NotConverged { residual: residual.to_f64(), iterations: made },
+        false => Error::NotFinite { name: "the implicit equation of the step" },
+    }
 }
 
 /// The equation in one lane.

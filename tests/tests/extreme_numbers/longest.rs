@@ -25,7 +25,11 @@ fn longest_steps_of<S: Scene>(h: S::Scalar) -> [usize; 2] {
         let start = stepper.state(q, mu).expect("a state");
         let Err(error) = stepper.step(&start) else { continue };
         let Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step } = error else { continue };
-        let Some(longest) = solvable_step else { panic!("{}: no step for {mu:?}: {error}", S::NAME) };
+        let Some(longest) = solvable_step else {
+            // none is tried where each would take constants of kilobytes
+            assert!(size_of::<S::Constants>() > 2048, "{}: no step for {mu:?}: {error}", S::NAME);
+            continue;
+        };
         let step = |h: f64| {
             let other = S::ordinary().stepper(S::Scalar::from_f64(h))?;
             other.step(&other.state(q, mu)?)

@@ -94,6 +94,7 @@ fn placed() -> Matrix4<f64> {
 }
 
 scenes! {
+    a_bounded_top: bounded_top::BoundedTop { mass_matrix: inertia(), weight: 1.3, center: center() }, turned(), 0.05;
     a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
     a_collocated_top: collocated_top::CollocatedTop { moments: principal(), weight: 1.3 }, quaternion(), 0.1;
     a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: center() }, turned(), 0.05;

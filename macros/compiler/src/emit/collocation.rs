@@ -72,7 +72,7 @@ impl Emitter<'_, '_> {
                 quote!((*x * part, [<#scalar as #private::One>::one(); #count]))
             }
         };
-        let (advanced, entries) = (self.moved_alone(step), self.flat());
+        let (advanced, entries) = (self.advanced_plainly(step), self.flat());
         quote! {
             #whole
             /// (q, p) after a part of the step, moved along by the velocity of its start: on the orbit of q.

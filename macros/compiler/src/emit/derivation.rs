@@ -295,7 +295,7 @@ fn spaces(program: &Program<'_>) -> String {
             "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε, by q(3 − |q|²)/2 once |q|² is off by 8ε",
         ),
     };
-    format!("Rounding is taken off {what}, {how}: they stay there for any number of steps.\n")
+    format!("Rounding is taken off {what}, {how}: they stay there for any number of steps of (q, N).\n")
 }
 
 /// How much work a step may be.

@@ -58,14 +58,8 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The same where no rests are kept.
+    /// The same where no rests are kept, without a look at the rounding of q: the step on T*Q is symplectic in all directions of T*Rⁿ.
     pub(super) fn advanced_plainly(&self, step: &StepKernels) -> TokenStream {
-        let (moved, kept) = (self.moved_alone(step), self.kept_on_spaces());
-        quote!(#moved #kept)
-    }
-
-    /// The same without a look at the rounding of q.
-    pub(super) fn moved_alone(&self, step: &StepKernels) -> TokenStream {
         let moved = self.moved_to(self.moved(step));
         quote!(let q = #moved;)
     }
