@@ -124,6 +124,11 @@ impl Cell {
     }
 }
 
+/// [`one_step`] of a declaration.
+type OneStep = fn(&Setup) -> Result<u32, Error>;
+/// [`drift`] of a declaration.
+type LongRun = fn(&Setup, &[u64]) -> Result<Vec<Drift>, Error>;
+
 /// A scene with a dial.
 #[derive(Clone, Copy)]
 pub struct Dial {
@@ -134,9 +139,9 @@ pub struct Dial {
     /// Runs in `f64` and in `f32`: setup, steps, whether beside 31 digits.
     pub run: [fn(&Setup, u64, bool) -> Cell; 2],
     /// One step: the number of iterations, or the error.
-    pub step: [fn(&Setup) -> Result<u32, Error>; 2],
+    pub step: [OneStep; 2],
     /// Errors between marks of a long run.
-    pub drift: [fn(&Setup, &[u64]) -> Result<Vec<Drift>, Error>; 2],
+    pub drift: [LongRun; 2],
     /// One step from each of so many random states of a body, with a seed.
     pub sample: [fn(&Setup, u64, u64, &mut Sample); 2],
 }
@@ -269,7 +274,8 @@ impl Watch {
 
     fn observe<S: Scene>(&mut self, stepper: &Stepper<S>, state: &State<S>) {
         let raise = |largest: &mut f64, value: f64| {
-            if !(value <= *largest) {
+            // NaN is kept
+            if value > *largest || value.is_nan() {
                 *largest = value;
             }
         };

@@ -155,7 +155,7 @@ fn formulas<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, q:
     report.formula(at("momentum_map"), || stepper.momentum_map(&q, &q));
     report.formula(at("momentum_matrix"), || stepper.momentum_components(&stepper.momentum_matrix(&mu)));
     report.formula(at("potential"), || stepper.potential_at(zero, &q));
-    let broken = S::Element::filled(zero / zero);
+    let broken = S::Element::filled(S::Scalar::from_f64(f64::NAN));
     report.formula(at("legendre"), || stepper.legendre_at(zero, &q, &broken));
     report.formula(at("legendre_next"), || stepper.legendre_next_at(zero, &q, &broken));
     report.formula(at("act"), || (stepper.act(&broken, &q), stepper.coadjoint(&broken, &mu)));
