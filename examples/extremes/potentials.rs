@@ -55,7 +55,7 @@ struct Driven {
     pub frequency: f64,
 }
 
-/// One more macro for the same call on each order.
+/// A function for the systems of each order, with its name.
 macro_rules! each_order {
     ($function:ident, $kind:ident) => {
         [
