@@ -58,7 +58,7 @@ macro_rules! bodies {
 
         /// The free body.
         pub fn bodies() -> Vec<Dial> {
-            vec![$(dial!($module::Body, $name, "free body")),*]
+            vec![$(dial!($module::Body, $name, "free body", beside)),*]
         }
     };
 }
@@ -113,7 +113,7 @@ macro_rules! tops {
 
         /// The heavy top.
         pub fn tops() -> Vec<Dial> {
-            vec![$(dial!($module::Top, $name, "heavy top")),*]
+            vec![$(dial!($module::Top, $name, "heavy top", alone)),*]
         }
     };
 }
@@ -168,7 +168,7 @@ macro_rules! pendulums {
 
         /// The spherical pendulum.
         pub fn pendulums() -> Vec<Dial> {
-            vec![$(dial!($module::Pendulum, $name, "spherical pendulum")),*]
+            vec![$(dial!($module::Pendulum, $name, "spherical pendulum", alone)),*]
         }
     };
 }

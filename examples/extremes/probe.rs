@@ -182,16 +182,16 @@ pub struct Sample {
     pub missed: f64,
 }
 
-/// The dial of a declaration that is generic over its scalar.
+/// The dial of a declaration that is generic over its scalar, run [`alone`] or [`beside`] 31 digits.
 macro_rules! dial {
-    ($($path:ident)::+, $name:literal, $scene:literal) => {{
+    ($($path:ident)::+, $name:literal, $scene:literal, $beside:ident) => {{
         use clebsch_examples::counted::Counted;
         $crate::probe::Dial {
             scene: $scene,
             name: $name,
             run: [
-                $crate::probe::beside::<$($path)::+<Counted<f64>>, $($path)::+<clebsch::DoubleDouble>>,
-                $crate::probe::beside::<$($path)::+<Counted<f32>>, $($path)::+<clebsch::DoubleDouble>>,
+                $crate::probe::$beside::<$($path)::+<Counted<f64>>, $($path)::+<clebsch::DoubleDouble>>,
+                $crate::probe::$beside::<$($path)::+<Counted<f32>>, $($path)::+<clebsch::DoubleDouble>>,
             ],
             step: [$crate::probe::one_step::<$($path)::+<Counted<f64>>>, $crate::probe::one_step::<$($path)::+<Counted<f32>>>],
             drift: [$crate::probe::drift::<$($path)::+<Counted<f64>>>, $crate::probe::drift::<$($path)::+<Counted<f32>>>],
@@ -210,6 +210,11 @@ pub fn one_step<S: Scene>(setup: &Setup) -> Result<u32, Error> {
     let start = S::start(setup, &stepper)?;
     let (next, iterations) = iterations(|| stepper.step(&start));
     next.map(|_| iterations)
+}
+
+/// A run of S alone: what is not compared is not compiled in 31 digits either.
+pub fn alone<S: Scene, P>(setup: &Setup, steps: u64, _: bool) -> Cell {
+    run::<S>(setup, steps)
 }
 
 /// A run of S, and of P in 31 digits beside it.

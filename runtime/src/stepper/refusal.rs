@@ -9,7 +9,7 @@ const TRIALS: usize = 32;
 /// The ratio of the shortest step that was found to have no solution to the longest that has one.
 const WIDTH: f64 = 1.02;
 
-/// Bytes of constants up to which steps are tried, each with constants of its own: making larger ones takes stack that a step should not need, 45 KB for
+/// Bytes of constants of a body up to which steps are tried, each with constants of its own: making larger ones takes stack that a step should not need, 45 KB for
 /// series of exact drifts.
 const CONSTANTS: usize = 2048;
 
@@ -61,7 +61,7 @@ impl<S: Clebsch> Stepper<S> {
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
             Error::Unsolvable { solvable_fraction, .. } => {
                 let h = self.h.lane(lane).to_f64();
-                if size_of::<S::Constants>() > CONSTANTS {
+                if size_of::<S::Constants>() > CONSTANTS * S::Scalar::LANES {
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step: None };
                 }
                 let tried = |h: f64| match self.system.constants(S::Scalar::from_f64(h)) {
