@@ -1,7 +1,8 @@
 //! Three scenes, each declared with several dials, over any scalar.
 
 use crate::probe::{Dial, Scene, Setup, dial};
-use clebsch::{Clebsch, Error, Real, State, Stepper};
+use clebsch::{Clebsch, DoubleDouble, Error, Real, State, Stepper};
+use clebsch_examples::counted::Counted;
 use nalgebra::{Matrix3, Vector3};
 
 fn matrix<T: Real>(entries: &Matrix3<f64>) -> Matrix3<T> {
@@ -58,7 +59,7 @@ macro_rules! bodies {
 
         /// The free body.
         pub fn bodies() -> Vec<Dial> {
-            vec![$(dial!($module::Body, $name, "free body", beside)),*]
+            vec![$(dial!($name, "free body", $module::Body<Counted<f64>>, $module::Body<Counted<f32>>, beside $module::Body<DoubleDouble>)),*]
         }
     };
 }
@@ -113,7 +114,7 @@ macro_rules! tops {
 
         /// The heavy top.
         pub fn tops() -> Vec<Dial> {
-            vec![$(dial!($module::Top, $name, "heavy top", alone)),*]
+            vec![$(dial!($name, "heavy top", $module::Top<Counted<f64>>, $module::Top<Counted<f32>>, alone)),*]
         }
     };
 }
@@ -168,7 +169,7 @@ macro_rules! pendulums {
 
         /// The spherical pendulum.
         pub fn pendulums() -> Vec<Dial> {
-            vec![$(dial!($module::Pendulum, $name, "spherical pendulum", alone)),*]
+            vec![$(dial!($name, "spherical pendulum", $module::Pendulum<Counted<f64>>, $module::Pendulum<Counted<f32>>, alone)),*]
         }
     };
 }

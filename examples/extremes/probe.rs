@@ -184,20 +184,23 @@ pub struct Sample {
 
 /// The dial of a declaration that is generic over its scalar, run [`alone`] or [`beside`] 31 digits.
 macro_rules! dial {
-    ($($path:ident)::+, $name:literal, $scene:literal, $beside:ident) => {{
-        use clebsch_examples::counted::Counted;
+    ($name:literal, $scene:literal, $double:ty, $single:ty, alone) => {
+        $crate::probe::dial!(@ $name, $scene, $double, $single, [$crate::probe::alone::<$double>, $crate::probe::alone::<$single>])
+    };
+    ($name:literal, $scene:literal, $double:ty, $single:ty, beside $precise:ty) => {
+        $crate::probe::dial!(@ $name, $scene, $double, $single,
+            [$crate::probe::beside::<$double, $precise>, $crate::probe::beside::<$single, $precise>])
+    };
+    (@ $name:literal, $scene:literal, $double:ty, $single:ty, $run:expr) => {
         $crate::probe::Dial {
             scene: $scene,
             name: $name,
-            run: [
-                $crate::probe::$beside::<$($path)::+<Counted<f64>>, $($path)::+<clebsch::DoubleDouble>>,
-                $crate::probe::$beside::<$($path)::+<Counted<f32>>, $($path)::+<clebsch::DoubleDouble>>,
-            ],
-            step: [$crate::probe::one_step::<$($path)::+<Counted<f64>>>, $crate::probe::one_step::<$($path)::+<Counted<f32>>>],
-            drift: [$crate::probe::drift::<$($path)::+<Counted<f64>>>, $crate::probe::drift::<$($path)::+<Counted<f32>>>],
-            sample: [$crate::probe::sample::<$($path)::+<Counted<f64>>>, $crate::probe::sample::<$($path)::+<Counted<f32>>>],
+            run: $run,
+            step: [$crate::probe::one_step::<$double>, $crate::probe::one_step::<$single>],
+            drift: [$crate::probe::drift::<$double>, $crate::probe::drift::<$single>],
+            sample: [$crate::probe::sample::<$double>, $crate::probe::sample::<$single>],
         }
-    }};
+    };
 }
 pub(crate) use dial;
 
@@ -213,7 +216,7 @@ pub fn one_step<S: Scene>(setup: &Setup) -> Result<u32, Error> {
 }
 
 /// A run of S alone: what is not compared is not compiled in 31 digits either.
-pub fn alone<S: Scene, P>(setup: &Setup, steps: u64, _: bool) -> Cell {
+pub fn alone<S: Scene>(setup: &Setup, steps: u64, _: bool) -> Cell {
     run::<S>(setup, steps)
 }
 
