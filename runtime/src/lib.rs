@@ -85,7 +85,7 @@
 //! | `order = 4`, `6` and `8` | h·frequency = 3.1, likewise |
 //! | `solver = fixed_point` | h\|ω\| of a quarter: Newton's method takes over |
 //! | `iterations` | steps that need more of them: [`Error::NotConverged`] |
-//! | `tolerance` | energies drift, in proportion to it |
+//! | `tolerance` | energies drift |
 //! | `summation = compensated` | rotations and unit vectors are not brought back: off by 10⁻³ in `f32` and 3·10⁻¹² in `f64` after 10⁸ steps |
 //!
 //! A step ends after at most 12 linearisations by Newton's method (with `solver = fixed_point` 32 residuals before them), and where these do not decide

@@ -82,7 +82,7 @@ impl<S: Clebsch> Stepper<S> {
     #[cold]
     #[inline(never)]
     pub(crate) fn overflow(&self, next: &State<S>, lane: usize) -> Error {
-        let State { time, configuration, momentum, .. } = next;
+        let State { time, configuration, .. } = next;
         let name = if !configuration.finite().lane(lane) {
             "the configuration after the step"
         } else if !time.now().finite().lane(lane) {
@@ -90,7 +90,6 @@ impl<S: Clebsch> Stepper<S> {
         } else if !self.has_gradient(time.now(), configuration, lane) {
             "the gradient of the potential after the step"
         } else {
-            let _ = momentum;
             "the momentum after the step"
         };
         Error::NotFinite { name }
