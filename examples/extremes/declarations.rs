@@ -17,6 +17,14 @@ fn diagonal<T: Real>(moments: &[f64; 3]) -> Matrix3<T> {
     Matrix3::from_diagonal(&Vector3::from(*moments).map(T::from_f64))
 }
 
+/// The state of a body with the attitude and the momentum of the setup.
+fn at_attitude<T: Real, S>(setup: &Setup, stepper: &Stepper<S>) -> Result<State<S>, Error>
+where
+    S: Clebsch<Scalar = T, Configuration = Matrix3<T>, Momentum = Vector3<T>>,
+{
+    stepper.state(matrix(&setup.attitude), vector(&setup.momentum))
+}
+
 /// R row by row, then π.
 fn numbers_of_body<T: Real>(r: &Matrix3<T>, pi: &Vector3<T>) -> Vec<f64> {
     r.transpose().iter().chain(pi.iter()).map(|x| x.to_f64()).collect()
@@ -46,7 +54,7 @@ macro_rules! bodies {
                     Self { inertia: diagonal(&setup.moments) }
                 }
                 fn start(setup: &Setup, stepper: &Stepper<Self>) -> Result<State<Self>, Error> {
-                    stepper.state(matrix(&setup.attitude), vector(&setup.momentum))
+                    at_attitude(setup, stepper)
                 }
                 fn numbers(state: &State<Self>) -> Vec<f64> {
                     numbers_of_body(state.configuration(), state.momentum())
@@ -101,7 +109,7 @@ macro_rules! tops {
                     Self { inertia: diagonal(&setup.moments), weight: T::from_f64(setup.weight), center: vector(&setup.arm) }
                 }
                 fn start(setup: &Setup, stepper: &Stepper<Self>) -> Result<State<Self>, Error> {
-                    stepper.state(matrix(&setup.attitude), vector(&setup.momentum))
+                    at_attitude(setup, stepper)
                 }
                 fn numbers(state: &State<Self>) -> Vec<f64> {
                     numbers_of_body(state.configuration(), state.momentum())

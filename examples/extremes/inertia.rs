@@ -3,10 +3,10 @@
 use crate::declarations::bodies;
 use crate::map::{Map, SCALARS, outcome, size};
 use crate::probe::{Dial, Setup};
-use crate::rows::align;
 use crate::step_sizes::heading;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
 use nalgebra::Vector3;
 
 const SECTION: &str = "inertia";
@@ -60,7 +60,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
             }
             rows.push(row);
         }
-        say(align(&rows));
+        say(aligned(rows.iter()));
         let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
         let steps = STEPS as f64;
         claims.at_most(

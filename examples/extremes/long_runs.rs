@@ -2,12 +2,12 @@
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{SCALARS, size};
-use crate::parallel::in_parallel;
 use crate::probe::{Dial, Drift, Setup};
-use crate::rows::align;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
+use rayon::prelude::*;
 use std::path::Path;
 
 const COLOURS: [RGBColor; 7] = [BLUE, GREEN, ORANGE, RED, PURPLE, TEAL, INK];
@@ -38,8 +38,8 @@ pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result
     let marks: Vec<u64> = decades.flat_map(|count| [count, 3 * count]).filter(|&count| count <= steps).collect();
     let dials = dials();
     for (scalar, name) in SCALARS.into_iter().enumerate() {
-        let jobs = dials.iter().map(|dial| || dial.drift[scalar](&Setup::ordinary(), &marks));
-        let runs: Vec<_> = in_parallel(jobs.collect()).into_iter().collect::<Result<_, _>>()?;
+        let runs = dials.par_iter().map(|dial| dial.drift[scalar](&Setup::ordinary(), &marks));
+        let runs: Vec<Vec<Drift>> = runs.collect::<Result<_, _>>()?;
         say(format_args!(
             "Long runs, {name}: root mean square between {:.0e} and {:.0e} steps of h = {}, relative, and the exponent p of steps^p\n",
             marks[marks.len().saturating_sub(2)] as f64,
@@ -58,7 +58,7 @@ pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result
             claim(claims, dial, name, scalar, drifts);
             rows.push(row);
         }
-        say(align(&rows));
+        say(aligned(rows.iter()));
         draw(&dials, &runs, name, folder)?;
     }
     Ok(())

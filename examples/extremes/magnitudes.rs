@@ -6,9 +6,9 @@
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS, refusal};
 use crate::probe::{Cell, Dial, Setup};
-use crate::rows::align;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
 use std::f64::consts::LOG10_2;
 
 const SECTION: &str = "magnitude";
@@ -134,7 +134,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
             }
             rows.push(row);
         }
-        say(align(&rows));
+        say(aligned(rows.iter()));
         let least = [100, 8][scalar];
         for unit in Unit::ALL {
             let name = format!("magnitudes, {name}: {}", ["mass", "length", "time"][unit as usize]);

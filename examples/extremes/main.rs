@@ -8,12 +8,10 @@ mod inertia;
 mod long_runs;
 mod magnitudes;
 mod map;
-mod parallel;
 mod potentials;
 mod probe;
 mod random;
 mod random_states;
-mod rows;
 mod starts;
 mod step_sizes;
 

@@ -1,10 +1,10 @@
 //! Potentials that are singular, stiff, or move with the time.
 
 use crate::map::{refusal, size};
-use crate::rows::align;
 use clebsch::{Clebsch, Error};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
 use nalgebra::{SVector, Vector1, Vector3};
 use std::f64::consts::TAU;
 
@@ -136,7 +136,7 @@ fn near_collisions(claims: &mut Claims) {
         }
         rows.push(row);
     }
-    say(align(&rows));
+    say(aligned(rows.iter()));
     claims.at_most("potentials: numbers that are not finite", f64::from(hidden), 0.0, "each run ends or is refused");
     claims.at_most("potentials: angular momentum of ellipses", spin, 2000.0 * 16.0 * f64::EPSILON, "16 ε a step");
 }
@@ -185,7 +185,7 @@ fn stiff(claims: &mut Claims) {
             );
         }
     }
-    say(align(&rows));
+    say(aligned(rows.iter()));
 }
 
 /// The time goes on where a step is below its last place.
@@ -204,7 +204,7 @@ fn driven(claims: &mut Claims) -> Result<(), Failure> {
         worst = worst.max(off);
         rows.push(vec![format!("{start:e}"), format!("{off:.2}")]);
     }
-    say(align(&rows));
+    say(aligned(rows.iter()));
     claims.at_most("time of a late start", worst, 1.0, "units in the last place");
     Ok(())
 }

@@ -103,17 +103,17 @@ pub struct Cell {
 }
 
 impl Cell {
-    fn refused(error: Error) -> Self {
-        let [residual, energy, momentum, constraint, precise] = [f64::NAN; 5];
+    /// Before any step: `measured` stands for what is measured in steps.
+    fn new(outcome: Result<(), Error>, measured: f64) -> Self {
         Self {
-            outcome: Err(error),
+            outcome,
             steps: 0,
             iterations: 0,
-            residual,
-            energy,
-            momentum,
-            constraint,
-            precise,
+            residual: measured,
+            energy: measured,
+            momentum: measured,
+            constraint: measured,
+            precise: f64::NAN,
             last: Vec::new(),
         }
     }
@@ -138,8 +138,8 @@ pub struct Dial {
     pub name: &'static str,
     /// Runs in `f64` and in `f32`: setup, steps, whether beside 31 digits.
     pub run: [fn(&Setup, u64, bool) -> Cell; 2],
-    /// One step: the number of iterations, or the error.
-    pub step: [OneStep; 2],
+    /// One step in `f64`: the number of iterations, or the error.
+    pub step: OneStep,
     /// Errors between marks of a long run.
     pub drift: [LongRun; 2],
     /// One step from each of so many random states of a body, with a seed.
@@ -196,7 +196,7 @@ macro_rules! dial {
             scene: $scene,
             name: $name,
             run: $run,
-            step: [$crate::probe::one_step::<$double>, $crate::probe::one_step::<$single>],
+            step: $crate::probe::one_step::<$double>,
             drift: [$crate::probe::drift::<$double>, $crate::probe::drift::<$single>],
             sample: [$crate::probe::sample::<$double>, $crate::probe::sample::<$single>],
         }
@@ -241,7 +241,7 @@ fn run<S: Scene>(setup: &Setup, steps: u64) -> Cell {
     };
     let (stepper, start) = match begin() {
         Ok(begun) => begun,
-        Err(error) => return Cell::refused(error),
+        Err(error) => return Cell::new(Err(error), f64::NAN),
     };
     let mut watch = Watch::new(&stepper, &start);
     let mut state = start;
@@ -273,8 +273,7 @@ struct Watch {
 
 impl Watch {
     fn new<S: Scene>(stepper: &Stepper<S>, start: &State<S>) -> Self {
-        let mut cell = Cell::refused(Error::NoCovector);
-        (cell.outcome, cell.residual, cell.energy, cell.momentum, cell.constraint) = (Ok(()), 0.0, 0.0, 0.0, 0.0);
+        let cell = Cell::new(Ok(()), 0.0);
         let size = start.momentum().max_abs().to_f64();
         let energy = stepper.energy(start).to_f64();
         Self { cell, energy, conserved: S::conserved(stepper, start), size: if size > 0.0 { size } else { 1.0 } }

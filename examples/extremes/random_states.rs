@@ -2,13 +2,13 @@
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::SCALARS;
-use crate::parallel::in_parallel;
 use crate::probe::{Dial, Sample, Setup};
 use crate::random::Random;
-use crate::rows::align;
 use clebsch::implicit::LINEARIZATIONS;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
+use rayon::prelude::*;
 
 /// States of one body.
 const STATES: u64 = 10_000;
@@ -41,19 +41,16 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
     let dials = dials();
     let kinds: Vec<(usize, &Dial)> =
         (0..SCALARS.len()).flat_map(|scalar| dials.iter().map(move |dial| (scalar, dial))).collect();
-    let kinds = &kinds;
-    let jobs = kinds.iter().map(|&(scalar, dial)| {
-        move || {
-            let (mut random, mut sample) = (Random::new(64), Sample::default());
-            let states = states / kinds.iter().filter(|(_, other)| other.scene == dial.scene).count() as u64;
-            for number in 0..states.div_ceil(STATES) {
-                let setup = body(&mut random);
-                dial.sample[scalar](&setup, STATES.min(states), number, &mut sample);
-            }
-            sample
+    let samples = kinds.par_iter().map(|&(scalar, dial)| {
+        let (mut random, mut sample) = (Random::new(64), Sample::default());
+        let states = states / kinds.iter().filter(|(_, other)| other.scene == dial.scene).count() as u64;
+        for number in 0..states.div_ceil(STATES) {
+            let setup = body(&mut random);
+            dial.sample[scalar](&setup, STATES.min(states), number, &mut sample);
         }
+        sample
     });
-    let samples = in_parallel(jobs.collect());
+    let samples: Vec<Sample> = samples.collect();
     say(format_args!(
         "Random states, {states:e} of each scene: bodies of moments of a ratio up to 1000, h|ω| from 1e-8 to 10, any attitude and direction. How many steps take so many iterations\n"
     ));
@@ -95,7 +92,7 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
         most_refused = most_refused.max(sample.most_refused);
         hidden += sample.hidden;
     }
-    say(align(&rows));
+    say(aligned(rows.iter()));
     claims.at_most(
         "random states: iterations of a step",
         f64::from(most),

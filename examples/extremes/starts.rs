@@ -3,10 +3,10 @@
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS, outcome, size};
 use crate::probe::{Cell, Dial, Setup};
-use crate::rows::align;
 use crate::step_sizes::heading;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
 use nalgebra::{Matrix3, Vector3};
 
 const SECTION: &str = "start";
@@ -103,7 +103,7 @@ fn table(
         }
         rows.push(row);
     }
-    say(align(&rows));
+    say(aligned(rows.iter()));
     let all = format!("starts, {}, {name}", dials[0].scene);
     claims.holds(
         &all,

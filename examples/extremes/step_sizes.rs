@@ -8,6 +8,7 @@ use clebsch::Error;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
 use clebsch_examples::scene::{Failure, say};
+use clebsch_examples::table::aligned;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -85,7 +86,7 @@ fn table(map: &mut Map<'_>, dials: &[Dial], scalar: usize, folder: Option<&Path>
         }
         rows.push(row);
     }
-    say(crate::rows::align(&rows));
+    say(aligned(rows.iter()));
     if scalar == 0 {
         draw(dials, curves, folder)?;
     }
@@ -138,7 +139,7 @@ fn last_ringed(points: &[(f64, f64)]) -> Vec<bool> {
 fn bound(dial: &Dial, setup: &Setup) -> Option<f64> {
     let refused = |angle: f64| {
         let h = angle / setup.velocity().norm();
-        let step = dial.step[0](&Setup { h, ..setup.clone() });
+        let step = (dial.step)(&Setup { h, ..setup.clone() });
         matches!(step, Err(Error::Unsolvable { .. } | Error::NotConverged { .. }))
     };
     let (mut low, mut high) = (1e-3, 1e3);
@@ -193,7 +194,7 @@ fn bounds(claims: &mut Claims, count: u32) {
             _ => {}
         }
     }
-    say(crate::rows::align(&rows));
+    say(aligned(rows.iter()));
 }
 
 /// The solution for s times the momentum, s from 0 to 1, is one curve: no step changes its branch.

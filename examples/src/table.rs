@@ -22,18 +22,26 @@ impl<const N: usize> Table<N> {
 
 impl<const N: usize> Display for Table<N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let lines = || std::iter::once(&self.headings).chain(&self.rows);
-        let widths: [usize; N] =
-            std::array::from_fn(|column| lines().map(|line| line[column].chars().count()).max().unwrap_or(0));
-        for line in lines() {
-            let mut text = String::new();
-            for (column, (cell, width)) in line.iter().zip(widths).enumerate() {
-                text += &if column == 0 { format!("{cell:<width$}") } else { format!("   {cell:>width$}") };
-            }
-            writeln!(f, "  {}", text.trim_end())?;
-        }
-        Ok(())
+        f.write_str(&aligned(std::iter::once(&self.headings).chain(&self.rows)))
     }
+}
+
+/// Lines of texts in columns, the first to the left, the others to the right; for tables whose number of columns is found as they are made.
+pub fn aligned<R: AsRef<[String]>>(lines: impl Iterator<Item = R>) -> String {
+    let lines: Vec<R> = lines.collect();
+    let columns = lines.iter().map(|line| line.as_ref().len()).max().unwrap_or(0);
+    let cells = |column: usize| lines.iter().filter_map(move |line| line.as_ref().get(column));
+    let widths: Vec<usize> =
+        (0..columns).map(|column| cells(column).map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();
+    let mut text = String::new();
+    for line in &lines {
+        let mut words = String::new();
+        for (column, (cell, &width)) in line.as_ref().iter().zip(&widths).enumerate() {
+            words += &if column == 0 { format!("{cell:<width$}") } else { format!("   {cell:>width$}") };
+        }
+        text += &format!("  {}\n", words.trim_end());
+    }
+    text
 }
 
 #[cfg(test)]
