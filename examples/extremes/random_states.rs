@@ -102,8 +102,8 @@ pub fn explore(claims: &mut Claims, states: u64) -> Result<(), Failure> {
     claims.at_most(
         "random states: iterations of a step that is refused",
         f64::from(most_refused),
-        f64::from((TRIALS + 1) * ITERATIONS),
-        "those of the step, and of the trials for the longest one that would do",
+        f64::from((TRIALS + 2) * ITERATIONS),
+        "those of the step, made twice for the error, and of the trials for the longest one that would do",
     );
     claims.at_most("random states: numbers that are not finite", hidden as f64, 0.0, "in steps that were made");
     Ok(())

@@ -20,7 +20,10 @@ pub use crate::implicit::{
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::opaque::check_slope;
-pub use crate::orbit::{largest, length_defect, of_length_one, orientation_defect, orthogonal, orthogonality_defect};
+pub use crate::orbit::{
+    largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
+    orthogonal_with_rest, orthogonality_defect,
+};
 pub use crate::parameters::{
     annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
 };

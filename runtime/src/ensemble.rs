@@ -136,7 +136,7 @@ impl<S: Clebsch> Ensemble<S> {
         for (group, chunks) in self.chunks.chunks_mut(chunk::TOGETHER).enumerate() {
             chunk::advance(chunks, from(&self.steppers, group * chunk::TOGETHER), self.steps, steps);
         }
-        self.steps += steps;
+        self.steps = self.steps.saturating_add(steps);
     }
 
     /// The number of bodies.
@@ -149,7 +149,7 @@ impl<S: Clebsch> Ensemble<S> {
         self.bodies == 0
     }
 
-    /// The number of steps that have been made.
+    /// The number of steps that have been made, at most 2⁶⁴ − 1.
     pub fn steps(&self) -> u64 {
         self.steps
     }

@@ -2,6 +2,7 @@
 
 use crate::linear::{Orientation, rows};
 use crate::space::{lane_of, larger};
+use crate::summation::accumulate;
 use crate::{Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -43,43 +44,103 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]
 pub fn orthogonal<T: Scalar, const N: usize>(r: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    let square = r.row_iter().fold(T::zero(), |sum, row| {
-        let along = row.iter().fold(T::zero(), |along, &entry| along + entry);
-        sum + along * along
-    });
-    let expected = T::from_ratio(N as i64, 1);
-    let is_off = (T::from_ratio(8, 1) * T::EPSILON * expected).below((square - expected).abs());
+    let is_off = is_off_rotations(&r);
     if !is_off.any() {
         return r;
     }
     // a copy: what is handed on by reference would be kept in memory at every step
     let moved = r;
-    orthogonalised(&moved, is_off)
+    let change = to_rotations(&moved, &SMatrix::zeros());
+    r.zip_map(&change, |entry, change| T::select(is_off, entry + change, entry))
 }
 
-/// R(3I − RᵀR)/2 in the lanes of the mask.
+/// The same for R + δ, where δ is what sums have left: the correction is added as the step was, and its rest is left in turn.
+#[inline(always)]
+pub fn orthogonal_with_rest<T: Scalar, const N: usize>(
+    r: SMatrix<T, N, N>,
+    rest: SMatrix<T, N, N>,
+) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+    let is_off = is_off_rotations(&r);
+    if !is_off.any() {
+        return (r, rest);
+    }
+    let (moved, left) = (r, rest);
+    accumulate_where(is_off, r, rest, to_rotations(&moved, &left))
+}
+
+/// The lanes in which |Re|² is off N by more than 8Nε.
+#[inline(always)]
+fn is_off_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T::Mask {
+    let square = r.row_iter().fold(T::zero(), |sum, row| {
+        let along = row.iter().fold(T::zero(), |along, &entry| along + entry);
+        sum + along * along
+    });
+    let expected = T::from_ratio(N as i64, 1);
+    (T::from_ratio(8, 1) * T::EPSILON * expected).below((square - expected).abs())
+}
+
+/// R(I − RᵀR − Rᵀδ − δᵀR)/2, what takes R + δ to the rotation next to it.
 #[cold]
 #[inline(never)]
-fn orthogonalised<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, is_off: T::Mask) -> SMatrix<T, N, N> {
-    let half = T::from_ratio(1, 2);
-    // (I − RᵀR)/2, of the size of the defect
+fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    // of the size of the defect
     let missing = SMatrix::<T, N, N>::from_fn(|i, j| {
         let start = if i == j { T::one() } else { T::zero() };
-        (0..N).fold(start, |sum, k| sum - r[(k, i)] * r[(k, j)]) * half
+        let of_sums = (0..N).fold(start, |sum, k| sum - r[(k, i)] * r[(k, j)]);
+        let of_rests = (0..N).fold(T::zero(), |sum, k| sum + r[(k, i)] * rest[(k, j)] + rest[(k, i)] * r[(k, j)]);
+        (of_sums - of_rests) * T::from_ratio(1, 2)
     });
-    SMatrix::from_fn(|i, j| {
-        let change = (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]);
-        T::select(is_off, r[(i, j)] + change, r[(i, j)])
-    })
+    SMatrix::from_fn(|i, j| (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]))
+}
+
+/// `sum` + `change` with the rest, in the lanes of the mask.
+fn accumulate_where<T: Scalar, const R: usize, const C: usize>(
+    mask: T::Mask,
+    sum: SMatrix<T, R, C>,
+    rest: SMatrix<T, R, C>,
+    change: SMatrix<T, R, C>,
+) -> (SMatrix<T, R, C>, SMatrix<T, R, C>) {
+    let (changed, left) = accumulate::<T, _>(&sum, &rest, &change);
+    let select = |yes: T, no: T| T::select(mask, yes, no);
+    (changed.zip_map(&sum, select), left.zip_map(&rest, select))
 }
 
 /// q, brought back to length one by q(3 − |q|²)/2 where rounding has moved |q|² off by more than 8ε. See [`orthogonal`].
 #[inline(always)]
 pub fn of_length_one<T: Scalar, const N: usize>(q: SVector<T, N>) -> SVector<T, N> {
     let half = T::from_ratio(1, 2);
-    let missing = q.iter().fold(T::one(), |sum, &x| sum - x * x);
-    let is_off = (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs());
+    let missing = short_of_one(&q);
+    let is_off = is_off_length_one(missing);
     if is_off.any() { q.map(|x| T::select(is_off, x + x * (half * missing), x)) } else { q }
+}
+
+/// The same for q + δ, see [`orthogonal_with_rest`].
+#[inline(always)]
+pub fn of_length_one_with_rest<T: Scalar, const N: usize>(
+    q: SVector<T, N>,
+    rest: SVector<T, N>,
+) -> (SVector<T, N>, SVector<T, N>) {
+    let missing = short_of_one(&q);
+    let is_off = is_off_length_one(missing);
+    if !is_off.any() {
+        return (q, rest);
+    }
+    // half of 1 − |q|² − 2 q·δ
+    let along = q.zip_fold(&rest, T::zero(), |sum, x, left| sum + x * left);
+    let scale = missing * T::from_ratio(1, 2) - along;
+    accumulate_where(is_off, q, rest, q.map(|x| x * scale))
+}
+
+/// 1 − |q|².
+#[inline(always)]
+fn short_of_one<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
+    q.iter().fold(T::one(), |sum, &x| sum - x * x)
+}
+
+/// The lanes in which |q|² is off one by more than 8ε.
+#[inline(always)]
+fn is_off_length_one<T: Scalar>(missing: T) -> T::Mask {
+    (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs())
 }
 
 /// The largest of the sizes of some numbers; 0 for none, NaN where one of them is.
@@ -117,6 +178,33 @@ mod tests {
         }
         assert!(orthogonal(rotation.map(|_| f64::NAN)).iter().all(|entry| entry.is_nan()));
         assert_eq!(of_length_one(Vector3::<f64>::y()), Vector3::y());
+    }
+
+    /// R + δ and q + δ come back as exactly as R and q do, though δ is counted apart; what is on its space keeps its rest.
+    #[test]
+    fn rests_are_brought_back_too() {
+        let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+        let direction = Matrix3::new(1.0, 0.5, -0.25, 0.75, 1.0, 0.5, -1.0, 0.25, 0.5);
+        for defect in [1e-13, 1e-8, 1e-4] {
+            // a rest of the size of the defect: what rounding leaves is too small to be seen
+            let (r, rest) = (rotation + direction * defect, direction.transpose() * defect);
+            let svd = (r + rest).svd(true, true);
+            let nearest = svd.u.expect("asked for") * svd.v_t.expect("asked for");
+            let (r, rest) = orthogonal_with_rest(r, rest);
+            let error = (r + rest - nearest).amax();
+            assert!(error <= 16.0 * defect * defect + 4.0 * f64::EPSILON, "{defect:e}: {error:e}");
+            assert!(rest.amax() <= f64::EPSILON / 2.0, "{rest}");
+
+            let (q, rest) = (Vector3::new(0.6, 0.0, -0.8) * (1.0 + defect), Vector3::new(0.25, 0.5, -0.5) * defect);
+            let (q, rest) = of_length_one_with_rest(q, rest);
+            let error = ((q + rest).norm() - 1.0).abs();
+            assert!(error <= 4.0 * defect * defect + 2.0 * f64::EPSILON, "{defect:e}: {error:e}");
+            assert!(rest.amax() <= f64::EPSILON / 2.0, "{rest}");
+        }
+        let rest = direction * 1e-17;
+        assert_eq!(orthogonal_with_rest(rotation, rest), (rotation, rest));
+        let rest = Vector3::repeat(1e-17);
+        assert_eq!(of_length_one_with_rest(Vector3::y(), rest), (Vector3::y(), rest));
     }
 
     #[test]

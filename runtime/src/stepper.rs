@@ -88,12 +88,15 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        let next = match self.attempt(state, u) {
-            Ok(next) => next,
-            Err(error) => return Err(self.refused(state, u, error)),
+        // copies: what is handed on by reference would be kept in memory at every step; and without the error, with which the numbers of a step that
+        // succeeds would be read by halves
+        let Ok(next) = self.attempt(state, u) else {
+            let (before, u) = (*state, *u);
+            return Err(self.refused(&before, &u));
         };
         if !next.is_finite() {
-            return Err(self.beyond(&next));
+            let reached = next;
+            return Err(self.beyond(&reached));
         }
         Ok(next)
     }
@@ -162,10 +165,15 @@ impl<S: Clebsch> Stepper<S> {
         }
     }
 
-    /// The error of a step that no lane can make.
+    /// The error of a step that no lane can make, which is tried once more for it.
     #[cold]
-    fn refused(&self, state: &State<S>, u: &S::Input, error: Error) -> Error {
-        if S::Scalar::LANES == 1 { self.refusal(state, u, 0, error) } else { Error::InLane { lane: 0 } }
+    #[inline(never)]
+    fn refused(&self, state: &State<S>, u: &S::Input) -> Error {
+        match self.attempt(state, u) {
+            Err(error) if S::Scalar::LANES == 1 => self.refusal(state, u, 0, error),
+            // by construction an error: the same step has the same result
+            _ => Error::InLane { lane: 0 },
+        }
     }
 
     /// The error of a step whose state is not finite in some lane.

@@ -98,7 +98,7 @@ impl<S: Clebsch> Chunk<S> {
 /// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
 #[inline]
 pub fn advance<S: Clebsch>(chunks: &mut [Chunk<S>], steppers: &[Stepper<S>], first: u64, steps: u64) {
-    let numbers = first..first + steps;
+    let numbers = first..first.saturating_add(steps);
     match steppers {
         [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
         each => {

@@ -22,6 +22,6 @@ where
         self.chunks.par_chunks_mut(chunk::TOGETHER).enumerate().with_min_len(SHARE).for_each(|(group, chunks)| {
             chunk::advance(chunks, super::from(steppers, group * chunk::TOGETHER), first, steps);
         });
-        self.steps += steps;
+        self.steps = self.steps.saturating_add(steps);
     }
 }

@@ -204,3 +204,13 @@ fn bodies_have_their_times() {
     assert_eq!(bobs.set_body(1, bob(1.0)), Ok(()));
     assert_eq!(bobs.time(1), Some(2.0));
 }
+
+/// An ensemble of none makes its steps at once, and counts as far as it can.
+#[test]
+fn steps_are_counted_up_to_the_largest_number() {
+    let mut none = Ensemble::new(stepper::<F64x4>(), []).expect("no bodies");
+    none.advance(u64::MAX);
+    none.advance(2);
+    none.par_advance(3);
+    assert_eq!((none.steps(), none.len()), (u64::MAX, 0));
+}

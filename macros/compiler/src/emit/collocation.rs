@@ -151,7 +151,7 @@ impl Emitter<'_, '_> {
                 quote!(let q = #sum;)
             }
         };
-        let on_spaces = if self.is_compensated() { quote!() } else { self.kept_on_spaces() };
+        let on_spaces = self.kept_on_spaces();
         let unused = (!self.is_compensated()).then(|| quote!(let _ = impulse;));
         quote! {
             /// (q, N) ↦ (q⁺, N⁺), where N⁺ − N = J(q⁺, p⁺) − J(q, p) is made of the changes of q and p at the middle of the step.

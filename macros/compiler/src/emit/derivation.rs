@@ -280,9 +280,6 @@ fn scheme(program: &Program<'_>) -> String {
 
 /// What keeps configurations on their spaces.
 fn spaces(program: &Program<'_>) -> String {
-    if program.formulas.is_compensated() {
-        return String::new();
-    }
     let is = |which: fn(&Space) -> bool| program.formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
     let rotations = is(|space| matches!(space, Space::Group(group) if group.is_orthogonal()));
     let lengths = is(|space| matches!(space, Space::Unit | Space::Group(Group::UnitQuaternions)));

@@ -100,7 +100,7 @@ impl Emitter<'_, '_> {
             quote!(#private::#kind::motion(&self.constants.#name, &#target))
         });
         let step = &self.program.steps[0];
-        let (found, advanced) = (self.found_by_kept(step), self.advanced(step));
+        let (found, advanced, kept_on_spaces) = (self.found_by_kept(step), self.advanced(step), self.kept_on_spaces());
         let updated = step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d))));
         let (left, rests) = (self.left_type(), self.rests_taken(&format_ident!("kept")));
         let state = self.state_of_drifts(&quote!(q), &quote!(mu));
@@ -125,6 +125,7 @@ impl Emitter<'_, '_> {
                     #found
                     #advanced
                     #updated
+                    #kept_on_spaces
                     state = #state;
                 }
                 let #state = state;
@@ -173,6 +174,7 @@ impl Emitter<'_, '_> {
         let (advanced, updated) =
             (self.advanced(step), step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d)))));
         let (state, advanced_plainly) = (self.state_of_drifts(&quote!(q), &quote!(mu)), self.advanced_plainly(step));
+        let kept_on_spaces = self.kept_on_spaces();
         let rests = self.rests_type();
         let state_type = match self.is_compensated() {
             true => quote!((#configuration, #momentum, #rests)),
@@ -202,6 +204,7 @@ impl Emitter<'_, '_> {
                 #increment
                 #advanced
                 #updated
+                #kept_on_spaces
                 ::core::result::Result::Ok(#state)
             }
             /// (q, p) ↦ (q⁺, p⁺) by the same.

@@ -10,8 +10,8 @@ use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
 
-/// The most operations of a step that is inlined wherever it is called.
-const SHORT_STEP: usize = 128;
+/// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
+const SHORT_STEP: usize = 192;
 
 impl Emitter<'_, '_> {
     /// The struct `Step` and its methods.
@@ -309,6 +309,7 @@ impl Emitter<'_, '_> {
         let euler_poincare = self.stepped().map(|(index, step)| self.euler_poincare(index, step));
         let (next_impulse, symmetric, kept) = (self.next_impulse(), self.symmetric(), self.kept_steps());
         let (rests, left) = (self.rests_taken(&format_ident!("impulse")), self.with_rests(quote!(impulse)));
+        let kept_on_spaces = self.kept_on_spaces();
         quote! {
             #kept
             /// (q, N) ↦ (q⁺, N⁺): kick, solve for the group element, move, kick.
@@ -325,20 +326,20 @@ impl Emitter<'_, '_> {
                 #rests
                 #(#euler_poincare)*
                 #next_impulse
+                #kept_on_spaces
                 ::core::result::Result::Ok((q, mu, #left))
             }
             #symmetric
         }
     }
 
-    /// How a step is inlined: a short one always, as a call hands states through memory.
+    /// How a step is inlined: a short one always, as a call hands states through memory. What iterates is a call.
     pub(super) fn inline_of_steps(&self) -> TokenStream {
         let is_single = self.program.formulas.parts == 1
             && self.program.formulas.stages().is_none()
             && self.program.collocation.is_none();
-        let cost = self.program.steps.first().filter(|_| is_single).and_then(StepKernels::explicit_cost);
-        match cost {
-            Some(cost) if cost.total() <= SHORT_STEP => quote!(#[inline(always)]),
+        match self.program.steps.first().map(StepKernels::cost_of_moves) {
+            Some(cost) if is_single && cost.total() <= SHORT_STEP => quote!(#[inline(always)]),
             _ => quote!(#[inline]),
         }
     }

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Group;
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::{Emitter, code};
 use crate::lower::StepKernels;
@@ -47,41 +47,50 @@ impl Emitter<'_, '_> {
         quote!(let (mu, mu_rest) = #private::accumulate::<#scalar, _>(&mu, &mu_rest, #increment);)
     }
 
-    /// The move of q, by the increments or by the chart coordinates.
+    /// The move of q, by the increments or by the chart coordinates, before a look at its rounding.
     pub(super) fn advanced(&self, step: &StepKernels) -> TokenStream {
         let (private, scalar, moved) = (&self.paths.private, &self.paths.scalar, self.moved(step));
-        let kept = self.kept_on_spaces();
         match self.is_compensated() {
-            // rounding of what is compensated is a hundredth
             true => quote!(let (q, q_rest) = #private::accumulate::<#scalar, _>(&q, &q_rest, &#moved);),
-            false => quote!(let q = #moved; #kept),
+            false => quote!(let q = #moved;),
         }
     }
 
-    /// The same where no rests are kept, without a look at the rounding of q: the step on T*Q is symplectic in all directions of T*Rⁿ.
+    /// The same where no rests are kept. None is ever taken off: the step on T*Q is symplectic in all directions of T*Rⁿ.
     pub(super) fn advanced_plainly(&self, step: &StepKernels) -> TokenStream {
         let moved = self.moved_to(self.moved(step));
         quote!(let q = #moved;)
     }
 
-    /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions; nothing where there are none.
+    /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions; nothing where there are none. The last that a step does: nothing
+    /// else waits for it, nor is kept beside it.
     pub(super) fn kept_on_spaces(&self) -> TokenStream {
-        let private = &self.paths.private;
         let leaves = self.model.configurations.iter().filter_map(|leaf| {
             let access = code::accessor(&leaf.accessor);
             match leaf.space {
-                Space::Group(Group::UnitQuaternions) => {
-                    Some(quote!(q #access.coords = #private::of_length_one(q #access.coords);))
-                }
-                Space::Group(group) if group.is_orthogonal() => {
-                    Some(quote!(q #access = #private::orthogonal(q #access);))
-                }
-                Space::Unit => Some(quote!(q #access = #private::of_length_one(q #access);)),
+                Space::Group(Group::UnitQuaternions) => Some(self.kept("of_length_one", &quote!(#access.coords))),
+                Space::Group(group) if group.is_orthogonal() => Some(self.kept("orthogonal", &access)),
+                Space::Unit => Some(self.kept("of_length_one", &access)),
                 Space::Vectors | Space::Group(_) => None,
             }
         });
         let leaves: Vec<_> = leaves.collect();
-        if leaves.is_empty() { TokenStream::new() } else { quote!(let mut q = q; #(#leaves)*) }
+        match (leaves.is_empty(), self.is_compensated()) {
+            (true, _) => TokenStream::new(),
+            (false, true) => quote!(let (mut q, mut q_rest) = (q, q_rest); #(#leaves)*),
+            (false, false) => quote!(let mut q = q; #(#leaves)*),
+        }
+    }
+
+    fn kept(&self, function: &str, access: &TokenStream) -> TokenStream {
+        let private = &self.paths.private;
+        if self.is_compensated() {
+            let function = format_ident!("{function}_with_rest");
+            quote!((q #access, q_rest #access) = #private::#function(q #access, q_rest #access);)
+        } else {
+            let function = format_ident!("{function}");
+            quote!(q #access = #private::#function(q #access);)
+        }
     }
 
     /// q⁺ of what the kernel of the move gives: itself, or what is added to q.

@@ -106,11 +106,8 @@ impl StepKernels {
         self.displace.is_none() || self.update.is_some()
     }
 
-    /// The operations of a step, unless it iterates.
-    pub fn explicit_cost(&self) -> Option<Cost> {
-        if !self.solves.iter().all(|solve| matches!(solve.solution, Solution::Explicit | Solution::ClosedForm)) {
-            return None;
-        }
+    /// The operations of a step apart from those of iterations.
+    pub fn cost_of_moves(&self) -> Cost {
         let solves = self.solves.iter().flat_map(|solve| solve.predict.iter().chain(&solve.sine_squared));
         let kicks = [&self.start, &self.end, &self.start_force, &self.end_force, &self.update].into_iter().flatten();
         let moves = match &self.displace {
@@ -119,7 +116,7 @@ impl StepKernels {
         };
         let increment = self.makes_increments().then_some(&self.increment);
         let kernels = solves.chain(kicks).chain(increment).chain([moves]);
-        Some(kernels.map(Kernel::cost).fold(Cost::default(), Cost::plus))
+        kernels.map(Kernel::cost).fold(Cost::default(), Cost::plus)
     }
 }
 
