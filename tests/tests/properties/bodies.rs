@@ -47,6 +47,7 @@ pub fn particles() -> BoxedStrategy<PulledParticle> {
     numbers.prop_map(particle).boxed()
 }
 
+/// Tops, their masses near one.
 pub fn tops() -> BoxedStrategy<WatchedTop> {
     (vector::<3>(0.5), 0.1_f64..3.0)
         .prop_map(|(mass, weight)| WatchedTop { mass: mass.add_scalar(1.0), weight })
@@ -58,27 +59,32 @@ pub fn inertia_of(top: &WatchedTop) -> Matrix3<f64> {
     Matrix3::from_diagonal(&(-top.mass).add_scalar(top.mass.sum()))
 }
 
+/// Pendulums of various masses and lengths.
 pub fn pendulums() -> BoxedStrategy<SphericalPendulum> {
     let numbers = (0.5_f64..2.0, 0.5_f64..2.0, 0.1_f64..3.0);
     numbers.prop_map(|(mass, length, gravity)| SphericalPendulum { mass, length, gravity }).boxed()
 }
 
+/// Vehicles with inertia of their own in every direction.
 pub fn vehicles() -> BoxedStrategy<UnderwaterVehicle> {
     let numbers = (definite::<6>(), 0.1_f64..3.0, vector(1.0));
     numbers.prop_map(|(inertia, weight, center)| UnderwaterVehicle { inertia, weight, center }).boxed()
 }
 
+/// Satellites on circular orbits.
 pub fn satellites() -> BoxedStrategy<GravityGradient> {
     (definite::<3>(), 0.1_f64..1.0)
         .prop_map(|(inertia, orbital_rate)| GravityGradient { inertia, orbital_rate })
         .boxed()
 }
 
+/// Tops in steps of order 1.
 pub fn staggered_tops() -> BoxedStrategy<FirstOrderTop> {
     let numbers = (definite::<3>(), 0.1_f64..3.0, vector(1.0));
     numbers.prop_map(|(mass_matrix, weight, center)| FirstOrderTop { mass_matrix, weight, center }).boxed()
 }
 
+/// Bodies with torques that damp and others that are put in.
 pub fn damped_bodies() -> BoxedStrategy<DampedBody> {
     (definite::<3>(), 0.0_f64..1.0).prop_map(|(inertia, damping)| DampedBody { inertia, damping }).boxed()
 }

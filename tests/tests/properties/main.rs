@@ -2,15 +2,16 @@
 
 #![allow(missing_docs)]
 
-mod algebra;
 mod arbitrary;
 mod bodies;
 mod derivatives;
 mod ensembles;
 mod equations;
 mod formulas;
+mod matrices;
 mod mentions;
 mod paths;
+mod places;
 mod plans;
 mod public;
 mod rotations;

@@ -1,9 +1,10 @@
 //! The public functions of the runtime, read from its sources: those of exported types and traits, and those that generated code names.
 
 use crate::mentions::words;
+use quote::ToTokens;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use syn::{ImplItem, Item, ItemImpl, ItemMacro, ItemTrait, TraitItem, Type, UseTree, Visibility};
+use syn::{ImplItem, Item, ItemImpl, ItemMacro, Signature, TraitItem, Type, UseTree, Visibility};
 
 /// A module, or what is declared in one, by the names on the way to it; `[]` is the crate.
 type Place = Vec<String>;
@@ -89,28 +90,88 @@ impl Sources {
         }
     }
 
-    /// What the crate and its public modules declare and re-export.
+    /// The types, traits and functions that a caller comes by: what is exported, and what the signatures of that name in turn.
     fn reachable(&self) -> BTreeSet<Place> {
+        let mut reachable = self.exported();
+        loop {
+            let known = reachable.len();
+            let named: Vec<Place> = self.0.keys().flat_map(|place| self.named_by(place, &reachable)).collect();
+            reachable.extend(named);
+            if reachable.len() == known {
+                return reachable;
+            }
+        }
+    }
+
+    /// What the crate and its public modules declare and re-export.
+    fn exported(&self) -> BTreeSet<Place> {
         let declared = self.0[&vec![]].items.iter().filter(|item| is_public_module(item)).filter_map(name_of_module);
-        let mut reachable = BTreeSet::new();
+        let mut exported = BTreeSet::new();
         for place in declared.map(|name| vec![name]).chain([vec![]]) {
             let module = &self.0[&place];
-            reachable.extend(module.items.iter().filter_map(public_name).map(|name| within(&place, &name)));
-            reachable.extend(module.exports.iter().map(|path| self.origin(path)));
+            exported.extend(module.items.iter().filter_map(public_name).map(|name| within(&place, &name)));
+            exported.extend(module.exports.iter().map(|path| self.origin(path)));
         }
-        reachable
+        exported
+    }
+
+    /// The public types and traits in the signatures of what is reachable in a module.
+    fn named_by(&self, place: &Place, reachable: &BTreeSet<Place>) -> Vec<Place> {
+        let signatures = self.reachable_in(place, reachable).flat_map(signatures);
+        let types = signatures.flat_map(|signature| words(signature.to_token_stream()));
+        let types = types.filter(|word| word.starts_with(char::is_uppercase));
+        types.map(|word| self.origin(&within(place, &word))).filter(|path| self.declares(path)).collect()
+    }
+
+    fn declares(&self, path: &Place) -> bool {
+        let Some((name, place)) = path.split_last() else { return false };
+        let module = self.0.get(place);
+        module.is_some_and(|module| module.items.iter().filter_map(public_name).any(|own| own == *name))
+    }
+
+    fn reachable_in<'a>(&'a self, place: &'a Place, reachable: &'a BTreeSet<Place>) -> impl Iterator<Item = &'a Item> {
+        let is_reachable = |name: &str| reachable.contains(&self.origin(&within(place, name)));
+        self.0[place].items.iter().filter(move |item| match item {
+            Item::Fn(function) => is_reachable(&function.sig.ident.to_string()),
+            Item::Trait(item) => is_reachable(&item.ident.to_string()),
+            Item::Impl(block) => is_reachable(&name_of_type(block)),
+            item => matches!(item, Item::Macro(_)),
+        })
     }
 
     fn functions_of(&self, place: &Place, reachable: &BTreeSet<Place>) -> Vec<String> {
-        let is_reachable = |name: &str| reachable.contains(&self.origin(&within(place, name)));
-        let functions = self.0[place].items.iter().flat_map(|item| match item {
-            Item::Fn(function) if is_reachable(&function.sig.ident.to_string()) => vec![function.sig.ident.to_string()],
-            Item::Trait(item) if is_reachable(&item.ident.to_string()) => methods_of_trait(item),
-            Item::Impl(block) if is_reachable(&name_of_type(block)) => public_methods(block),
-            Item::Macro(written) => methods_of_macro(written),
-            _ => vec![],
+        let names = self.reachable_in(place, reachable).flat_map(|item| {
+            let methods = signatures(item).into_iter().map(|signature| signature.ident.to_string());
+            match item {
+                Item::Macro(written) => methods_of_macro(written),
+                Item::Trait(item) => methods.map(|method| format!("{}::{method}", item.ident)).collect(),
+                Item::Impl(block) => methods.map(|method| format!("{}::{method}", name_of_type(block))).collect(),
+                _ => methods.collect(),
+            }
         });
-        functions.collect()
+        names.collect()
+    }
+}
+
+/// The signature of a function, those of the methods of a trait, or of the public ones of a type.
+fn signatures(item: &Item) -> Vec<&Signature> {
+    match item {
+        Item::Fn(function) => vec![&function.sig],
+        Item::Trait(item) => {
+            let methods = item.items.iter().filter_map(|inner| match inner {
+                TraitItem::Fn(method) => Some(&method.sig),
+                _ => None,
+            });
+            methods.collect()
+        }
+        Item::Impl(block) => {
+            let methods = block.items.iter().filter_map(|inner| match inner {
+                ImplItem::Fn(method) if matches!(method.vis, Visibility::Public(_)) => Some(&method.sig),
+                _ => None,
+            });
+            methods.collect()
+        }
+        _ => vec![],
     }
 }
 
@@ -142,14 +203,6 @@ fn public_name(item: &Item) -> Option<String> {
     matches!(visibility, Visibility::Public(_)).then(|| name.to_string())
 }
 
-fn methods_of_trait(item: &ItemTrait) -> Vec<String> {
-    let methods = item.items.iter().filter_map(|inner| match inner {
-        TraitItem::Fn(method) => Some(format!("{}::{}", item.ident, method.sig.ident)),
-        _ => None,
-    });
-    methods.collect()
-}
-
 /// The last name of the type that has these methods; `""` for those of a trait.
 fn name_of_type(block: &ItemImpl) -> String {
     match &*block.self_ty {
@@ -158,14 +211,6 @@ fn name_of_type(block: &ItemImpl) -> String {
         }
         _ => String::new(),
     }
-}
-
-fn public_methods(block: &ItemImpl) -> Vec<String> {
-    let methods = block.items.iter().filter_map(|item| match item {
-        ImplItem::Fn(method) if matches!(method.vis, Visibility::Public(_)) => Some(method.sig.ident.to_string()),
-        _ => None,
-    });
-    methods.map(|method| format!("{}::{method}", name_of_type(block))).collect()
 }
 
 /// What follows `pub fn` or `pub const fn` in the tokens of a macro.

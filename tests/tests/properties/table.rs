@@ -6,6 +6,10 @@ pub type Property = (&'static str, &'static [&'static str]);
 /// The properties of each file.
 #[rustfmt::skip]
 pub const PROPERTIES: &[(&str, &[Property])] = &[
+    ("runtime/src/composition.rs", &[
+        ("impulses_scale_with_their_steps",        &["Impulse::scaled"]),
+        ("slopes_are_those_along_the_whole_step",  &["Stage::slopes"]),
+    ]),
     ("runtime/src/double_double/tests.rs", &[
         ("pairs_are_unevaluated_sums", &["DoubleDouble::new", "DoubleDouble::parts"]),
     ]),
@@ -18,28 +22,6 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("runtime/src/lanes/tests.rs", &[
         ("operations_are_those_of_single_numbers", &["Scalar::select", "Scalar::sqrt", "Scalar::from_lanes"]),
-    ]),
-    ("tests/tests/properties/algebra.rs", &[
-        ("linear_systems_are_solved_backward_stably",    &["solve_dense", "Orientation::of"]),
-        ("symmetric_systems_are_solved_backward_stably", &["solve_symmetric"]),
-        ("inverses_undo",                                &["invert", "inverse"]),
-        ("exponentials_are_their_series",                &["exponential", "phi"]),
-        ("logarithms_are_those_of_rotations",            &["logarithm"]),
-        ("stumpff_functions_are_trigonometric",          &["stumpff"]),
-        ("what_has_left_its_space_comes_back",           &["orthogonal", "of_length_one", "orthogonality_defect", "orientation_defect", "length_defect"]),
-        ("the_largest_is_one_of_them",                   &["largest"]),
-        ("promises_of_fields_are_checked",               &["check_symmetric", "check_diagonal", "check_unit", "check_finite"]),
-        ("projections_are_orthogonal",                   &["annihilator_projection", "annihilator_defect"]),
-        ("kinetic_energies_are_quadratic",               &["kinetic_energy", "kinetic_energy_at"]),
-        ("elements_are_the_identity_and_their_increments", &["from_increment", "quaternion", "quaternion_from_increment", "matrix", "vector"]),
-        ("cosines_belong_to_their_sines",                &["per_one_plus_cosine", "below_right_angle"]),
-        ("compensated_sums_lose_nothing",                &["accumulate"]),
-        ("slopes_are_those_of_values",                   &["check_slope"]),
-        ("gibbs_vectors_are_tangents_of_half_angles",    &["gibbs_vector_of_matrix", "gibbs_vector_of_quaternion"]),
-        ("displacements_are_shortest",                   &["displacement"]),
-        ("places_are_pairs",                             &["pair", "arrival_of_state", "endpoint", "no_endpoint"]),
-        ("bounds_do_not_depend_on_momenta",              &["bounds"]),
-        ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
     ("tests/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
@@ -77,6 +59,18 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("energies_are_kinetic_and_potential", &["Clebsch::kinetic_energy", "Clebsch::potential", "Stepper::energy", "Stepper::kinetic_energy", "Stepper::potential"]),
         ("potentials_depend_on_time",        &["Stepper::potential_at", "Stepper::legendre_at", "Stepper::legendre_next_at", "Stepper::inverse_legendre_at"]),
     ]),
+    ("tests/tests/properties/matrices.rs", &[
+        ("linear_systems_are_solved_backward_stably",    &["solve_dense", "Orientation::of"]),
+        ("symmetric_systems_are_solved_backward_stably", &["solve_symmetric"]),
+        ("inverses_undo",                                &["invert", "inverse"]),
+        ("exponentials_are_their_series",                &["exponential", "phi"]),
+        ("logarithms_are_those_of_rotations",            &["logarithm"]),
+        ("stumpff_functions_are_trigonometric",          &["stumpff"]),
+        ("the_largest_is_one_of_them",                   &["largest"]),
+        ("projections_are_orthogonal",                   &["annihilator_projection", "annihilator_defect"]),
+        ("kinetic_energies_are_quadratic",               &["kinetic_energy", "kinetic_energy_at"]),
+        ("compensated_sums_lose_nothing",                &["accumulate"]),
+    ]),
     ("tests/tests/properties/paths.rs", &[
         ("motions_are_found_from_their_ends", &[
             "Stepper::boundary", "Boundary::stepper", "Boundary::rest", "Boundary::solve", "Node::configuration", "Node::increment", "Node::momentum", "Node::gain", "Extremal::action", "Extremal::iterations",
@@ -85,6 +79,18 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("ways_are_extremals_in_order", &["Boundary::several"]),
         ("free_ends_are_pulled",        &["Boundary::solve_free", "Boundary::starting_at"]),
         ("free_times_are_critical",     &["Boundary::free_time"]),
+    ]),
+    ("tests/tests/properties/places.rs", &[
+        ("what_has_left_its_space_comes_back",           &["orthogonal", "of_length_one", "orthogonality_defect", "orientation_defect", "length_defect"]),
+        ("promises_of_fields_are_checked",               &["check_symmetric", "check_diagonal", "check_unit", "check_finite"]),
+        ("elements_are_the_identity_and_their_increments", &["from_increment", "quaternion", "quaternion_from_increment", "matrix", "vector"]),
+        ("cosines_belong_to_their_sines",                &["per_one_plus_cosine", "below_right_angle"]),
+        ("slopes_are_those_of_values",                   &["check_slope"]),
+        ("gibbs_vectors_are_tangents_of_half_angles",    &["gibbs_vector_of_matrix", "gibbs_vector_of_quaternion"]),
+        ("displacements_are_shortest",                   &["displacement"]),
+        ("places_are_pairs",                             &["pair", "arrival_of_state", "endpoint", "no_endpoint"]),
+        ("bounds_do_not_depend_on_momenta",              &["bounds"]),
+        ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
     ("tests/tests/properties/plans.rs", &[
         ("expansions_are_differences", &[

@@ -157,7 +157,7 @@ proptest! {
         let state = stepper.advance(&stepper.state(random.attitude::<3>(), random.vector())?, steps)?;
         let bytes = postcard::to_stdvec(&state).expect("numbers");
         let resumed = stepper.resume(postcard::from_bytes(&bytes).expect("the same numbers"))?;
-        prop_assert_eq!(postcard::to_stdvec(&resumed).expect("numbers"), bytes);
+        prop_assert_eq!(&postcard::to_stdvec(&resumed).expect("numbers"), &bytes);
         let (next, exact) = (stepper.step(&resumed)?, stepper.step(&state)?);
         prop_assert_eq!(postcard::to_stdvec(&next).expect("numbers"), postcard::to_stdvec(&exact).expect("numbers"));
         // with another step size too
