@@ -190,7 +190,9 @@ pub fn compose_symmetric<T: Scalar, C: Clone, Q, const K: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17};
+    use super::{Composed, Impulse, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17};
+    use nalgebra::{SMatrix, Vector3};
+    use proptest::prelude::*;
     use std::vec::Vec;
 
     fn all<const K: usize>(sizes: &[f64; K]) -> Vec<f64> {
@@ -228,6 +230,34 @@ mod tests {
             for power in (3..=highest).step_by(2) {
                 assert!(sum_of_powers(&sizes, power).abs() < 1e-15, "{power}: {}", sum_of_powers(&sizes, power));
             }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// A kick is linear in the size of its step, and what is beside it has none.
+        #[test]
+        fn impulses_scale_with_their_steps(kick in prop::array::uniform3(-1.0_f64..1.0), ratio in -2.0_f64..2.0, rest in -1.0_f64..1.0) {
+            let kick = Vector3::from(kick);
+            prop_assert_eq!((kick, rest).scaled(ratio), (kick * ratio, rest));
+            prop_assert_eq!(((), rest).scaled(ratio), ((), rest));
+        }
+
+        /// By the chain rule: f = a s + b τ of the size s and the time τ of a stage, which start where h and t are.
+        #[test]
+        fn slopes_are_those_along_the_whole_step(a in -1.0_f64..1.0, b in -1.0_f64..1.0, h in 0.1_f64..1.0, number in 0_usize..9) {
+            let at = |h: f64, t: f64| {
+                let composed = Composed::new(h, &SIZES_OF_9, |h: f64| Ok(h)).expect("constants");
+                let stage = composed.stage(number);
+                a * *stage.constants + b * (t + stage.start)
+            };
+            let composed = Composed::new(h, &SIZES_OF_9, |h: f64| Ok(h)).expect("constants");
+            // columns: h, something else, t
+            let found = composed.stage(number).slopes(SMatrix::<f64, 1, 3>::new(a, 7.0, b), Some(0), Some(2));
+            // f is linear in h, so that any difference is a derivative
+            prop_assert!((found[0] - (at(h + 1.0, 0.0) - at(h, 0.0))).abs() < 1e-14);
+            prop_assert_eq!((found[1], found[2]), (7.0, b));
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::DoubleDouble;
 use crate::Scalar;
 use num_traits::Zero;
+use proptest::prelude::*;
 
 type Function = fn(DoubleDouble) -> DoubleDouble;
 
@@ -105,4 +106,23 @@ fn ends_of_the_range() {
     );
     assert!(Scalar::asin(one + one).to_f64().is_nan());
     assert_eq!(Scalar::tanh(DoubleDouble::from(-1e3)), -one);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Sums of whole numbers of up to 100 bits, which the computer knows; the parts do not overlap.
+    #[test]
+    fn pairs_are_unevaluated_sums(a in any::<i64>(), b in -1_i64 << 52..1 << 52, c in any::<i64>()) {
+        let whole = |pair: DoubleDouble| pair.parts().iter().map(|&part| part as i128).sum::<i128>();
+        let large = |x: i64| ((x >> 11) as f64) * 2.0_f64.powi(45);
+        let (first, second) = (DoubleDouble::new(large(a), b as f64), DoubleDouble::new(b as f64, large(c)));
+        let exact = |x: i64| i128::from(x >> 11) << 45;
+        prop_assert_eq!(whole(first), exact(a) + i128::from(b));
+        prop_assert_eq!(whole(second), exact(c) + i128::from(b));
+        prop_assert_eq!(whole(first + second), exact(a) + exact(c) + 2 * i128::from(b));
+        prop_assert_eq!(whole(first - second), exact(a) - exact(c));
+        let [head, tail] = first.parts();
+        prop_assert_eq!((head + tail, first.to_f64()), (head, head));
+    }
 }

@@ -1,0 +1,241 @@
+//! Plans of inputs: the derivatives of steps, prices and bounds, and the conditions of an optimum, each evaluated anew.
+
+use crate::arbitrary::{cases, matrix, vector};
+use clebsch::{__private as private, Control, Controlled, Error, Optimum, Space, Target};
+use clebsch_tests::fixtures::regulator::Regulator;
+use clebsch_tests::fixtures::unicycle::Unicycle;
+use clebsch_tests::oracle::near::assert_near;
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector1, Vector2, Vector3};
+use proptest::prelude::*;
+
+const H: f64 = 0.1;
+const STEPS: usize = 12;
+const NEAR: f64 = 1e-13;
+
+/// The generator of (ω, v) in the plane.
+fn twist(xi: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, -xi.x, xi.y, xi.x, 0.0, xi.z, 0.0, 0.0, 0.0)
+}
+
+fn moved(q: &Matrix3<f64>, delta: &Vector3<f64>) -> Matrix3<f64> {
+    q * private::exponential(&twist(delta))
+}
+
+fn unicycles() -> BoxedStrategy<Unicycle> {
+    let numbers = (0.5_f64..2.0, 0.5_f64..2.0, 0.1_f64..1.0, 0.1_f64..2.0, vector(1.0));
+    let made = |(turn_price, top_turn, time_price, miss_price, goal)| Unicycle {
+        turn_price,
+        top_turn,
+        time_price,
+        miss_price,
+        goal,
+    };
+    numbers.prop_map(made).boxed()
+}
+
+fn regulators() -> BoxedStrategy<Regulator> {
+    (0.5_f64..2.0, 0.0_f64..2.0, 0.1_f64..2.0)
+        .prop_map(|(mass, stiffness, price)| Regulator { mass, stiffness, price })
+        .boxed()
+}
+
+/// What a plan and its answer say of themselves: places follow from inputs, the price is that of the steps, bounds hold where they are active and elsewhere,
+/// and inputs cannot be improved to first order.
+fn is_optimal<S, const D: usize, const U: usize, const C: usize>(
+    control: &Control<S, D, U, C>,
+    start: &S::Place,
+    target: Option<&S::Place>,
+    optimum: &Optimum<'_, S, D, U, C>,
+) -> Result<(), Error>
+where
+    S: Controlled<D, U, C, Scalar = f64>,
+{
+    let (system, h) = (control.system(), optimum.step_size());
+    let constants = system.prepare(h)?;
+    let (mut place, mut price, mut t) = (*start, 0.0, 0.0);
+    let stages = optimum.stages();
+    let size = 1.0 + stages.iter().map(|stage| stage.costate().amax()).fold(0.0, f64::max);
+    for (k, stage) in stages.iter().enumerate() {
+        let u = stage.input();
+        assert!(place.distance_squared(stage.place()).sqrt() < 1e-11, "the place {k}");
+        assert!((control.feedback(stage, stage.place()) - u).amax() < 1e-13, "nothing to correct");
+        let next = stages.get(k + 1).map_or(optimum.final_costate(), |next| next.costate());
+        let (step, bounds) =
+            (system.expand(&constants, t, &place, u, next)?, system.bounds_expanded(t, &place, u, stage.multipliers()));
+        let slope =
+            step.price_by_input + step.by_input.transpose() * next + bounds.by_input.transpose() * stage.multipliers();
+        assert!(slope.amax() < 1e-8 * size, "stage {k}: {:e}", slope.amax());
+        assert!(optimum.residual() < 1e-8 * size);
+        for i in 0..C {
+            let (z, bound) = (stage.multipliers()[i], bounds.values[i]);
+            assert!(z >= 0.0 && bound < 1e-9 && (z * bound).abs() < 1e-8 * size, "bound {i} at {k}: {z}, {bound}");
+            assert!(stage.active()[i] == (z > -bound) || (z + bound).abs() < 1e-12);
+        }
+        price += system.price(&constants, t, &place, u);
+        place = system.follow(&constants, t, &place, u)?;
+        t += h;
+    }
+    price += system.endpoint(t, &place);
+    assert!((optimum.price() - price).abs() < 1e-10 * (1.0 + price.abs()), "{} is not {price}", optimum.price());
+    assert!(place.distance_squared(optimum.end()).sqrt() < 1e-11, "the end");
+    let gap = target.map_or(0.0, |target| target.distance_squared(optimum.end()).sqrt());
+    assert!((optimum.gap() - gap).abs() < 1e-14 && gap < 1e-9, "{gap:e}");
+    assert_eq!(optimum.is_minimum(), optimum.negative() == 0);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases(32))]
+
+    /// x⁺ = x exp(h û), its price, bounds and price of the end as they are declared, and their derivatives by differences.
+    #[test]
+    fn expansions_are_differences(
+        system in unicycles(), (start, u, delta, du) in (vector::<3>(1.0), vector::<2>(1.0), vector::<3>(1.0), vector::<2>(1.0)),
+        (costate, z, t) in (vector::<3>(1.0), vector::<3>(1.0), 0.0_f64..2.0),
+    ) {
+        let x = moved(&Matrix3::identity(), &start);
+        let constants = system.prepare(H)?;
+        prop_assert_eq!((system.check_place(&x), system.check_place(&(x * 2.0)).is_err()), (Ok(()), true));
+        let place = |s: f64| moved(&x, &(delta * s));
+        let follow = |s: f64| system.follow(&constants, t, &place(s), &(u + du * s)).expect("a step");
+        let next = follow(0.0);
+        assert_near(&next, &moved(&x, &Vector3::new(H * u.x, H * u.y, 0.0)), NEAR, "x exp(hû)");
+        let control = system.clone().control(H)?.starting_at(t)?;
+        prop_assert_eq!(control.follow(&x, &u)?, next);
+        let price = |s: f64| system.price(&constants, t, &place(s), &(u + du * s));
+        prop_assert!((price(0.0) - H * (system.turn_price * u.x.powi(2) + u.y.powi(2)) / 2.0).abs() < NEAR);
+        let bounds = |s: f64| system.bounds(t, &place(s), &(u + du * s));
+        assert_near(&bounds(0.0), &Vector3::new(-system.top_turn - u.x, u.x - system.top_turn, -u.y), NEAR, "a ≤ 0");
+        let endpoint = |s: f64| system.endpoint(t, &place(s));
+        let miss = x.fixed_view::<2, 1>(0, 2) - system.goal;
+        prop_assert!((endpoint(0.0) - system.time_price * t - system.miss_price * miss.norm_squared() / 2.0).abs() < NEAR);
+
+        // central differences: the square of the step, and rounding divided by it
+        const STEP: f64 = 1e-5;
+        let step = system.expand(&constants, t, &x, &u, &costate)?;
+        let (change, change_of_price) = (step.by_place * delta + step.by_input * du, step.price_by_place.dot(&delta) + step.price_by_input.dot(&du));
+        let displaced = (system.displacement(&next, &follow(STEP)) - system.displacement(&next, &follow(-STEP))) / (2.0 * STEP);
+        assert_near(&change, &displaced, 1e-8, "A δ + B δu");
+        prop_assert!((change_of_price - (price(STEP) - price(-STEP)) / (2.0 * STEP)).abs() < 1e-8);
+        prop_assert!(step.next == next && step.price == price(0.0));
+        let expanded = system.bounds_expanded(t, &x, &u, &z);
+        assert_near(&expanded.values, &bounds(0.0), NEAR, "a");
+        assert_near(&(expanded.by_place * delta + expanded.by_input * du), &((bounds(STEP) - bounds(-STEP)) / (2.0 * STEP)), 1e-8, "slopes of a");
+        let end = system.endpoint_expanded(t, &x);
+        prop_assert!((end.price - endpoint(0.0)).abs() < NEAR && (end.by_time - system.time_price).abs() < NEAR);
+        prop_assert!((end.slope.dot(&delta) - (endpoint(STEP) - endpoint(-STEP)) / (2.0 * STEP)).abs() < 1e-8);
+        let second = (endpoint(1e-3) - 2.0 * endpoint(0.0) + endpoint(-1e-3)) / 1e-6;
+        prop_assert!((delta.dot(&(end.curvature * delta)) - second).abs() < 1e-4);
+
+        // what separates x from a place that is near: the shortest motion to it, to first order
+        let near = moved(&x, &(delta * 1e-6));
+        let arrival = system.arrival(&x, &near);
+        assert_near(&(arrival.slope * delta * 1e-6), &arrival.residual, 1e-10, "slope·δ = residual");
+        assert_near(&system.displacement(&x, &near), &(delta * 1e-6), 1e-10, "displacement");
+        // d/dh with t = t₀ + kh: the price is linear in h, and the place moves by û
+        let by_time = system.price_of_time(&constants, t, 3.0, &x, &u, &costate)?;
+        let expected = price(0.0) / H + costate.dot(&Vector3::new(u.x, u.y, 0.0));
+        prop_assert!((by_time - expected).abs() < 1e-12, "{by_time} for {expected}");
+    }
+
+    /// Linear steps at quadratic prices: the optimum is Riccati's, and costates are the slopes of the least price.
+    #[test]
+    fn regulators_are_those_of_riccati(system in regulators(), start in vector::<2>(1.0), delta in vector::<2>(0.5)) {
+        let a = Matrix2::new(1.0, H, -H * system.stiffness / system.mass, 1.0);
+        let b = Vector2::new(0.0, H / system.mass);
+        let control = system.clone().control(H)?;
+        prop_assert_eq!(control.step_size(), H);
+        let mut plan = [control.stage(&start); STEPS];
+        prop_assert_eq!((plan[0].place(), plan[0].input().norm()), (&start, 0.0));
+        let optimum = control.solve(&start, Target::Free, &mut plan)?;
+        is_optimal(&control, &start, None, &optimum)?;
+        prop_assert!(optimum.is_minimum() && optimum.iterations() <= 3);
+        let mut p = Matrix2::zeros();
+        for stage in optimum.stages().iter().rev() {
+            let gain = -(b.transpose() * p * a) / (H * system.price + (b.transpose() * p * b)[0]);
+            assert_near(stage.gain(), &gain, 1e-12, "the gain");
+            p = Matrix2::identity() * H + a.transpose() * p * (a + b * gain);
+            assert_near(stage.costate(), &(p * stage.place()), 1e-12, "the costate");
+        }
+        prop_assert!((optimum.price() - start.dot(&(p * start)) / 2.0).abs() < 1e-12);
+        // from elsewhere the plan begins as feedback says
+        let first = optimum.stages()[0];
+        let moved = start + delta;
+        let other = control.solve(&moved, Target::Free, &mut plan)?;
+        assert_near(other.stages()[0].input(), &control.feedback(&first, &moved), 1e-12, "feedback");
+    }
+
+    /// Unicycles that park within their bounds, from inputs that lead there: no plan of theirs is dearer.
+    #[test]
+    fn unicycles_park(mut system in unicycles(), inputs in matrix::<2, STEPS>(1.0)) {
+        system.miss_price = 0.0;
+        let start = Matrix3::identity();
+        let control = system.control(H)?;
+        let (mut target, mut plan) = (start, [control.stage(&start); STEPS]);
+        for (stage, input) in plan.iter_mut().zip(inputs.column_iter()) {
+            let u = Vector2::new(input.x * 0.8 * control.system().top_turn, 1.0 + 0.8 * input.y);
+            target = control.follow(&target, &u)?;
+            *stage = stage.with_input(u);
+            prop_assert_eq!(stage.input(), &u);
+        }
+        let constants = control.system().prepare(H)?;
+        let known: f64 = plan.iter().map(|stage| control.system().price(&constants, 0.0, &start, stage.input())).sum();
+        let optimum = control.solve(&start, Target::Place(target), &mut plan)?;
+        is_optimal(&control, &start, Some(&target), &optimum)?;
+        prop_assert!(optimum.is_minimum());
+        prop_assert!(optimum.price() <= known + control.system().endpoint(H * STEPS as f64, &target) + 1e-9);
+    }
+
+    /// A later start costs its time, and changes nothing else.
+    #[test]
+    fn plans_start_at_their_time(system in unicycles(), t in 0.1_f64..2.0, turn in -1.0_f64..1.0) {
+        let start = moved(&Matrix3::identity(), &Vector3::new(turn, 0.0, 0.0));
+        let control = system.clone().control(H)?;
+        let mut plan = [control.stage(&start).with_input(Vector2::new(0.0, 0.1)); STEPS];
+        let first = control.solve(&start, Target::Free, &mut plan)?;
+        let (price, end) = (first.price(), *first.end());
+        let mut plan = [control.stage(&start).with_input(Vector2::new(0.0, 0.1)); STEPS];
+        let later = system.clone().control(H)?.starting_at(t)?;
+        let second = later.solve(&start, Target::Free, &mut plan)?;
+        prop_assert!((second.price() - price - system.time_price * t).abs() < 1e-9);
+        assert_near(second.end(), &end, 1e-6, "the same plan");
+        prop_assert!(control.starting_at(f64::INFINITY).is_err());
+    }
+
+    /// The step size at which the least price is least, or a limit beyond which it falls.
+    #[test]
+    fn free_times_are_critical(system in regulators(), start in vector::<2>(1.0), goal in vector::<2>(0.3)) {
+        prop_assume!((start - goal).norm() > 0.3);
+        let (least, most) = (0.05, 0.3);
+        let control = system.clone().control(H)?;
+        let mut plan = [control.stage(&start); STEPS];
+        let optimum = control.solve_free_time(&start, Target::Place(goal), least..=most, &mut plan)?;
+        let h = optimum.step_size();
+        is_optimal(&control, &start, Some(&goal), &optimum)?;
+        let price = |h: f64| -> Result<f64, Error> {
+            let control = system.clone().control(h)?;
+            let mut plan = [control.stage(&start); STEPS];
+            Ok(control.solve(&start, Target::Place(goal), &mut plan)?.price())
+        };
+        prop_assert!((price(h)? - optimum.price()).abs() < 1e-9 * (1.0 + optimum.price()));
+        let step = 1e-4 * h;
+        let slope = (price(h + step)? - price(h - step)?) / (2.0 * step);
+        // third derivatives of prices are some hundreds of them
+        let is_critical = slope.abs() < 1e-4 * (1.0 + optimum.price() / h);
+        prop_assert!(is_critical || h == least && slope > 0.0 || h == most && slope < 0.0, "{slope} at {h}");
+    }
+
+    /// Inputs of a linear step that are given: x + h (v, (u − k x)/m).
+    #[test]
+    fn maps_are_followed(system in regulators(), x in vector::<2>(1.0), u in -1.0_f64..1.0, costate in vector::<2>(1.0)) {
+        let constants = system.prepare(H)?;
+        let u = Vector1::new(u);
+        let expected = x + Vector2::new(x.y, (u.x - system.stiffness * x.x) / system.mass) * H;
+        assert_near(&system.follow(&constants, 0.0, &x, &u)?, &expected, 1e-15, "x⁺");
+        let step = system.expand(&constants, 0.0, &x, &u, &costate)?;
+        // λ·f is linear, and so the curvature is that of the price
+        assert_near(&step.place_curvature, &(Matrix2::identity() * H), 1e-15, "∂²ℓ/∂x²");
+        assert_near(&step.input_curvature, &SMatrix::<f64, 1, 1>::new(H * system.price), 1e-15, "∂²ℓ/∂u²");
+        assert_near(&step.mixed_curvature, &SMatrix::<f64, 1, 2>::zeros(), 1e-15, "∂²ℓ/∂u∂x");
+    }
+}
