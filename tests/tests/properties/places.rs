@@ -38,6 +38,24 @@ proptest! {
         prop_assert_eq!(private::of_length_one(q), q);
     }
 
+    /// The same of what sums have left beside them, which counts as much; what is left after the correction is rounding.
+    #[test]
+    fn rests_come_back_with_their_sums(r in attitude(), q in unit(), off in matrix::<3, 3>(1.0), left in matrix::<3, 3>(1.0), size in -12.0_f64..-4.0) {
+        let defect = 10.0_f64.powf(size);
+        let near = 64.0 * defect * defect + NEAR;
+        let (moved, left) = (r + off * defect, left * defect);
+        let (back, rest) = private::orthogonal_with_rest(moved, left);
+        if back != moved {
+            prop_assert!(private::orthogonality_defect(&(back + rest)) < near);
+            prop_assert!(rest.amax() <= f64::EPSILON);
+        }
+        let (moved, left) = (q * (1.0 + defect), left.column(0).into_owned());
+        let (back, rest) = private::of_length_one_with_rest(moved, left);
+        prop_assert!(private::length_defect(&(back + rest)) < near);
+        prop_assert!(rest.amax() <= f64::EPSILON);
+        prop_assert_eq!(private::of_length_one_with_rest(q, left), (q, left));
+    }
+
     /// What is promised of a field is accepted, and what is off by more than rounding is refused with its size.
     #[test]
     fn promises_of_fields_are_checked(a in definite::<3>(), e in unit(), i in 0_usize..3, j in 0_usize..2, off in 1e-6_f64..1.0) {
