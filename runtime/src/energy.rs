@@ -145,7 +145,7 @@ mod tests {
             let root = Scalar::sqrt(1.0 - 2.0 * t);
             [2.0 * t / (1.0 + root), 1.0 / root, 1.0 / (root * root * root)]
         };
-        for size in (-40..=60)
+        for size in (-40..=if cfg!(miri) { 10 } else { 60 })
             .step_by(if cfg!(miri) { 50 } else { 1 })
             .map(|tenths| Scalar::powf(10.0, f64::from(tenths) / 10.0))
         {
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn stiffening_lagrangians_and_those_linear_in_part() {
         let lagrangian = |t: f64| [t + t * t, 1.0 + 2.0 * t, 2.0];
-        for r in [1e-8, 0.1, 1.0, 30.0, 1e5] {
+        for r in [1e-8, 0.1, 1.0, 30.0, 1e5].into_iter().take(if cfg!(miri) { 3 } else { 5 }) {
             let mu = Vector2::new(0.28, 0.96) * (r + r * r * r);
             let exact = r * r / 2.0 + 0.75 * r * r * r * r;
             let shift = Vector2::new(0.5, -0.25);

@@ -348,13 +348,14 @@ mod tests {
     fn solutions_have_no_units() {
         let (a, b) = (Matrix3::new(4.0, 1.0, -0.5, 1.25, 3.0, 0.75, -0.5, 0.25, 2.0), Vector3::new(1.0, -2.0, 0.5));
         let expected = solve_dense(&a, &b);
-        for k in -1000..1000 {
+        let stride = if cfg!(miri) { 100 } else { 1 };
+        for k in (-1000..1000).step_by(stride) {
             let unit = 2.0_f64.powi(k);
             assert_eq!(solve_dense(&(a * unit), &(b * unit)), expected, "2^{k}");
         }
         let (a, b) = (a.map(|x| x as f32), b.map(|x| x as f32));
         let expected = solve_dense(&a, &b);
-        for k in -115..120 {
+        for k in (-115..120).step_by(stride) {
             let unit = 2.0_f32.powi(k);
             assert_eq!(solve_dense(&(a * unit), &(b * unit)), expected, "2^{k} in single precision");
         }

@@ -100,7 +100,7 @@ fn permanent(sine: f64) -> f64 {
 #[test]
 fn permanent_rotations_exist_up_to_a_right_angle() {
     let moments = [2.0, 3.0, 4.0];
-    for (axis, moment) in moments.into_iter().enumerate() {
+    for (axis, moment) in moments.into_iter().enumerate().take(if cfg!(miri) { 1 } else { 3 }) {
         let axis_solve = |sine: f64| {
             let mut target = Vector3::zeros();
             target[axis] = moment * sine;
@@ -215,7 +215,7 @@ fn iterations_of_fixed_points() {
 fn magnitudes_do_not_matter() {
     let (inertia, target) = (principal([1.0, 1.4, 0.9]).inertia, Vector3::new(0.3, 0.4, -0.2));
     let expected = solve(&Body::new(inertia), &target).expect("solvable");
-    for power in [-1000, -500, 500, 1000] {
+    for power in [-1000, -500, 500, 1000].into_iter().step_by(if cfg!(miri) { 3 } else { 1 }) {
         let scale = 2.0_f64.powi(power);
         assert_eq!(solve(&Body::new(inertia * scale), &(target * scale)), Ok(expected));
     }

@@ -143,6 +143,7 @@ fn symmetric_problems_end_in_symmetric_extremals() -> Result<(), Error> {
 
 /// Several periods of the pendulum, where full Newton steps lead nowhere: a minimum is found for all pairs of points.
 #[test]
+#[cfg_attr(miri, ignore = "too long to interpret: fifty problems of two hundred nodes")]
 fn minima_over_long_times() -> Result<(), Error> {
     let pendulum = DrivenPendulum { mass: 2.0, length: 0.5, gravity: 9.81, shake: 5.0, rate: 7.0 };
     let stepper = pendulum.stepper(0.03)?;
