@@ -107,7 +107,6 @@ fn single_precision_and_lanes_go_on_too() -> Result<(), Error> {
     let mut random = Random::new(92);
     let start = std::array::from_fn(|_| random.vector());
     body::<f32>(start)?;
-    #[cfg(feature = "double-double")]
     body::<clebsch::DoubleDouble>(start)?;
     body::<F64x4>(start)?;
     body::<F32x8>(start)
