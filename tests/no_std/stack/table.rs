@@ -15,7 +15,7 @@ const COLUMNS: [(&str, &[&str]); 7] = [
 ];
 
 const HEAD: &str = "\
-# Bytes of stack that an operation may take, a quarter more than it took when this was written. Written by `tests/no_std/check renew`.
+# Bytes of stack that an operation may take: half more than it took when this was written, and 256. Written by `tests/no_std/check renew`.
 ";
 
 /// Bytes by system, with its scalar type, and by column.
@@ -57,9 +57,10 @@ impl Table {
             .map(Self)
     }
 
-    /// What may be taken: a quarter more, in multiples of 64.
+    /// What may be taken: half more and 256, in multiples of 64. What the compiler inlines depends on where the crate stands, and a helper
+    /// that is inlined in one checkout and called in another has moved a set-up of 400 bytes to 600, and one of 5100 to 6700.
     pub fn budgets(&self) -> String {
-        let budget = |bytes: u64| (bytes + bytes / 4).next_multiple_of(64);
+        let budget = |bytes: u64| (bytes + bytes / 2 + 256).next_multiple_of(64);
         let lines = self.0.iter().map(|(system, entries)| (system.clone(), entries.map(|entry| entry.map(budget))));
         format!("{HEAD}{}", Self(lines.collect()))
     }
@@ -131,11 +132,11 @@ mod tests {
     }
 
     #[test]
-    fn budgets_are_read_as_they_were_written_and_leave_a_quarter() {
+    fn budgets_are_read_as_they_were_written_and_leave_half_more() {
         let budgets = Table::read(&table(1000).budgets()).expect("as written");
-        assert_eq!(table(1280).check(&budgets), Ok(()));
+        assert_eq!(table(1792).check(&budgets), Ok(()));
         assert!(
-            table(1281).check(&budgets).is_err_and(|error| error.contains("step of heavy_top.f64 takes 1281 bytes"))
+            table(1793).check(&budgets).is_err_and(|error| error.contains("step of heavy_top.f64 takes 1793 bytes"))
         );
     }
 
