@@ -23,7 +23,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("runtime/src/lanes/tests.rs", &[
         ("operations_are_those_of_single_numbers", &["Scalar::select", "Scalar::sqrt", "Scalar::from_lanes"]),
     ]),
-    ("tests/tests/properties/derivatives.rs", &[
+    ("tests/laws/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
         ("tangent_maps_are_differences", &["Stepper::step_tangent", "Stepper::step_tangent_with", "Stepper::infinitesimal_motion"]),
         ("sensitivities_are_differences", &["Stepper::step_sensitivity", "Stepper::step_sensitivity_with"]),
@@ -32,12 +32,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("ends_have_a_price",            &["Variational::endpoint"]),
         ("links_are_implicit_functions", &["Link::new", "Link::expansion", "forced_step", "check_state"]),
     ]),
-    ("tests/tests/properties/ensembles.rs", &[
+    ("tests/laws/tests/properties/ensembles.rs", &[
         ("ensembles_are_bodies_alone",         &["Ensemble::new", "Ensemble::step", "Ensemble::advance", "Ensemble::par_advance", "Ensemble::len", "Ensemble::is_empty", "Ensemble::steps", "Ensemble::body", "Ensemble::bodies", "Ensemble::set_body", "Ensemble::energy", "Ensemble::failures", "Ensemble::failure", "Ensemble::conserved"]),
         ("bodies_have_their_own_parameters",   &["Ensemble::with_parameters"]),
         ("bodies_have_times",                  &["Ensemble::time"]),
     ]),
-    ("tests/tests/properties/equations.rs", &[
+    ("tests/laws/tests/properties/equations.rs", &[
         ("equations_are_solved_to_rounding",       &["solve", "solve_fixed_point", "orientation", "Equation::prepare", "Equation::predict", "Equation::linearize", "Equation::residual", "Equation::correct", "Equation::tolerance", "Equation::orientation"]),
         ("iterations_have_a_limit",                &["Equation::limit"]),
         ("tolerances_end_at_rounding",             &["tolerance"]),
@@ -48,7 +48,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("compositions_are_their_stages",          &["Composed::new", "Composed::stage"]),
         ("splittings_have_their_orders",           &["split"]),
     ]),
-    ("tests/tests/properties/formulas.rs", &[
+    ("tests/laws/tests/properties/formulas.rs", &[
         ("rotations_act_from_the_right", &[
             "Clebsch::act", "Clebsch::coadjoint", "Clebsch::momentum_map", "Clebsch::momentum_matrix", "Clebsch::momentum_components", "Clebsch::constants", "Clebsch::into_stepper",
             "Stepper::act", "Stepper::coadjoint", "Stepper::momentum_map", "Stepper::momentum_matrix", "Stepper::momentum_components", "Stepper::system", "Stepper::step_size",
@@ -59,7 +59,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("energies_are_kinetic_and_potential", &["Clebsch::kinetic_energy", "Clebsch::potential", "Stepper::energy", "Stepper::kinetic_energy", "Stepper::potential"]),
         ("potentials_depend_on_time",        &["Stepper::potential_at", "Stepper::legendre_at", "Stepper::legendre_next_at", "Stepper::inverse_legendre_at"]),
     ]),
-    ("tests/tests/properties/matrices.rs", &[
+    ("tests/laws/tests/properties/matrices.rs", &[
         ("linear_systems_are_solved_backward_stably",    &["solve_dense", "Orientation::of"]),
         ("symmetric_systems_are_solved_backward_stably", &["solve_symmetric"]),
         ("inverses_undo",                                &["invert", "inverse"]),
@@ -71,7 +71,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("kinetic_energies_are_quadratic",               &["kinetic_energy", "kinetic_energy_at"]),
         ("compensated_sums_lose_nothing",                &["accumulate"]),
     ]),
-    ("tests/tests/properties/paths.rs", &[
+    ("tests/laws/tests/properties/paths.rs", &[
         ("motions_are_found_from_their_ends", &[
             "Stepper::boundary", "Boundary::stepper", "Boundary::rest", "Boundary::solve", "Node::configuration", "Node::increment", "Node::momentum", "Node::gain", "Extremal::action", "Extremal::iterations",
             "Extremal::residual", "Extremal::gap", "Extremal::negative", "Extremal::momentum", "Extremal::final_momentum", "Extremal::end", "Extremal::nodes", "Extremal::states",
@@ -80,7 +80,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("free_ends_are_pulled",        &["Boundary::solve_free", "Boundary::starting_at"]),
         ("free_times_are_critical",     &["Boundary::free_time"]),
     ]),
-    ("tests/tests/properties/places.rs", &[
+    ("tests/laws/tests/properties/places.rs", &[
         ("what_has_left_its_space_comes_back",           &["orthogonal", "of_length_one", "orthogonality_defect", "orientation_defect", "length_defect"]),
         ("rests_come_back_with_their_sums",              &["orthogonal_with_rest", "of_length_one_with_rest"]),
         ("promises_of_fields_are_checked",               &["check_symmetric", "check_diagonal", "check_unit", "check_finite"]),
@@ -93,7 +93,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("bounds_do_not_depend_on_momenta",              &["bounds"]),
         ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
-    ("tests/tests/properties/plans.rs", &[
+    ("tests/laws/tests/properties/plans.rs", &[
         ("expansions_are_differences", &[
             "Controlled::prepare", "Controlled::check_place", "Controlled::control", "Controlled::follow", "Controlled::price", "Controlled::expand", "Controlled::price_of_time", "Controlled::bounds",
             "Controlled::bounds_expanded", "Controlled::endpoint", "Controlled::endpoint_expanded", "Controlled::arrival", "Controlled::displacement", "Control::follow",
@@ -107,12 +107,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("free_times_are_critical",   &["Control::solve_free_time"]),
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),
     ]),
-    ("tests/tests/properties/rotations.rs", &[
+    ("tests/laws/tests/properties/rotations.rs", &[
         ("free_bodies_turn_back",               &["FreeRotation::new", "FreeRotation::turn", "FreeRotation::motion", "FreeRotation::gibbs_vector_of", "FreeRotation::turn_of"]),
         ("momenta_belong_to_their_rotations",   &["FreeRotation::momentum", "free_momentum"]),
         ("momenta_belong_to_their_rotations_of_four_dimensions", &["free_momentum_4d"]),
     ]),
-    ("tests/tests/properties/scalars.rs", &[
+    ("tests/laws/tests/properties/scalars.rs", &[
         ("elementary_functions_are_those_of_the_standard_library", &[
             "Scalar::abs", "Scalar::sqrt", "Scalar::recip", "Scalar::sin", "Scalar::cos", "Scalar::tan", "Scalar::asin", "Scalar::acos", "Scalar::atan", "Scalar::sinh", "Scalar::cosh", "Scalar::tanh", "Scalar::exp",
             "Scalar::ln", "Scalar::powf",
@@ -127,7 +127,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("conserved_values_have_names",          &["Conserved::new", "Conserved::names", "Conserved::values", "Conserved::get", "Conserved::iter", "Conserved::lane"]),
         ("lanes_hold_single_numbers",            &["lanes!::splat", "lanes!::to_array"]),
     ]),
-    ("tests/tests/properties/steps.rs", &[
+    ("tests/laws/tests/properties/steps.rs", &[
         ("ways_of_stepping_agree", &[
             "Clebsch::impulse", "Clebsch::impulse_after", "Clebsch::step", "Clebsch::steps", "Clebsch::stepper", "State::configuration", "State::momentum", "State::into_parts", "Stepper::state", "Stepper::step",
             "Stepper::advance", "Stepper::trajectory",

@@ -26,7 +26,7 @@ use table::PROPERTIES;
 
 /// The root of the repository.
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests are a folder of the repository")
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the tests are a folder of the repository")
 }
 
 #[test]
