@@ -27,6 +27,7 @@ pub use crate::orbit::{
 pub use crate::parameters::{
     annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
 };
+pub use crate::power::{Power, PowerConstants, wrapped};
 pub use crate::splitting::{GRADIENT_4, GRADIENT_6, PLAIN_4, PLAIN_6, split};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,

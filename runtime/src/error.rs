@@ -25,6 +25,13 @@ pub enum Error {
         /// What rounding makes over the duration, about.
         rounding: f64,
     },
+    /// A part of the storage of a [`Sites`](crate::Sites) has another length than there are sites.
+    NumberOfSites {
+        /// The entries of that part.
+        found: usize,
+        /// The sites, N.
+        sites: usize,
+    },
     /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
     NotSymmetric {
         /// The field.
@@ -277,6 +284,9 @@ impl Display for Error {
                 "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
                  reduce the step size, or allow more by `iterations` where the declaration limits them"
             ),
+            Self::NumberOfSites { found, sites } => {
+                write!(f, "the storage has {found} entries where there are {sites} sites: give one entry for each site")
+            }
             Self::InLane { lane } => write!(
                 f,
                 "the step of lane {lane} failed, and may have in others: `Stepper::failure` says why, and `Stepper::step_each` steps those \

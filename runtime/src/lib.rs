@@ -159,6 +159,7 @@ mod logarithm;
 mod opaque;
 mod orbit;
 mod parameters;
+mod power;
 mod root;
 #[cfg(feature = "serde")]
 mod saved;
@@ -191,6 +192,7 @@ pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
+pub use power::{Power, SiteError, SiteStorage, Sites};
 #[cfg(feature = "serde")]
 pub use saved::SavedState;
 pub use scalar::{Mask, Real, Scalar};

@@ -2,7 +2,6 @@
 
 use crate::{Clock, Error, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
-use core::ops::{Add, Sub};
 
 /// A mechanical or control system with everything that is derived from its declaration.
 ///
@@ -24,8 +23,8 @@ pub trait Clebsch {
     type Configuration: Space<Self::Scalar>;
     /// F, nested as in the declared action.
     type Element: Space<Self::Scalar>;
-    /// μ: all components in one vector.
-    type Momentum: Space<Self::Scalar> + Add<Output = Self::Momentum> + Sub<Output = Self::Momentum>;
+    /// μ: all components in one vector; of a power an array of those of each site.
+    type Momentum: Space<Self::Scalar>;
     /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
     type MomentumMatrix: Space<Self::Scalar>;
     /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps; `()` where

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Parameters of the structs that have some, and what is added to their names.
-const INSTANCES: [(&str, &[(&str, &str)]); 3] = [
+const INSTANCES: [(&str, &[(&str, &str)]); 4] = [
     ("AnnotatedBody", &[("", "<'static, (), 4>")]),
     ("GenericBody", &[("", "<f64>"), (".lanes", "<clebsch::F64x4>")]),
     ("Rock", &[("", "<f64>"), (".lanes", "<clebsch::F64x8>")]),
+    ("SpinChain", &[("", "<8>")]),
 ];
 
 /// What the lanes of `f64` are called in `f32`.

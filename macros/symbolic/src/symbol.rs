@@ -49,6 +49,12 @@ pub enum Role {
     ChartWeight(usize),
     /// The chart coordinates of a factor's group element.
     Chart(usize),
+    /// The number of sites of a power.
+    Sites,
+    /// The index of a site that a sum runs through, by how many sums are around it.
+    Site(usize),
+    /// A leaf of the configuration at a place of a power, by the number of the place and of the leaf.
+    At(usize, usize),
     /// Any other symbol, by an index of the user's.
     Auxiliary(usize),
 }

@@ -50,7 +50,8 @@ impl<S: Clebsch> Stepper<S> {
     /// and §V.3.3 (processing: methods that are conjugate to one of higher order).
     #[inline]
     pub fn synchronized(&self, state: &State<S>) -> S::Momentum {
-        state.momentum - self.system.stagger(self.h, state.time.now(), &state.configuration)
+        let ahead = self.system.stagger(self.h, state.time.now(), &state.configuration);
+        state.momentum.zip_map(&ahead, |momentum, ahead| momentum - ahead)
     }
 
     /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order
@@ -76,7 +77,7 @@ impl<S: Clebsch> Stepper<S> {
         check_momentum(&self.system, &q, &mu)?;
         let stagger = self.system.stagger(self.h, t, &q);
         check_gradient(&stagger)?;
-        let staggered = mu + stagger;
+        let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);
         if !staggered.is_finite() {
             return Err(Error::NotFinite { name: "the momentum half a kick ahead" });
         }

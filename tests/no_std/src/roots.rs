@@ -3,7 +3,7 @@
 //! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because nothing is conserved or
 //! because it has lanes, [`Absent`] has one that does nothing.
 
-use clebsch::{Clebsch, Error, State, Stepper};
+use clebsch::{Clebsch, Error, Space, State, Stepper};
 
 /// The steps of a plan, and the edges of a path.
 pub const STEPS: usize = 16;
@@ -144,8 +144,8 @@ pub fn formulas<S: Clebsch>(
     mu: &mut S::Momentum,
 ) -> Result<(), Error> {
     let f = stepper.inverse_legendre_at(t, q, mu)?;
-    *mu = stepper.legendre_at(t, q, &f) + stepper.legendre_next_at(t, q, &f);
-    *mu = stepper.coadjoint(&f, mu) + stepper.momentum_map(&stepper.act(&f, q), p);
+    *mu = stepper.legendre_at(t, q, &f).zip_map(&stepper.legendre_next_at(t, q, &f), |a, b| a + b);
+    *mu = stepper.coadjoint(&f, mu).zip_map(&stepper.momentum_map(&stepper.act(&f, q), p), |a, b| a + b);
     *mu = stepper.momentum_components(&stepper.momentum_matrix(mu));
     core::hint::black_box(stepper.potential_at(t, q));
     Ok(())

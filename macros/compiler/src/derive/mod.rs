@@ -18,6 +18,7 @@ mod exact;
 mod force;
 mod increments;
 mod naming;
+mod power;
 mod print;
 mod reference;
 mod signature;
@@ -49,6 +50,7 @@ pub use exact::Splitting;
 pub(crate) use exact::{by_inertia, inertia_inverse};
 pub use force::EdgeForce;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
+pub use power::Link;
 pub use print::Formula;
 pub use reference::Reference;
 pub use structure::Structure;
@@ -83,6 +85,8 @@ pub struct Formulas<'g> {
     pub stagger: Option<Vec<Expr<'g>>>,
     /// Whether a step of first order is one of second order but for that shift.
     pub is_staggered: bool,
+    /// What ties the sites of a power to each other.
+    pub links: Vec<Link<'g>>,
     /// What is conserved.
     pub symmetries: Symmetries<'g>,
     /// The declared discrete Lagrangian.
@@ -213,7 +217,8 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let is_first = model.order == Order::First;
     let stagger = if is_first { impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
     let is_staggered = stagger.is_some() && model.force.is_none() && lagrangian.balanced().is_time_symmetric(&model);
-    let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, covector.as_deref());
+    let links = power::links(&model);
+    let symmetries = symmetry::find(&model, &symbols, &generator, &lagrangian, inertia, (covector.as_deref(), &links));
     check_offers(&model, &symmetries)?;
     let splitting = exact::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && exact::drifts_exactly(&model, &symbols, &substeps);
@@ -244,6 +249,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         momentum_map,
         energy,
         potential_energy,
+        links,
         symmetries,
         lagrangian,
         quantities,
@@ -276,6 +282,7 @@ fn steered<'g>(
         inertia: graph.zero(Shape::square(model.dimension())),
         energy: Energy { kinetic: zero, gyroscopic: zero, general: None },
         potential_energy: zero,
+        links: Vec::new(),
         symmetries: Symmetries::default(),
         lagrangian: DiscreteLagrangian { kinetic: zero, start: zero, end: zero, couples: false },
         quantities: Vec::new(),
@@ -465,7 +472,8 @@ impl Formulas<'_> {
 fn is_timed(model: &Model<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
-    energies.iter().chain(forces).any(|part| part.depends_on(model.time))
+    let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
+    energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
 }
 
 /// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.

@@ -155,6 +155,8 @@ impl<'g> Formulas<'g> {
             self.formula_of_legendre(),
             self.formula_of_legendre_next(),
         ];
+        formulas.extend(self.formulas_of_terms());
+        formulas.extend(self.formulas_of_gradients());
         formulas.extend(self.formulas_of_choice());
         formulas.extend(self.formulas_of_conserved());
         for substep in self.substeps.iter().take(self.parts) {
@@ -276,6 +278,28 @@ impl<'g> Formulas<'g> {
         conserved
             .map(|momentum| Formula::new("conserved", momentum.name.clone(), &readable(&[momentum.value])))
             .collect()
+    }
+
+    /// The terms of the potential of a power.
+    pub fn formulas_of_terms(&self) -> Vec<Formula> {
+        let terms = self.links.iter().enumerate().map(|(number, link)| {
+            let symbol = format!("V_{}, for each {}", number + 1, link.term.indices());
+            Formula::new("term", symbol.trim_end_matches(", for each ").to_string(), &readable(&[link.term.value]))
+        });
+        terms.collect()
+    }
+
+    /// The gradients of the terms of a power.
+    fn formulas_of_gradients(&self) -> Vec<Formula> {
+        let Some(power) = &self.model.power else { return Vec::new() };
+        let of_link = |(number, link): (usize, &super::Link<'g>)| {
+            let gradient = |(place, slopes): &(usize, Vec<Expr<'g>>)| {
+                let symbol = format!("∂V_{}/∂{}[{}]", number + 1, self.q(), power.places[*place].text());
+                Formula::new("gradient of a term", symbol, &readable(slopes))
+            };
+            link.gradient.iter().map(gradient).collect::<Vec<_>>()
+        };
+        self.links.iter().enumerate().flat_map(of_link).collect()
     }
 
     /// N − π, of a step of first order.

@@ -92,6 +92,16 @@ impl Scope<'_, '_> {
             Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
             Role::Image(i) => leaf("next", &self.model.configurations[i].accessor),
             Role::Input(i) => leaf("u", &self.model.inputs[i].accessor),
+            Role::At(place, i) => leaf(&format!("q{place}"), &self.model.configurations[i].accessor),
+            Role::Site(depth) => {
+                let (private, scalar, index) = (&self.paths.private, &self.paths.scalar, format_ident!("i{depth}"));
+                quote!(<#scalar as #private::Scalar>::from_f64(#index as ::core::primitive::f64))
+            }
+            Role::Sites => {
+                let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+                let length = self.model.power.as_ref().map(|power| &power.length);
+                quote!(<#scalar as #private::Scalar>::from_f64(#length as ::core::primitive::f64))
+            }
             Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
             Role::Element(k) => leaf("f", factor(k)),
             Role::Increment(k) => leaf("d", factor(k)),
@@ -118,10 +128,12 @@ impl Scope<'_, '_> {
     }
 
     fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
+        let of_terms = self.model.power.iter().flat_map(|power| &power.parameters);
         let all = self
             .model
             .parameters
             .iter()
+            .chain(of_terms)
             .flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
         let is_leaf = |symbol: clebsch_symbolic::Expr<'_>| {
             symbol.as_symbol().is_some_and(|data| data.role == Role::Parameter(leaf))

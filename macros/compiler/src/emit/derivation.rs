@@ -14,12 +14,14 @@ pub fn derivation(program: &Program<'_>) -> String {
         return steered(program);
     }
     let mut text = String::new();
+    let model = &program.formulas.model;
     // by construction: writing to a string does not fail
     let _ = write!(
         text,
-        "{}\n\n{}{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
-        program.formulas.model.item.ident,
-        frames(&program.formulas.model),
+        "{}\n\n{}{}{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
+        model.power.as_ref().map_or(&model.item, |power| &power.item).ident,
+        sites(program),
+        frames(model),
         energy(program),
         forces(program),
         conserved(program),
@@ -29,6 +31,26 @@ pub fn derivation(program: &Program<'_>) -> String {
         costs(program),
     );
     text
+}
+
+/// What a power is.
+fn sites(program: &Program<'_>) -> String {
+    let Some(power) = &program.formulas.model.power else { return String::new() };
+    let length = &power.length;
+    let equal = match power.is_uniform {
+        true => "all with the same kinetic energy, whose constants are made once",
+        false => "whose kinetic energies differ, so that the constants of each are made in each step",
+    };
+    let terms = match power.terms.len() {
+        0 => "Nothing ties them to each other.".to_string(),
+        1 => format!(
+            "They are tied to each other by the potential, a sum of one formula; it is differentiated once and added up in loops: the code does not grow with {length}."
+        ),
+        count => format!(
+            "They are tied to each other by the potential, sums of {count} formulas; each is differentiated once and added up in loops: the code does not grow with {length}."
+        ),
+    };
+    format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")
 }
 
 /// The text of a system whose configuration inputs move.
@@ -170,8 +192,9 @@ fn forces(program: &Program<'_>) -> String {
 fn conserved(program: &Program<'_>) -> String {
     let symmetries = &program.formulas.symmetries;
     let mut text = String::new();
+    let summed = if program.formulas.model.power.is_some() { ", summed over all sites" } else { "" };
     for momentum in &symmetries.conserved {
-        let _ = writeln!(text, "Conserved: the momentum {}.", momentum.name);
+        let _ = writeln!(text, "Conserved: the momentum {}{summed}.", momentum.name);
     }
     if symmetries.conserved.is_empty() {
         let known = if symmetries.undecided { " that could be proved" } else { "" };
@@ -213,7 +236,7 @@ fn scheme(program: &Program<'_>) -> String {
         (Order::Second, 1) if program.formulas.lagrangian.couples => {
             "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
         }
-        (Order::Second, 1) if program.formulas.potential_energy.is_zero() => {
+        (Order::Second, 1) if program.formulas.potential_energy.is_zero() && program.links.is_empty() => {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), so the step is of second order."
         }
         (Order::Second, 1) => {
@@ -251,7 +274,9 @@ fn scheme(program: &Program<'_>) -> String {
     if let Some(splitting) = &program.formulas.splitting {
         text = split(model.order, splitting.has_gradient);
     }
-    if program.formulas.is_exact {
+    if program.formulas.is_exact && !program.links.is_empty() {
+        text += "Between kicks a site moves exactly.\n";
+    } else if program.formulas.is_exact {
         text = "No potential acts, and a step is the exact motion of the time h: there is no error in h.\n".to_string();
     }
     let mut told: Vec<String> = Vec::new();
@@ -449,7 +474,7 @@ fn structure(structure: &Structure) -> String {
 fn left_out(program: &Program<'_>) -> String {
     let formulas = &program.formulas;
     let mut text = String::new();
-    if formulas.potential_energy.is_zero() {
+    if formulas.potential_energy.is_zero() && formulas.links.is_empty() {
         text += "Left out: the kick, as there is no potential.\n";
     }
     if formulas.model.emit.momentum {

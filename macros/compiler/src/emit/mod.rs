@@ -14,6 +14,7 @@ mod jacobian;
 mod names;
 mod opaque;
 mod path;
+mod power;
 mod step;
 mod stub;
 mod summation;
@@ -25,7 +26,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use crate::lower::Program;
-use crate::model::Model;
+use crate::model::{Item, Model};
 use code::{Scope, Spelled, nested_type};
 use names::Names;
 use path::Paths;
@@ -82,8 +83,8 @@ struct Generics {
 }
 
 impl Generics {
-    fn new(model: &Model<'_>, paths: &Paths) -> Generics {
-        let mut generics = model.item.generics.clone();
+    fn of(item: &Item, paths: &Paths) -> Generics {
+        let mut generics = item.generics.clone();
         for parameter in generics.type_params_mut() {
             parameter.default = None;
         }
@@ -109,8 +110,8 @@ impl Generics {
         let predicates = generics.where_clause.as_ref().map(|clause| &clause.predicates).into_iter().flatten();
         let predicates: Vec<_> = predicates.collect();
         let (private, scalar) = (&paths.private, &paths.scalar);
-        let bound = matches!(model.item.scalar, crate::model::ScalarType::Parameter(_))
-            .then(|| quote!(#scalar: #private::Scalar,));
+        let bound =
+            matches!(item.scalar, crate::model::ScalarType::Parameter(_)).then(|| quote!(#scalar: #private::Scalar,));
         Generics {
             parameters: quote!(#parameters),
             arguments: quote!(#(#arguments),*),
@@ -123,7 +124,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
     fn new(program: &'a Program<'g>) -> Emitter<'a, 'g> {
         let model = &program.formulas.model;
         let paths = Paths::new(&model.item);
-        let generics = Generics::new(model, &paths);
+        let generics = Generics::of(&model.item, &paths);
         Emitter { program, model, paths, generics, names: Names::new(model) }
     }
 
@@ -133,13 +134,14 @@ impl<'a, 'g> Emitter<'a, 'g> {
             let (controlled, derivation) = (self.controlled(), self.derivation_of_control());
             return quote!(#groups #controlled #derivation);
         }
+        let power = self.power();
         let constants = self.constants_type();
         let system = self.system();
         let conserves = self.conserves();
         let step = self.step_type();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
-        quote!(#groups #constants #system #conserves #variational #sensitive #controlled #check #step #equations #velocity)
+        quote!(#groups #power #constants #system #conserves #variational #sensitive #controlled #check #step #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.

@@ -53,7 +53,9 @@ impl Emitter<'_, '_> {
 
     /// The implementation of `Conserves`, where something is conserved.
     pub(super) fn conserves(&self) -> TokenStream {
-        let Some(kernel) = &self.program.conserved else { return TokenStream::new() };
+        // what is conserved of a power is a sum over its sites
+        let conserved = self.program.conserved.as_ref().filter(|_| self.model.power.is_none());
+        let Some(kernel) = conserved else { return TokenStream::new() };
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = &self.generics;
         let ident = &self.model.item.ident;

@@ -89,12 +89,22 @@ pub struct Program<'g> {
     pub endpoint: Option<EndpointKernels>,
     /// (TΦ_F)^{-*} p, from the increment of F, q⁺ and p.
     pub cotangent_lift: Kernel,
+    /// The terms of a power.
+    pub links: Vec<LinkKernels>,
     /// Computes the constants, one output each.
     pub constants: Kernel,
     /// A short name for each constant.
     pub constant_names: Vec<String>,
     /// Whether a constant is made of Σ⁻¹.
     pub needs_inertia_inverse: bool,
+}
+
+/// The kernels of a term of a power.
+pub struct LinkKernels {
+    /// The term.
+    pub value: Kernel,
+    /// Its gradient: for each place that it reads, one output for each leaf of the configuration.
+    pub gradient: Kernel,
 }
 
 /// Lowers formulas to kernels.
@@ -127,7 +137,13 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         Hoisting::Nothing,
     );
     let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| stack(scalars, &replaced(parts, &inverses));
+    let links = formulas.links.iter().map(|link| {
+        let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();
+        LinkKernels { value: outputs(&mut scalars, &[link.term.value]), gradient: outputs(&mut scalars, &slopes) }
+    });
+    let links = links.collect();
     let program = Program {
+        links,
         act: outputs(&mut scalars, &formulas.model.action),
         momentum_map: stacked(&formulas.momentum_map, &mut scalars),
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),

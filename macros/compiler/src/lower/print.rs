@@ -71,6 +71,10 @@ impl Program<'_> {
                 ("whole_guess".to_string(), &collocation.guess),
             ]
         }));
+        for (number, link) in self.links.iter().enumerate() {
+            kernels.push((format!("term_{}", number + 1), &link.value));
+            kernels.push((format!("gradient_of_term_{}", number + 1), &link.gradient));
+        }
         kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
         kernels.extend(self.kernels_of_control());
         for (index, step) in self.steps.iter().enumerate() {

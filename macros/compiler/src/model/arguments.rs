@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Expr, Group};
 use syn::ext::IdentExt;
 
+use super::power::{Kind, PerSite};
 use super::scope::{Missing, Scope, check_reserved};
 use super::slots::{COST, FORCE, LAGRANGIAN, POTENTIAL, SYMMETRY, Slot};
 use super::value::Value;
@@ -82,6 +83,15 @@ fn typed<'d>(
 }
 
 impl<'d, 'g> Arguments<'d, 'g> {
+    /// The arguments of a power, where these are those of a site.
+    pub fn of_each_site(&mut self) {
+        let each = |value: &mut Option<Value<'g>>, of: Kind| {
+            *value = value.take().map(|own| Value::PerSite(PerSite { of, own: Box::new(own) }));
+        };
+        each(&mut self.element_value, Kind::Motion);
+        each(&mut self.configuration_value, Kind::Configuration);
+    }
+
     /// The names in the action itself.
     pub fn action_scope(&self, diagnostics: &mut Diagnostics) -> Scope<'g> {
         let mut scope = Scope::default();

@@ -6,6 +6,7 @@ use syn::{BinOp, Expr as Syntax, Stmt};
 use super::arguments::Arguments;
 use super::elaborate::{Context, Elaborator};
 use super::leaves::{Expected, leaves, new_value_of};
+use super::power::{self, Kind, PerSite, Term};
 use super::value::Value;
 use super::velocity::Velocity;
 use super::{Configuration, Discretization, Factor, Kinetic, Spans, Structure, Written};
@@ -23,9 +24,25 @@ pub(super) fn action<'g>(
     let closure = &declaration.action;
     let scope = arguments.action_scope(&mut context.diagnostics);
     let value = Elaborator::new(context, "action", scope).elaborate(&closure.body)?;
+    let value = of_site(context, &closure.body, value)?;
     let expected: Vec<Expected> = configurations?.iter().map(Expected::point).collect();
     let old = arguments.configuration.spell();
     leaves(context, &closure.body, "action", &value, structure, &expected, &new_value_of(&old))
+}
+
+/// What the action of a power gives for each site; any other value as it is.
+fn of_site<'g>(context: &mut Context<'_, 'g>, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
+    let Some(power) = &context.power else { return Some(value) };
+    let (zero, name) = (context.graph.integer(0), power.name.clone());
+    match value {
+        Value::Sequence(range, each) if range == (zero, power.count) => Some(*each),
+        other => {
+            let message = format!("the action gives {}, but it has to give a value for each site", other.describe());
+            let error = Diagnostic::new(tail(body).0, message);
+            context.diagnostics.push(error.help(format!("write `(0..{name}).map(|i| …)`")));
+            None
+        }
+    }
 }
 
 /// The cost, or the Lagrangian with its velocity.
@@ -103,6 +120,10 @@ fn lagrangian<'g>(
         Velocity { graph, factors }.of(pattern, structure, &mut context.diagnostics)
     });
     let value = velocity.as_ref().map(|(value, _)| value.clone());
+    let value = match context.power.is_some() {
+        true => value.map(|own| Value::PerSite(PerSite { of: Kind::Motion, own: Box::new(own) })),
+        false => value,
+    };
     let velocities = velocity.map(|(_, velocities)| velocities);
     let mut scope = arguments.lagrangian_scope(closure, &taken, value, &mut context.diagnostics);
     if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
@@ -145,6 +166,28 @@ pub(super) fn potential<'g>(
     }
 }
 
+/// The terms of the potential of a power; one with an error has none.
+pub(super) fn potential_of_power<'g>(
+    context: &mut Context<'_, 'g>,
+    declaration: &Declaration,
+    arguments: &Arguments<'_, 'g>,
+) -> Vec<Term<'g>> {
+    // by construction: an opaque potential has been refused
+    let Some(parse::Potential::Closure(closure)) = &declaration.potential else { return Vec::new() };
+    let scope = arguments.potential_scope(closure, &mut context.diagnostics);
+    let Some(value) = Elaborator::new(context, "potential", scope).elaborate(&closure.body) else { return Vec::new() };
+    match value {
+        Value::Sum(terms) => terms,
+        Value::Matrix(value) if value.shape().is_scalar() => vec![Term { ranges: Vec::new(), value }],
+        other => {
+            let message = format!("the potential is {}, but an energy is a scalar", other.describe());
+            let error = Diagnostic::new(tail(&closure.body).0, message);
+            context.diagnostics.push(error.help("add what sites have, as in `(0..N).map(|i| …).sum()`"));
+            Vec::new()
+        }
+    }
+}
+
 /// What a scalar closure is elaborated with.
 pub(super) struct Elaborated<'g> {
     pub scope: super::scope::Scope<'g>,
@@ -156,6 +199,29 @@ pub(super) fn scalar<'g>(context: &mut Context<'_, 'g>, closure: &Closure, given
     let key = closure.key.to_string();
     let mut elaborator = Elaborator::new(context, &key, given.scope);
     let value = elaborator.elaborate(&closure.body)?;
+    if let Some(count) = elaborator.context.power.as_ref().map(|power| power.count) {
+        let terms = match &value {
+            Value::Sum(terms) => Some(terms.clone()),
+            other => other
+                .matrix()
+                .filter(|value| value.shape().is_scalar())
+                .map(|value| vec![Term { ranges: Vec::new(), value }]),
+        };
+        if let Some(terms) = terms {
+            return match power::of_one_site(&terms, count, context.graph) {
+                Ok(sum) => Some(sum),
+                Err(reason) => {
+                    let message = format!("the {key} of a power is a sum over its sites, and {reason}");
+                    let error = Diagnostic::new(tail(&closure.body).0, message)
+                        .help(format!("write `(0..{count}).map(|i| …).sum()` with what site `i` has alone"));
+                    context.diagnostics.push(error.note(
+                        "the equation of a step is solved site by site; what ties sites to each other belongs to the potential",
+                    ));
+                    None
+                }
+            };
+        }
+    }
     if let Some(expr) = value.matrix().filter(|expr| expr.shape().is_scalar()) {
         return Some(expr);
     }

@@ -8,6 +8,7 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
+use super::power::{Kind, PerSite, const_generic};
 use super::scalar::Agreement;
 use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::Value;
@@ -37,6 +38,11 @@ impl<'g> Fields<'g> {
         self.known.get(name)
     }
 
+    /// The number of scalars, vectors and matrices in all fields that are read.
+    pub fn leaf_count(&self) -> usize {
+        self.parameters.iter().map(|parameter| parameter.leaves.len()).sum()
+    }
+
     /// The names of all fields.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.known.keys().map(String::as_str)
@@ -50,6 +56,8 @@ struct FieldType<'t> {
     shape: Shape,
     is_scalar: bool,
     scalar: Option<&'t Type>,
+    /// Whether there is one for each site of a power.
+    per_site: bool,
 }
 
 /// Reads the fields that closures use, and settles the scalar of the system.
@@ -57,6 +65,7 @@ pub(super) fn read<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
     spaces: &[Option<&Type>],
+    sites: Option<&syn::Ident>,
     diagnostics: &mut Diagnostics,
 ) -> Fields<'g> {
     let used = first_uses(declaration);
@@ -71,11 +80,13 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let parameter = match field_type(&field.ty, &declaration.generics) {
+        let entry = sites.and_then(|sites| entry_of_site(&field.ty, &declaration.generics, sites));
+        let parameter = match field_type(entry.unwrap_or(&field.ty), &declaration.generics) {
             Ok(ty) => {
                 if let Some(written) = ty.scalar {
                     scalar.meet(written, &format!("`{name}`"), diagnostics);
                 }
+                let ty = FieldType { per_site: entry.is_some(), ..ty };
                 parameter(graph, field, ty, first_use, leaf_count).map_err(|error| diagnostics.push(error)).ok()
             }
             Err(error) => {
@@ -85,13 +96,27 @@ pub(super) fn read<'g>(
         };
         let value = parameter.as_ref().map(|parameter| {
             let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
-            Value::nested(&parameter.structure, &leaves)
+            let value = Value::nested(&parameter.structure, &leaves);
+            match parameter.per_site {
+                true => Value::PerSite(PerSite { of: Kind::Field(parameters.len()), own: Box::new(value) }),
+                false => value,
+            }
         });
         leaf_count += parameter.as_ref().map_or(0, |parameter| parameter.leaves.len());
         parameters.extend(parameter);
         known.insert(name, value);
     }
     Fields { known, parameters, scalar: scalar.settle() }
+}
+
+/// The type of one entry, where a field is an array with one for each site.
+fn entry_of_site<'t>(ty: &'t Type, generics: &Generics, sites: &syn::Ident) -> Option<&'t Type> {
+    match ty {
+        Type::Array(array) => (const_generic(&array.len, generics)? == sites).then_some(&*array.elem),
+        Type::Group(group) => entry_of_site(&group.elem, generics, sites),
+        Type::Paren(paren) => entry_of_site(&paren.elem, generics, sites),
+        _ => None,
+    }
 }
 
 /// The shape of a field's type.
@@ -119,6 +144,7 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
                 shape,
                 is_scalar,
                 scalar,
+                per_site: false,
             };
             if is_float(ty) || type_parameter(ty, generics).is_some() {
                 return Ok(leaf(Shape::scalar(), true, Some(ty)));
@@ -200,6 +226,7 @@ fn parameter<'g>(
         name: symbol_name,
         first_use,
         promise,
+        per_site: ty.per_site,
         structure: ty.structure,
         leaves,
     })

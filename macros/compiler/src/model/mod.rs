@@ -15,6 +15,7 @@ mod leaves;
 mod membership;
 mod momentum;
 mod outline;
+mod power;
 mod print;
 mod quaternion;
 mod scalar;
@@ -36,17 +37,19 @@ pub use crate::parse::{
     ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
 pub use outline::{Outline, outline};
+pub use power::{Place, Power, Term};
 pub use structure::Structure;
 pub use types::*;
 
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 use self::action_laws::{Action, Law};
-use self::arguments::Arguments;
+use self::arguments::{Arguments, TypedArguments};
 use self::declared::DeclaredGroups;
 use self::elaborate::Context;
 use self::forces::Forces;
 use self::groups::Names;
+use self::power::Sites;
 use self::symmetries::System;
 use self::typed::Typed;
 use crate::diagnostic::Diagnostics;
@@ -61,19 +64,37 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let names = Names { generics: &declaration.generics, declared: &declared };
     let mut diagnostics = Diagnostics::new();
     let types = arguments::of_action(&declaration.action, &mut diagnostics);
+    let sites = types.map(|types| power::site_types((types.group, types.space), &declaration.generics));
+    let (types, sites) = match sites {
+        Some(Ok(Some(sites))) => {
+            power::check(declaration, &mut diagnostics);
+            let site = types.map(|types| TypedArguments { group: sites.group, space: sites.space, ..types });
+            (site, Some(sites.length))
+        }
+        Some(Err(error)) => {
+            diagnostics.push(error);
+            (None, None)
+        }
+        _ => (types, None),
+    };
     let groups = types.and_then(|types| spaces::read_groups(types.group, names, &mut diagnostics));
     let spaces = types.and_then(|types| spaces::read_spaces(types.space, names, &mut diagnostics));
     let scalars: Vec<Option<&syn::Type>> =
         spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
-    let fields = fields::read(graph, declaration, &scalars, &mut diagnostics);
+    let fields = fields::read(graph, declaration, &scalars, sites, &mut diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
     let typed = Typed::new(graph, types, groups, spaces, &mut diagnostics);
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
-    let arguments = typed.arguments(types, input(declaration), (step_size, time));
-    let mut context = Context { graph, fields: &fields, constants: Vec::new(), diagnostics };
+    let mut arguments = typed.arguments(types, input(declaration), (step_size, time));
+    let power = sites.zip(typed.configurations.clone()).map(|(length, leaves)| {
+        arguments.of_each_site();
+        let (structure, leaf_count) = (typed.configuration.clone(), fields.leaf_count());
+        Sites::new(graph, length, (structure, leaves), arguments.configuration.spell(), leaf_count)
+    });
+    let mut context = Context { graph, fields: &fields, constants: Vec::new(), power, diagnostics };
     let formulas = Formulas::read(&mut context, declaration, &arguments, &typed, names);
-    let Context { constants, mut diagnostics, .. } = context;
+    let Context { constants, power, mut diagnostics, .. } = context;
     declared.check_used(&mut diagnostics);
     chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &mut diagnostics);
     diagnostics.propagate(())?;
@@ -86,7 +107,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         (factor.side, factor.moves) = (law.side, law.moves);
     }
     let dials = &declaration.dials;
-    momentum::alone(Model {
+    let model = momentum::alone(Model {
         graph,
         item: item(declaration, fields.scalar),
         parameters: fields.parameters,
@@ -116,6 +137,11 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
         emit: dials.emit,
         spans: closures::spans(declaration),
+        power: None,
+    })?;
+    Ok(match power.zip(sites) {
+        Some((power, length)) => power::power_of(model, power, formulas.terms, length),
+        None => model,
     })
 }
 
@@ -125,6 +151,8 @@ struct Formulas<'g> {
     laws: Vec<Law>,
     kinetic: Kinetic<'g>,
     potential: Option<Expr<'g>>,
+    /// The potential of a power.
+    terms: Vec<Term<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
     forces: Forces<'g>,
     control: Option<Control<'g>>,
@@ -143,7 +171,10 @@ impl<'g> Formulas<'g> {
         let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
         let action = closures::action(context, declaration, arguments, &typed.configuration, configurations);
         let kinetic = closures::kinetic(context, declaration, arguments, &typed.element, factors);
-        let potential = closures::potential(context, declaration, arguments, configurations);
+        let (potential, terms) = match context.power.is_some() {
+            true => (None, closures::potential_of_power(context, declaration, arguments)),
+            false => (closures::potential(context, declaration, arguments, configurations), Vec::new()),
+        };
         let (action, factors, configurations) = (action?, factors?, configurations?);
         let (graph, closure) = (context.graph, &declaration.action);
         let laws = action_laws::check(
@@ -177,6 +208,7 @@ impl<'g> Formulas<'g> {
             laws: laws?,
             kinetic: kinetic?,
             potential,
+            terms,
             symmetries,
             forces,
             control,

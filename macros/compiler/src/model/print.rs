@@ -12,7 +12,13 @@ use super::{
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "model {} over {}", self.item.ident, spell_scalar(&self.item.scalar))?;
+        match &self.power {
+            Some(power) => {
+                let (ident, length) = (&power.item.ident, &power.length);
+                writeln!(f, "model {ident} over {}, {length} times", spell_scalar(&self.item.scalar))?;
+            }
+            None => writeln!(f, "model {} over {}", self.item.ident, spell_scalar(&self.item.scalar))?,
+        }
         self.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
         for constant in &self.constants {
             writeln!(f, "  constant {}", constant.symbol)?;
@@ -35,7 +41,16 @@ impl fmt::Display for Model<'_> {
         match self.potential {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
             None if self.is_steered() => {}
+            None if self.power.as_ref().is_some_and(|power| !power.terms.is_empty()) => {}
             None => writeln!(f, "  potential  none")?,
+        }
+        if let Some(power) = &self.power {
+            power.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
+            for term in &power.terms {
+                let indices = term.indices();
+                let indices = if indices.is_empty() { indices } else { format!(", for {indices}") };
+                writeln!(f, "  term       {}{indices}", term.value)?;
+            }
         }
         if let Some(force) = &self.force {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
-use super::Structure;
+use super::{Power, Structure};
 use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
@@ -44,6 +44,8 @@ pub struct Model<'g> {
     pub input: Structure,
     /// What the inputs are chosen by; `None` where nothing is chosen.
     pub control: Option<Control<'g>>,
+    /// What ties sites to each other, where the declaration is a power and this is the model of a site.
+    pub power: Option<Power<'g>>,
     /// φ(t, q), the price of the end; `None` if there is none.
     pub endpoint: Option<Expr<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
@@ -97,6 +99,7 @@ impl Model<'_> {
 }
 
 /// The user's struct, as generated code has to name it.
+#[derive(Clone)]
 pub struct Item {
     /// Its name.
     pub ident: syn::Ident,
@@ -122,6 +125,7 @@ pub enum ScalarType {
 }
 
 /// A field that a closure reads.
+#[derive(Clone)]
 pub struct Parameter<'g> {
     /// The field, with the span of its declaration.
     pub field: syn::Member,
@@ -131,6 +135,8 @@ pub struct Parameter<'g> {
     pub first_use: Span,
     /// What the user promises about its values.
     pub promise: Option<Promise>,
+    /// Whether it is an array with one entry for each site of a power, of which the rest says what one is.
+    pub per_site: bool,
     /// How arrays nest.
     pub structure: Structure,
     /// One entry for each scalar, vector or matrix in it.

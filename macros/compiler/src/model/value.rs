@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::Structure;
+use super::power::{PerSite, Term};
 
 /// The value of an expression.
 #[derive(Clone, Debug)]
@@ -15,6 +16,16 @@ pub(super) enum Value<'g> {
     Quaternion(Expr<'g>),
     Tuple(Vec<Value<'g>>),
     Array(Vec<Value<'g>>),
+    /// One value for each site of a power, `q`.
+    PerSite(PerSite<'g>),
+    /// The indices from the first up to and without the second, `0..N`.
+    Range(Expr<'g>, Expr<'g>),
+    /// An index modulo N, `(i + 1) % N`.
+    Wrapped(Expr<'g>),
+    /// A value for each index of a range.
+    Sequence((Expr<'g>, Expr<'g>), Box<Value<'g>>),
+    /// A sum over sites.
+    Sum(Vec<Term<'g>>),
 }
 
 impl<'g> Value<'g> {
@@ -55,6 +66,11 @@ impl<'g> Value<'g> {
             Value::Quaternion(_) => "a quaternion".into(),
             Value::Tuple(parts) => format!("a tuple of {}", parts.len()),
             Value::Array(parts) => format!("an array of {}", parts.len()),
+            Value::PerSite(_) => "a value for each site".into(),
+            Value::Range(from, to) => format!("the range {from}..{to}"),
+            Value::Wrapped(_) => "an index".into(),
+            Value::Sequence((from, to), _) => format!("a value for each of {from}..{to}"),
+            Value::Sum(_) => "a sum over sites".into(),
         }
     }
 }

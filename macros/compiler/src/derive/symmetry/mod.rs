@@ -10,6 +10,7 @@ mod special;
 
 use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
+use super::power::{self, Link};
 use super::{DiscreteLagrangian, Symbols, naming};
 use crate::model::{Isotropy, Model};
 use directions::directions;
@@ -69,13 +70,13 @@ pub(super) fn find<'g>(
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,
     inertia: Expr<'g>,
-    force: Option<&[Expr<'g>]>,
+    (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
 ) -> Symmetries<'g> {
     let (families, directions) = directions(model, symbols, generator);
     if directions.is_empty() {
         return Symmetries::default();
     }
-    let matrix = variations(model, symbols, lagrangian, &directions, force);
+    let matrix = variations(model, symbols, lagrangian, &directions, (force, links));
     let found = identity::null_space(matrix, &|_| {});
     let finder = Finder { model, symbols, families, directions, matrix, inertia };
     let mut symmetries = Symmetries {
@@ -91,14 +92,14 @@ pub(super) fn find<'g>(
     symmetries
 }
 
-/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, and what the force changes of its
-/// momentum, ⟨f, ξ⟩.
+/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, what the force changes of its
+/// momentum, ⟨f, ξ⟩, and the variation of each term of a power where all sites move alike.
 fn variations<'g>(
     model: &Model<'g>,
     symbols: &Symbols<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
     directions: &[Direction<'g>],
-    force: Option<&[Expr<'g>]>,
+    (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
 ) -> Expr<'g> {
     let graph = model.graph;
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
@@ -117,8 +118,14 @@ fn variations<'g>(
     };
     let impulse: Vec<(Expr<'g>, Expr<'g>)> =
         symbols.momenta.iter().copied().zip(force.unwrap_or_default().iter().copied()).collect();
-    let shape = Shape::new(parts.len() + usize::from(force.is_some()), directions.len());
+    let own = parts.len() + usize::from(force.is_some());
+    let of_links: Vec<Vec<Expr<'g>>> =
+        directions.iter().map(|direction| power::moved(model, links, &direction.leaves)).collect();
+    let shape = Shape::new(own + links.len(), directions.len());
     let entry = |(part, column): (usize, usize)| {
+        if part >= own {
+            return of_links[column][part - own];
+        }
         if part == parts.len() {
             return directions[column].momentum.substitute(&impulse);
         }

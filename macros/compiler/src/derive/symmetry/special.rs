@@ -17,11 +17,12 @@ impl<'g> Finder<'_, 'g> {
             choices.push(turns.clone());
         }
         let mut momenta = Vec::new();
-        let leaves = self
-            .model
-            .parameters
-            .iter()
-            .flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
+        let own = |parameter: &&crate::model::Parameter<'g>| !parameter.per_site;
+        let of_terms = self.model.power.iter().flat_map(|power| &power.parameters);
+        let of_site = self.model.parameters.iter();
+        // what both read is one
+        let read = of_site.clone().chain(of_terms.filter(|one| of_site.clone().all(|other| other.name != one.name)));
+        let leaves = read.filter(own).flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
         for (parameter, leaf) in leaves.filter(|(_, leaf)| leaf.shape == Shape::vector(3)) {
             for choice in &choices {
                 let weight = |direction: &Direction<'g>| match choice.contains(&direction.family) {

@@ -111,7 +111,8 @@ fn elaborate<'g, R>(
     work: impl FnOnce(&mut Elaborator<'_, '_, 'g>) -> Option<R>,
 ) -> Result<R, Vec<Diagnostic>> {
     let fields = Fields::none();
-    let mut context = Context { graph, fields: &fields, constants: Vec::new(), diagnostics: Diagnostics::new() };
+    let mut context =
+        Context { graph, fields: &fields, constants: Vec::new(), power: None, diagnostics: Diagnostics::new() };
     let value = work(&mut Elaborator::new(&mut context, key, scope));
     let Context { constants, diagnostics, .. } = context;
     let mut errors = diagnostics.into_vec();

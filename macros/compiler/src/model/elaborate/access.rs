@@ -99,6 +99,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let base = self.elaborate(&index.expr)?;
         let at = index;
         match base {
+            Value::PerSite(per_site) => self.site(index, per_site),
             Value::Array(parts) => {
                 let position =
                     self.position(&index.index, parts.len(), &format!("the entries of `{}`", spell(&index.expr)))?;

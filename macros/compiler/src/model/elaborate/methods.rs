@@ -166,6 +166,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match (special, receiver) {
             (Special::Map, Value::Array(parts)) => self.map(call, parts),
             (Special::Sum, Value::Array(parts)) => self.total(call, parts),
+            (Special::Map, Value::Range(from, to)) => self.map_of_range(call, (from, to)),
+            (Special::Sum, Value::Sequence(range, body)) => self.sum_over_sites(call, range, *body),
             (Special::Map | Special::Sum, other) => {
                 let message = format!(
                     "`{}` is {}: `{}` is of an array or a range",

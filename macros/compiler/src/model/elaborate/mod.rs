@@ -15,6 +15,7 @@ mod powers;
 mod quaternions;
 mod refused;
 mod sequences;
+mod sites;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ use syn::Expr as Syntax;
 
 use super::Constant;
 use super::fields::Fields;
+use super::power::Sites;
 use super::scope::Scope;
 use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
@@ -44,6 +46,8 @@ pub(super) struct Context<'c, 'g> {
     pub graph: &'g Graph,
     pub fields: &'c Fields<'g>,
     pub constants: Vec<Constant<'g>>,
+    /// The sites of a power; `None` where the declaration is none.
+    pub power: Option<Sites<'g>>,
     pub diagnostics: Diagnostics,
 }
 
@@ -172,6 +176,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         match value {
             Value::Matrix(expr) => Some(expr),
             Value::Identity(_) => self.error(open_identity(syntax)),
+            Value::Sum(_) => self.error(open_sum(syntax)),
             other => {
                 let message = format!("`{}` is {}, not a matrix or a scalar", spell(syntax), other.describe());
                 let help = format!("take a part of it, as in `{}{}`", spell(syntax), first_part(&other));
@@ -255,9 +260,16 @@ fn open_identity(syntax: &Syntax) -> Diagnostic {
         .note("`I` takes its size from the other side of `+`, `-` or `*`")
 }
 
+/// The error for a sum over sites within another function.
+fn open_sum(syntax: &Syntax) -> Diagnostic {
+    Diagnostic::new(Place::of(syntax), format!("`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax))))
+        .note("each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
+}
+
 /// How a part of a tuple or an array is reached.
 fn first_part(value: &Value) -> &'static str {
     match value {
+        Value::PerSite(_) => "[i]",
         Value::Quaternion(_) => ".imag()",
         Value::Tuple(_) => ".0",
         _ => "[0]",

@@ -35,6 +35,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match name.as_str() {
             "I" => Some(Value::Identity(self.graph().integer(1))),
             "PI" => Some(Value::Matrix(self.graph().pi())),
+            _ if self.context.power.as_ref().is_some_and(|power| power.name == name) => {
+                self.context.power.as_ref().map(|power| Value::Matrix(power.count))
+            }
             "self" => {
                 let error = Diagnostic::new(ident.span(), "`self` alone is no quantity");
                 self.error(error.help("read a field, as in `self.mass`"))

@@ -79,6 +79,18 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn apply(&mut self, operator: Operator, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         match (operator, left, right) {
+            (Operator::Remainder, Value::Matrix(left), Value::Matrix(right)) if self.is_number_of_sites(right) => {
+                Some(Value::Wrapped(left))
+            }
+            (_, left @ Value::Sum(_), right) | (_, left, right @ Value::Sum(_)) => {
+                self.sums(operator, link, left, right)
+            }
+            (_, left @ (Value::PerSite(_) | Value::Range(..) | Value::Wrapped(_) | Value::Sequence(..)), _) => {
+                self.no_matrix(operator, &link.left, &left)
+            }
+            (_, _, right @ (Value::PerSite(_) | Value::Range(..) | Value::Wrapped(_) | Value::Sequence(..))) => {
+                self.no_matrix(operator, &link.right, &right)
+            }
             (_, left @ (Value::Tuple(_) | Value::Array(_)), _) => self.no_matrix(operator, &link.left, &left),
             (_, _, right @ (Value::Tuple(_) | Value::Array(_))) => self.no_matrix(operator, &link.right, &right),
             (_, left @ Value::Quaternion(_), right) | (_, left, right @ Value::Quaternion(_)) => {
@@ -223,6 +235,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             UnOp::Neg(_) => match self.elaborate(&unary.expr)? {
                 Value::Identity(scale) => Some(Value::Identity(-scale)),
                 Value::Quaternion(q) => self.build(unary, &[q], Growth::Sum, || -q).map(Value::Quaternion),
+                Value::Sum(terms) => Some(Value::Sum(super::sites::scaled(terms, self.graph().integer(-1)))),
                 value => {
                     let matrix = self.as_matrix(&unary.expr, value)?;
                     self.build(unary, &[matrix], Growth::Sum, || -matrix).map(Value::Matrix)

@@ -41,6 +41,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let error = Diagnostic::new(Place::of(range), "a range has a start and an end");
             return self.error(error.help("write `0..3`"));
         };
+        if self.context.power.is_some() {
+            return self.range_of_power(range, start, end);
+        }
+        self.range_of_numbers(range, start, end)
+    }
+
+    /// A range whose ends are known here, written out.
+    pub(super) fn range_of_numbers(&mut self, range: &ExprRange, start: &Syntax, end: &Syntax) -> Option<Value<'g>> {
         let start = self.position(start, RANGE, "ends of ranges");
         let end = self.position(end, RANGE, "ends of ranges");
         let (start, end) = start.zip(end)?;
@@ -60,11 +68,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// `.map(|i| …)`.
     pub(super) fn map(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
-        let Some(Syntax::Closure(closure)) = call.args.first().filter(|_| call.args.len() == 1) else {
-            let error = Diagnostic::new(Place::of(&call.args), "`map` takes a closure");
-            return self.error(error.help("write `.map(|i| …)`"));
-        };
-        let pattern = self.only_argument(closure)?;
+        let (pattern, closure) = self.closure_of_map(call)?;
         let mut values = Vec::with_capacity(parts.len());
         for part in parts {
             let mark = self.scope.mark();
@@ -79,6 +83,15 @@ impl<'g> Elaborator<'_, '_, 'g> {
             values.push(value?);
         }
         Some(Value::Array(values))
+    }
+
+    /// The closure of `.map(…)`, with its argument.
+    pub(super) fn closure_of_map<'s>(&mut self, call: &'s ExprMethodCall) -> Option<(Pattern, &'s ExprClosure)> {
+        let Some(Syntax::Closure(closure)) = call.args.first().filter(|_| call.args.len() == 1) else {
+            let error = Diagnostic::new(Place::of(&call.args), "`map` takes a closure");
+            return self.error(error.help("write `.map(|i| …)`"));
+        };
+        Some((self.only_argument(closure)?, closure))
     }
 
     fn only_argument(&mut self, closure: &ExprClosure) -> Option<Pattern> {

@@ -61,7 +61,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     };
     let closure = declaration.kinetic.closure();
     let scope = arguments.cost_scope(closure, &mut diagnostics);
-    let mut context = Context { graph: &graph, fields: &fields, constants: Vec::new(), diagnostics };
+    let mut context = Context { graph: &graph, fields: &fields, constants: Vec::new(), power: None, diagnostics };
     let value = Elaborator::new(&mut context, "cost", scope).elaborate(&closure.body);
     context.diagnostics.propagate(())?;
     Ok(look(&value.expect("a value, since there are no errors")))

@@ -1,0 +1,204 @@
+//! Powers: `0..N`, `(0..N).map(|i| …)`, sums over sites, `q[(i + 1) % N]`.
+
+use clebsch_symbolic::Expr;
+use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
+
+use super::super::power::{Kind, Linear, PerSite, Place as Site, Term};
+use super::super::value::Value;
+use super::operators::Operator;
+use super::{Elaborator, shortened};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::parse::spell;
+
+/// Sums inside each other.
+const SUMS: usize = 4;
+
+/// All terms, times a factor.
+pub(super) fn scaled<'g>(terms: Vec<Term<'g>>, factor: Expr<'g>) -> Vec<Term<'g>> {
+    terms.into_iter().map(|term| Term { value: factor * term.value, ..term }).collect()
+}
+
+impl<'g> Elaborator<'_, '_, 'g> {
+    /// Whether an expression is N.
+    pub(super) fn is_number_of_sites(&self, expr: Expr<'g>) -> bool {
+        self.context.power.as_ref().is_some_and(|power| power.count == expr)
+    }
+
+    /// `a..b` in a power, where the ends may depend on N and on the indices of the sums around.
+    pub(super) fn range_of_power(&mut self, range: &ExprRange, start: &Syntax, end: &Syntax) -> Option<Value<'g>> {
+        let (from, to) = (self.scalar(start), self.scalar(end));
+        let (from, to) = (from?, to?);
+        if from.as_number().is_some() && to.as_number().is_some() {
+            return self.range_of_numbers(range, start, end);
+        }
+        for (syntax, expr) in [(start, from), (end, to)] {
+            if Linear::of(expr).is_none() {
+                let error = Diagnostic::new(Place::of(syntax), format!("`{}` is no end of a range", spell(syntax)));
+                return self
+                    .error(error.help("write a whole number, `N`, an index, or sums of these, as in `i + 1..N`"));
+            }
+        }
+        let closed = matches!(range.limits, RangeLimits::Closed(_));
+        let to = if closed { to + self.graph().integer(1) } else { to };
+        Some(Value::Range(from, to))
+    }
+
+    /// `.map(|i| …)` of a range: the closure is read once, for all indices.
+    pub(super) fn map_of_range(&mut self, call: &ExprMethodCall, range: (Expr<'g>, Expr<'g>)) -> Option<Value<'g>> {
+        let (pattern, closure) = self.closure_of_map(call)?;
+        let graph = self.graph();
+        let power = self.context.power.as_mut()?;
+        if power.ranges.len() == SUMS {
+            let error = Diagnostic::new(Place::of(call), format!("more than {SUMS} ranges inside each other"));
+            return self.error(error.note("the terms of such a sum are too many for any N"));
+        }
+        let index = power.index(graph);
+        power.ranges.push(range);
+        let mark = self.scope.mark();
+        let errors = self.context.diagnostics.len();
+        self.bind(&pattern, Some(Value::Matrix(index)), "an argument");
+        let value = match self.context.diagnostics.len() == errors {
+            true => self.elaborate(&closure.body),
+            false => None,
+        };
+        self.scope.release(mark);
+        self.context.power.as_mut()?.ranges.pop();
+        Some(Value::Sequence(range, Box::new(value?)))
+    }
+
+    /// `.sum()` of a value for each index of a range.
+    pub(super) fn sum_over_sites(
+        &mut self,
+        call: &ExprMethodCall,
+        range: (Expr<'g>, Expr<'g>),
+        body: Value<'g>,
+    ) -> Option<Value<'g>> {
+        let terms = match body {
+            Value::Sum(terms) => terms,
+            Value::Matrix(value) if value.shape().is_scalar() => vec![Term { ranges: Vec::new(), value }],
+            other => {
+                let message = format!("the terms of this sum over sites are {}, not scalars", other.describe());
+                let error = Diagnostic::new(Place::of(&call.receiver), message);
+                return self.error(error.help("add scalars, as in `(0..N).map(|i| self.field.dot(&q[i])).sum()`"));
+            }
+        };
+        let within = |mut term: Term<'g>| {
+            term.ranges.insert(0, range);
+            term
+        };
+        Some(Value::Sum(terms.into_iter().map(within).collect()))
+    }
+
+    /// Sums over sites are added, and multiplied and divided by scalars.
+    pub(super) fn sums(
+        &mut self,
+        operator: Operator,
+        link: &ExprBinary,
+        left: Value<'g>,
+        right: Value<'g>,
+    ) -> Option<Value<'g>> {
+        let graph = self.graph();
+        let sign = graph.integer(if operator == Operator::Subtract { -1 } else { 1 });
+        match (operator, left, right) {
+            (Operator::Add | Operator::Subtract, left, right) => {
+                let mut terms = self.terms(&link.left, left)?;
+                terms.extend(scaled(self.terms(&link.right, right)?, sign));
+                Some(Value::Sum(terms))
+            }
+            (Operator::Multiply, Value::Sum(terms), factor) => {
+                let factor = self.factor(&link.right, factor)?;
+                Some(Value::Sum(scaled(terms, factor)))
+            }
+            (Operator::Multiply, factor, Value::Sum(terms)) => {
+                let factor = self.factor(&link.left, factor)?;
+                Some(Value::Sum(scaled(terms, factor)))
+            }
+            (Operator::Divide, Value::Sum(terms), divisor) => {
+                let divisor = self.factor(&link.right, divisor)?;
+                if divisor.is_zero() {
+                    let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
+                    return self.error(Diagnostic::new(Place::of(&link.right), message));
+                }
+                Some(Value::Sum(scaled(terms, divisor.powi(-1))))
+            }
+            (_, left, _) => {
+                let sum = if matches!(left, Value::Sum(_)) { &link.left } else { &link.right };
+                self.error(super::open_sum(sum))
+            }
+        }
+    }
+
+    /// The terms of a sum, or a scalar as its only one.
+    fn terms(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Vec<Term<'g>>> {
+        match value {
+            Value::Sum(terms) => Some(terms),
+            other => Some(vec![Term { ranges: Vec::new(), value: self.factor(syntax, other)? }]),
+        }
+    }
+
+    /// A scalar beside a sum.
+    fn factor(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
+        if matches!(value, Value::Sum(_)) {
+            return self.error(super::open_sum(syntax));
+        }
+        let expr = self.as_matrix(syntax, value)?;
+        if expr.shape().is_scalar() {
+            return Some(expr);
+        }
+        let message = format!("`{}` is {}, and a sum over sites is a scalar", shortened(&spell(syntax)), expr.shape());
+        self.error(
+            Diagnostic::new(Place::of(syntax), message).note("sums over sites are added, and multiplied by scalars"),
+        )
+    }
+
+    /// `q[i]`: what a site has.
+    pub(super) fn site(&mut self, index: &ExprIndex, per_site: PerSite<'g>) -> Option<Value<'g>> {
+        let place = match self.elaborate(&index.index)? {
+            Value::Wrapped(expr) => Site { index: expr, wraps: true },
+            value => Site { index: self.as_matrix(&index.index, value)?, wraps: false },
+        };
+        let text = spell(&index.index);
+        if !place.index.shape().is_scalar() || Linear::of(place.index).is_none() {
+            let error = Diagnostic::new(Place::of(&index.index), format!("`{text}` is no index of a site"));
+            return self.error(error.help("write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`"));
+        }
+        let graph = self.graph();
+        let fields = self.context.fields;
+        let power = self.context.power.as_mut()?;
+        let name = power.name.clone();
+        if !power.is_inside(&place) {
+            let message = format!("`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone())));
+            let help =
+                format!("write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
+            return self.error(Diagnostic::new(Place::of(&index.index), message).help(help));
+        }
+        let is_own = !place.wraps
+            && power.ranges.len() == 1
+            && place.index.as_symbol().is_some_and(|data| data.role == clebsch_symbolic::Role::Site(0));
+        let of_terms = self.key == "potential";
+        if is_own && !of_terms {
+            return Some(*per_site.own);
+        }
+        match per_site.of {
+            Kind::Configuration if of_terms => {
+                let number = power.place(place);
+                Some(power.configuration_at(graph, number))
+            }
+            Kind::Field(field) if of_terms => {
+                let parameter = &fields.parameters[field];
+                let number = power.place(place);
+                let leaves = power.entry(graph, field, number, parameter);
+                let leaves: Vec<Value<'g>> = leaves.into_iter().map(Value::Matrix).collect();
+                Some(Value::nested(&parameter.structure, &leaves))
+            }
+            _ => {
+                let key = self.key;
+                let error =
+                    Diagnostic::new(Place::of(index), format!("the {key} of a site depends on that site alone"));
+                self.error(error.help(format!("write `(0..{name}).map(|i| …)` with the index `i` alone")).note(
+                    "the equation of a step is solved site by site; what ties sites to each other belongs to the potential",
+                ))
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Whether an index is always that of a site.
+
+use clebsch_symbolic::{Expr, Rational, Role, Zero};
+
+/// c + n N + Σ b_k i_k with whole numbers, i_k the index of the k-th sum.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Linear {
+    /// c
+    pub constant: i64,
+    /// n
+    pub sites: i64,
+    /// b_k
+    pub indices: Vec<i64>,
+}
+
+impl Linear {
+    /// An expression in this form, if it has it.
+    pub fn of(expr: Expr<'_>) -> Option<Linear> {
+        let graph = expr.graph();
+        let mut linear = Linear { constant: 0, sites: 0, indices: Vec::new() };
+        let mut rest = expr;
+        for symbol in expr.symbols() {
+            let coefficient = whole(expr.gradient(symbol).as_number()?)?;
+            match symbol.as_symbol()?.role {
+                Role::Sites => linear.sites = coefficient,
+                Role::Site(depth) => {
+                    linear.indices.resize(linear.indices.len().max(depth + 1), 0);
+                    linear.indices[depth] = coefficient;
+                }
+                _ => return None,
+            }
+            rest = rest.substitute(&[(symbol, graph.integer(0))]);
+        }
+        linear.constant = whole(rest.as_number()?)?;
+        Some(linear)
+    }
+}
+
+fn whole(number: Rational) -> Option<i64> {
+    match number.parts() {
+        Some((value, 1)) if value.abs() < 1 << 32 => Some(value),
+        _ => None,
+    }
+}
+
+/// Whether 0 ≤ index < N for every N ≥ 1 and all indices in their ranges.
+pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> bool {
+    let graph = index.graph();
+    let above = sites - graph.integer(1) - index;
+    [index, above].into_iter().all(|expr| least(expr, ranges).is_some_and(|least| is_never_negative(&least)))
+}
+
+/// The least value over all indices in their ranges, the innermost first, as a function of N.
+fn least<'g>(mut expr: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Option<Linear> {
+    let graph = expr.graph();
+    for (depth, (from, to)) in ranges.iter().enumerate().rev() {
+        let is_index = |symbol: &Expr<'g>| symbol.as_symbol().is_some_and(|data| data.role == Role::Site(depth));
+        let Some(symbol) = expr.symbols().into_iter().find(is_index) else { continue };
+        let slope = expr.gradient(symbol).as_number()?;
+        let end = if slope < Rational::zero() { *to - graph.integer(1) } else { *from };
+        expr = expr.substitute(&[(symbol, end)]);
+    }
+    Linear::of(expr).filter(|linear| linear.indices.iter().all(|&coefficient| coefficient == 0))
+}
+
+/// c + n N ≥ 0 for every N ≥ 1.
+fn is_never_negative(linear: &Linear) -> bool {
+    linear.sites >= 0 && linear.constant.saturating_add(linear.sites) >= 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Linear, is_inside};
+    use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+
+    fn symbol<'g>(graph: &'g Graph, name: &str, role: Role) -> Expr<'g> {
+        graph.symbol(name, Shape::scalar(), role, Property::General)
+    }
+
+    #[test]
+    fn indices_are_linear() {
+        let graph = Graph::new();
+        let (i, n) = (symbol(&graph, "i", Role::Site(0)), symbol(&graph, "N", Role::Sites));
+        let found = Linear::of(2 * i + n - graph.integer(3));
+        assert_eq!(found, Some(Linear { constant: -3, sites: 1, indices: vec![2] }));
+        assert_eq!(Linear::of(i * i), None);
+        assert_eq!(Linear::of(i / 2), None);
+    }
+
+    #[test]
+    fn what_leaves_the_sites_is_seen() {
+        let graph = Graph::new();
+        let (i, j, n) =
+            (symbol(&graph, "i", Role::Site(0)), symbol(&graph, "j", Role::Site(1)), symbol(&graph, "N", Role::Sites));
+        let (zero, one) = (graph.integer(0), graph.integer(1));
+        let all = [(zero, n)];
+        assert!(is_inside(i, n, &all));
+        assert!(is_inside(n - one - i, n, &all), "backwards");
+        assert!(!is_inside(i + one, n, &all));
+        assert!(!is_inside(i - one, n, &all));
+        assert!(is_inside(i + one, n, &[(zero, n - one)]), "an open chain");
+        assert!(is_inside(i - one, n, &[(one, n)]));
+        assert!(is_inside(zero, n, &[]) && is_inside(n - one, n, &[]));
+        assert!(!is_inside(one, n, &[]), "one site has no second");
+        let pairs = [(zero, n), (i + one, n)];
+        assert!(is_inside(i, n, &pairs) && is_inside(j, n, &pairs));
+        assert!(is_inside(j - i - one, n, &pairs), "a distance less one");
+        assert!(!is_inside(i + j, n, &pairs));
+    }
+}

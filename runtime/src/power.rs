@@ -1,0 +1,436 @@
+//! Powers: N equal sites, each moved by its own element of a group, tied to each other by their potential alone.
+//!
+//! ```text
+//! Φ_F(q)_i = φ_{F_i}(q_i),    ℓd = Σ_i k(h, q_i, F_i) − h V(q),    V(q) = Σ of terms
+//! ```
+//! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them again. A site is a
+//! system of its own; what is here is the same for every power and does not grow with N.
+
+mod sites;
+
+pub use sites::{SiteError, SiteStorage, Sites};
+
+use crate::space::larger;
+use crate::{Clebsch, Error, Scalar, Space};
+use core::array::from_fn;
+
+/// The configuration of a site.
+pub type Point<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Configuration;
+/// The group element of a site.
+pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element;
+/// The momentum of a site.
+pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
+/// The representing matrix of the momentum of a site.
+type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::MomentumMatrix;
+
+/// What no step of a power changes.
+#[derive(Clone, Copy, Debug)]
+pub struct PowerConstants<T, C> {
+    h: T,
+    site: C,
+}
+
+impl<T: Scalar, C> PowerConstants<T, C> {
+    /// A part of the step size.
+    #[inline]
+    pub fn part(&self, part: f64) -> T {
+        T::from_f64(part) * self.h
+    }
+}
+
+/// The index modulo N of a site.
+#[inline]
+pub fn wrapped<const N: usize>(index: isize) -> usize {
+    match usize::try_from(index) {
+        Ok(index) if index < N => index,
+        // the next and the one before are what most rings ask for
+        Ok(index) if index - N < N => index - N,
+        _ => index.checked_rem_euclid(N as isize).unwrap_or(0) as usize,
+    }
+}
+
+#[inline]
+fn plus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
+    a.zip_map(b, |a, b| a + b)
+}
+
+#[inline]
+fn minus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
+    a.zip_map(b, |a, b| a - b)
+}
+
+/// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
+///
+/// Only what ties the sites together is generated; everything else is made of [`site`](Self::site).
+pub trait Power<const N: usize>: Clebsch + Sized {
+    /// One site, a system of its own.
+    type Site: Clebsch<Scalar = Self::Scalar, Input = ()>;
+
+    /// Whether all sites have the same kinetic energy.
+    const IS_UNIFORM: bool;
+
+    /// The site with this index, which is below N.
+    fn site(&self, i: usize) -> Self::Site;
+
+    /// The potential V(t, q), a sum over sites.
+    fn potential_of_sites(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> Self::Scalar;
+
+    /// Adds ∂V/∂q, a covector for each site.
+    fn add_gradient(&self, t: Self::Scalar, q: &[Point<Self, N>; N], gradient: &mut [Point<Self, N>; N]);
+
+    /// The constants of a step of size `h`.
+    ///
+    /// # Errors
+    /// Those of a site.
+    fn power_constants(
+        &self,
+        h: Self::Scalar,
+    ) -> Result<PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>, Error> {
+        // sites that differ are checked one by one; the constants of the first stand for all where they are equal
+        let others = if Self::IS_UNIFORM { 1 } else { N };
+        (1..others).try_for_each(|i| self.site(i).constants(h).map(drop))?;
+        Ok(PowerConstants { h, site: self.site(0).constants(h)? })
+    }
+
+    /// Φ_F(q), site by site.
+    #[inline]
+    fn act_on_sites(&self, f: &[Motion<Self, N>; N], q: &[Point<Self, N>; N]) -> [Point<Self, N>; N] {
+        from_fn(|i| self.site(i).act(&f[i], &q[i]))
+    }
+
+    /// J(q, p), site by site.
+    #[inline]
+    fn momenta_of(&self, q: &[Point<Self, N>; N], p: &[Point<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+        from_fn(|i| self.site(i).momentum_map(&q[i], &p[i]))
+    }
+
+    /// Ad*_F μ, site by site.
+    #[inline]
+    fn coadjoint_of_sites(
+        &self,
+        f: &[Motion<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+    ) -> [SiteMomentum<Self, N>; N] {
+        from_fn(|i| self.site(i).coadjoint(&f[i], &mu[i]))
+    }
+
+    /// ∂V/∂q.
+    #[inline]
+    fn slope(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> [Point<Self, N>; N] {
+        let mut gradient = [Space::origin(); N];
+        self.add_gradient(t, q, &mut gradient);
+        gradient
+    }
+
+    /// J(q, weight ∂V).
+    #[inline]
+    fn power_kick(&self, t: Self::Scalar, q: &[Point<Self, N>; N], weight: Self::Scalar) -> [SiteMomentum<Self, N>; N] {
+        let gradient = self.slope(t, q);
+        from_fn(|i| {
+            let momentum = self.site(i).momentum_map(&q[i], &gradient[i]);
+            momentum.zip_map(&momentum, |x, _| weight * x)
+        })
+    }
+
+    /// The kicks of all sites in the storage of others.
+    #[inline]
+    fn kick_into(
+        &self,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        weight: Self::Scalar,
+        gradient: &mut [Point<Self, N>; N],
+        kick: &mut [SiteMomentum<Self, N>; N],
+    ) {
+        gradient.iter_mut().for_each(|gradient| *gradient = Space::origin());
+        self.add_gradient(t, q, gradient);
+        for (i, ((kick, q), gradient)) in kick.iter_mut().zip(q).zip(gradient.iter()).enumerate() {
+            let momentum = self.site(i).momentum_map(q, gradient);
+            *kick = momentum.zip_map(&momentum, |x, _| weight * x);
+        }
+    }
+
+    /// Moves one site with the momentum n.
+    ///
+    /// # Errors
+    /// Those of a step of the site.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    fn moved(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        i: usize,
+        q: &Point<Self, N>,
+        n: &SiteMomentum<Self, N>,
+    ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
+        let site = self.site(i);
+        let own;
+        let constants = match Self::IS_UNIFORM {
+            true => &constants.site,
+            false => {
+                own = site.constants(constants.h)?;
+                &own
+            }
+        };
+        let impulse = site.impulse(constants, t, q, n);
+        let (q, n, _) = site.step(constants, t, q, n, &impulse, &())?;
+        Ok((q, n))
+    }
+
+    /// Moves all sites with their momenta, and with `kick` beside them, in the storage of others.
+    ///
+    /// # Errors
+    /// Those of a step of a site, with its index.
+    #[inline]
+    #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
+    fn drift_into(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+        kick: Option<&[SiteMomentum<Self, N>; N]>,
+        next: &mut [Point<Self, N>; N],
+        moved: &mut [SiteMomentum<Self, N>; N],
+    ) -> Result<(), (usize, Error)> {
+        for i in 0..N {
+            let n = match kick {
+                Some(kick) => plus(&mu[i], &kick[i]),
+                None => mu[i],
+            };
+            match self.moved(constants, t, i, &q[i], &n) {
+                Ok((q, n)) => (next[i], moved[i]) = (q, n),
+                Err(error) => return Err((i, error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves all sites with their momenta.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[inline]
+    #[allow(clippy::type_complexity)]
+    fn power_drift(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
+        let (mut next, mut moved) = (*q, *mu);
+        match self.drift_into(constants, t, q, mu, None, &mut next, &mut moved) {
+            Ok(()) => Ok((next, moved)),
+            Err((_, error)) => Err(error),
+        }
+    }
+
+    /// Half a kick, the move, half a kick.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[inline]
+    #[allow(clippy::type_complexity)]
+    fn power_step_of_second_order(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+        impulse: &[SiteMomentum<Self, N>; N],
+    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
+        let (mut next, mut momentum) = (*q, *mu);
+        if let Err((_, error)) = self.drift_into(constants, t, q, mu, Some(impulse), &mut next, &mut momentum) {
+            return Err(error);
+        }
+        let kick = self.power_kick(t + constants.h, &next, constants.part(-0.5));
+        momentum.iter_mut().zip(&kick).for_each(|(momentum, kick)| *momentum = plus(momentum, kick));
+        Ok((next, momentum, kick))
+    }
+
+    /// The move, and a whole kick.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[inline]
+    #[allow(clippy::type_complexity)]
+    fn power_step_of_first_order(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], ()), Error> {
+        let (next, moved) = self.power_drift(constants, t, q, mu)?;
+        let kick = self.power_kick(t + constants.h, &next, constants.part(-1.0));
+        Ok((next, from_fn(|i| plus(&moved[i], &kick[i])), ()))
+    }
+
+    /// F⁻ℓd, where the kick at the start has the weight `part` of a step.
+    #[inline]
+    fn power_legendre(
+        &self,
+        h: Self::Scalar,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        f: &[Motion<Self, N>; N],
+        part: f64,
+    ) -> [SiteMomentum<Self, N>; N] {
+        let kick = self.power_kick(t, q, h * Scalar::from_f64(part));
+        from_fn(|i| minus(&self.site(i).legendre(h, t, &q[i], &f[i]), &kick[i]))
+    }
+
+    /// F⁺ℓd, where the kick at the end has the weight `part` of a step.
+    #[inline]
+    fn power_legendre_next(
+        &self,
+        h: Self::Scalar,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        f: &[Motion<Self, N>; N],
+        part: f64,
+    ) -> [SiteMomentum<Self, N>; N] {
+        let kick = self.power_kick(t + h, &self.act_on_sites(f, q), h * Scalar::from_f64(part));
+        from_fn(|i| plus(&self.site(i).legendre_next(h, t, &q[i], &f[i]), &kick[i]))
+    }
+
+    /// The elements with this F⁻ℓd, where the kick at the start has the weight `part` of a step.
+    ///
+    /// # Errors
+    /// Those of a site.
+    fn power_inverse_legendre(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+        part: f64,
+    ) -> Result<[Motion<Self, N>; N], Error> {
+        let kick = self.power_kick(t, q, constants.part(part));
+        let mut elements = [Space::origin(); N];
+        for (i, element) in elements.iter_mut().enumerate() {
+            let site = self.site(i);
+            let n = plus(&mu[i], &kick[i]);
+            *element = match Self::IS_UNIFORM {
+                true => site.inverse_legendre(&constants.site, t, &q[i], &n)?,
+                false => site.inverse_legendre(&site.constants(constants.h)?, t, &q[i], &n)?,
+            };
+        }
+        Ok(elements)
+    }
+
+    /// ½ J(q, ∂(U₁ − U₀)) of kicks with these weights of a step.
+    #[inline]
+    fn power_stagger(
+        &self,
+        h: Self::Scalar,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        start: f64,
+        end: f64,
+    ) -> [SiteMomentum<Self, N>; N] {
+        match start == end {
+            true => [Space::origin(); N],
+            false => self.power_kick(t, q, h * Scalar::from_f64(0.5 * (end - start))),
+        }
+    }
+
+    /// A step of (q, p), whose kicks have these weights of a step.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[allow(clippy::type_complexity)]
+    fn power_step_symmetric(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        p: &[Point<Self, N>; N],
+        start: f64,
+        end: f64,
+    ) -> Result<([Point<Self, N>; N], [Point<Self, N>; N]), Error> {
+        let kicked = |p: &[Point<Self, N>; N], t, q: &[Point<Self, N>; N], part: f64| {
+            let (gradient, weight) = (self.slope(t, q), constants.part(part));
+            from_fn::<_, N, _>(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
+        };
+        let (mut next, mut moved) = (*q, kicked(p, t, q, start));
+        for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
+            let site = self.site(i);
+            (*q, *p) = match Self::IS_UNIFORM {
+                true => site.step_symmetric(&constants.site, t, q, p)?,
+                false => site.step_symmetric(&site.constants(constants.h)?, t, q, p)?,
+            };
+        }
+        let p = kicked(&moved, t + constants.h, &next, end);
+        Ok((next, p))
+    }
+
+    /// The kinetic energy of all sites.
+    fn power_kinetic_energy(
+        &self,
+        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        t: Self::Scalar,
+        q: &[Point<Self, N>; N],
+        mu: &[SiteMomentum<Self, N>; N],
+    ) -> Self::Scalar {
+        let mut sum = <Self::Scalar as num_traits::Zero>::zero();
+        for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
+            let site = self.site(i);
+            sum = sum
+                + match Self::IS_UNIFORM {
+                    true => site.kinetic_energy(&constants.site, t, q, mu),
+                    // by construction: the constants of all sites have been made once
+                    false => site.constants(constants.h).map_or(sum, |own| site.kinetic_energy(&own, t, q, mu)),
+                };
+        }
+        sum
+    }
+
+    /// The representing matrices, site by site.
+    #[inline]
+    fn matrices_of(mu: &[SiteMomentum<Self, N>; N]) -> [MomentumMatrix<Self, N>; N] {
+        from_fn(|i| Self::Site::momentum_matrix(&mu[i]))
+    }
+
+    /// The components, site by site.
+    #[inline]
+    fn components_of(m: &[MomentumMatrix<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+        from_fn(|i| Self::Site::momentum_components(&m[i]))
+    }
+
+    /// The largest defect of a site.
+    fn power_orbit_defect(&self, q: &[Point<Self, N>]) -> Self::Scalar {
+        let zero = <Self::Scalar as num_traits::Zero>::zero();
+        q.iter().enumerate().fold(zero, |most, (i, q)| larger(most, self.site(i).orbit_defect(q)))
+    }
+
+    /// The size of the defects of all sites together.
+    fn power_isotropy_defect(&self, q: &[Point<Self, N>], mu: &[SiteMomentum<Self, N>]) -> Self::Scalar {
+        let zero = <Self::Scalar as num_traits::Zero>::zero();
+        let defects = q.iter().zip(mu).enumerate().map(|(i, (q, mu))| self.site(i).isotropy_defect(q, mu));
+        Scalar::sqrt(defects.fold(zero, |sum, defect| sum + defect * defect))
+    }
+
+    /// The momenta that motions of q can have, site by site.
+    #[inline]
+    fn projected(&self, q: &[Point<Self, N>; N], mu: &[SiteMomentum<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+        from_fn(|i| self.site(i).project_momentum(&q[i], &mu[i]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::wrapped;
+
+    #[test]
+    fn indices_go_round_a_ring() {
+        let expected: [usize; 13] = [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4, 0, 1];
+        for (index, expected) in (-6..7).zip(expected) {
+            assert_eq!(wrapped::<5>(index), expected, "{index}");
+        }
+        assert_eq!(wrapped::<1>(1), 0);
+        assert_eq!(wrapped::<0>(3), 0, "there is no site, and nothing is read");
+    }
+}
