@@ -306,7 +306,7 @@ fn residual<S: Scene>(stepper: &Stepper<S>, state: &State<S>) -> f64 {
     let Ok(f) = stepper.inverse_legendre(q, n) else { return 0.0 };
     let found = stepper.legendre(q, &f);
     let size = n.max_abs().to_f64().max(stepper.legendre_next(q, &f).max_abs().to_f64());
-    if size == 0.0 { 0.0 } else { (found - *n).max_abs().to_f64() / size }
+    if size == 0.0 { 0.0 } else { found.zip_map(n, |found, n| found - n).max_abs().to_f64() / size }
 }
 
 /// The largest difference, of configurations (of the order of one), and of the momentum over its size.

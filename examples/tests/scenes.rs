@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 16] = [
+const SCENES: [(&str, &str); 17] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
+    ("spin_chain", "step,time,q1,q2,q3,N1,N2,N3,energy"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     (
         "rigid_body_4d",
@@ -122,6 +123,9 @@ fn other_flags_hold_all_their_claims() {
             "sphere_geodesics",
             &["--sphere", "3", "--discretization", "exponential", "--step-size", "5", "--steps", "100"],
         ),
+        ("spin_chain", &["--sites", "8", "--field", "0"]),
+        ("spin_chain", &["--sites", "100000", "--steps", "3"]),
+        ("spin_chain", &["--tilt", "0", "--turns", "0", "--steps", "10"]),
         ("rigid_body_5d", &["--j-d", "5,0,0.1,2,3", "--step-size", "0.01"]),
         ("rigid_body_5d", &["--momentum", "0,0,0,0,0,0,0,0,0,0", "--steps", "10"]),
         ("relativistic_spin", &["--electric", "10,200,-30", "--momentum", "0.1,0.2,0.3", "--spin", "0,1,2"]),

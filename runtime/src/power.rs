@@ -41,12 +41,13 @@ impl<T: Scalar, C> PowerConstants<T, C> {
 /// The index modulo N of a site.
 #[inline]
 pub fn wrapped<const N: usize>(index: isize) -> usize {
-    match usize::try_from(index) {
-        Ok(index) if index < N => index,
-        // the next and the one before are what most rings ask for
-        Ok(index) if index - N < N => index - N,
-        _ => index.checked_rem_euclid(N as isize).unwrap_or(0) as usize,
-    }
+    // most are inside; a negative one is larger than every N
+    if (index as usize) < N { index as usize } else { remainder::<N>(index) }
+}
+
+#[cold]
+fn remainder<const N: usize>(index: isize) -> usize {
+    index.checked_rem_euclid(N as isize).unwrap_or(0) as usize
 }
 
 #[inline]
@@ -132,7 +133,8 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         })
     }
 
-    /// The kicks of all sites in the storage of others.
+    /// The kicks of all sites in the storage of others, added to their momenta. Gives the sum of all numbers of the state, which is finite
+    /// where they are, unless they are very large.
     #[inline]
     fn kick_into(
         &self,
@@ -141,13 +143,18 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         weight: Self::Scalar,
         gradient: &mut [Point<Self, N>; N],
         kick: &mut [SiteMomentum<Self, N>; N],
-    ) {
+        mu: &mut [SiteMomentum<Self, N>; N],
+    ) -> Self::Scalar {
         gradient.iter_mut().for_each(|gradient| *gradient = Space::origin());
         self.add_gradient(t, q, gradient);
-        for (i, ((kick, q), gradient)) in kick.iter_mut().zip(q).zip(gradient.iter()).enumerate() {
-            let momentum = self.site(i).momentum_map(q, gradient);
-            *kick = momentum.zip_map(&momentum, |x, _| weight * x);
+        let mut sum = <Self::Scalar as num_traits::Zero>::zero();
+        for i in 0..N {
+            let momentum = self.site(i).momentum_map(&q[i], &gradient[i]);
+            kick[i] = momentum.zip_map(&momentum, |x, _| weight * x);
+            mu[i] = plus(&mu[i], &kick[i]);
+            sum += q[i].sum() + mu[i].sum();
         }
+        sum
     }
 
     /// Moves one site with the momentum n.
@@ -378,12 +385,13 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         let mut sum = <Self::Scalar as num_traits::Zero>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
             let site = self.site(i);
-            sum = sum
-                + match Self::IS_UNIFORM {
-                    true => site.kinetic_energy(&constants.site, t, q, mu),
-                    // by construction: the constants of all sites have been made once
-                    false => site.constants(constants.h).map_or(sum, |own| site.kinetic_energy(&own, t, q, mu)),
-                };
+            sum += match Self::IS_UNIFORM {
+                true => site.kinetic_energy(&constants.site, t, q, mu),
+                // by construction: the constants of all sites have been made once
+                false => site
+                    .constants(constants.h)
+                    .map_or(Self::Scalar::from_f64(f64::INFINITY), |own| site.kinetic_energy(&own, t, q, mu)),
+            };
         }
         sum
     }
@@ -408,9 +416,15 @@ pub trait Power<const N: usize>: Clebsch + Sized {
 
     /// The size of the defects of all sites together.
     fn power_isotropy_defect(&self, q: &[Point<Self, N>], mu: &[SiteMomentum<Self, N>]) -> Self::Scalar {
-        let zero = <Self::Scalar as num_traits::Zero>::zero();
-        let defects = q.iter().zip(mu).enumerate().map(|(i, (q, mu))| self.site(i).isotropy_defect(q, mu));
-        Scalar::sqrt(defects.fold(zero, |sum, defect| sum + defect * defect))
+        let (zero, one) = (<Self::Scalar as num_traits::Zero>::zero(), <Self::Scalar as num_traits::One>::one());
+        let defect =
+            |(i, (q, mu)): (usize, (&Point<Self, N>, &SiteMomentum<Self, N>))| self.site(i).isotropy_defect(q, mu);
+        let defects = || q.iter().zip(mu).enumerate().map(defect);
+        let most = defects().fold(zero, larger);
+        // squares of large ones are no numbers any more
+        let scale = Self::Scalar::select(zero.below(most), most, one);
+        let squares = defects().fold(zero, |sum, defect| sum + (defect / scale) * (defect / scale));
+        scale * Scalar::sqrt(squares)
     }
 
     /// The momenta that motions of q can have, site by site.

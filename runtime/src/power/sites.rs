@@ -23,10 +23,9 @@ pub struct SiteStorage<Points, Momenta> {
     pub more_momenta: [Momenta; 3],
 }
 
-#[cfg(feature = "alloc")]
-impl<Q: Copy, M: Copy> SiteStorage<alloc::vec::Vec<Q>, alloc::vec::Vec<M>> {
-    /// Vectors, with room as large: all that is ever allocated.
-    pub fn of(configuration: alloc::vec::Vec<Q>, momentum: alloc::vec::Vec<M>) -> Self {
+impl<Points: Clone, Momenta: Clone> SiteStorage<Points, Momenta> {
+    /// Vectors or arrays, with room as large: all that is ever allocated.
+    pub fn of(configuration: Points, momentum: Momenta) -> Self {
         let more_points = [configuration.clone(), configuration.clone()];
         let more_momenta = [momentum.clone(), momentum.clone(), momentum.clone()];
         Self { configuration, momentum, more_points, more_momenta }
@@ -130,12 +129,14 @@ where
     /// The kick at the configuration, for the steps that start there.
     fn kick(&mut self) -> Result<(), SiteError> {
         let [q, _, gradient] = &mut self.points;
-        let [_, _, kick, _] = &mut self.momenta;
+        let [_, next, kick, _] = &mut self.momenta;
         let (q, gradient): (&[Point<P, N>; N], &mut [Point<P, N>; N]) =
             (sites!(q.as_ref(), N), sites!(gradient.as_mut(), N));
         let kick: &mut [SiteMomentum<P, N>; N] = sites!(kick.as_mut(), N);
+        // what is in the room for the next momenta does not matter
+        let next: &mut [SiteMomentum<P, N>; N] = sites!(next.as_mut(), N);
         let weight = self.stepper.step_size() * Scalar::from_f64(if P::ORDER == 1 { 0.0 } else { -0.5 });
-        self.stepper.system().kick_into(self.time.now(), q, weight, gradient, kick);
+        self.stepper.system().kick_into(self.time.now(), q, weight, gradient, kick, next);
         Ok(())
     }
 
@@ -161,17 +162,10 @@ where
         }
         let time = self.time.after_step(h);
         let weight = h * Scalar::from_f64(if first { -1.0 } else { -0.5 });
-        system.kick_into(t + h, next, weight, gradient, next_kick);
-        for (i, ((n, kick), q)) in moved.iter_mut().zip(next_kick.iter()).zip(next.iter()).enumerate() {
-            *n = super::plus(n, kick);
-            if !(n.is_finite() && q.is_finite()) {
-                let name = match (q.is_finite(), kick.is_finite()) {
-                    (false, _) => "the configuration after the step",
-                    (_, false) => "the gradient of the potential after the step",
-                    _ => "the momentum after the step",
-                };
-                return Err(SiteError { site: Some(i), error: Error::NotFinite { name } });
-            }
+        if !system.kick_into(t + h, next, weight, gradient, next_kick, moved).is_finite()
+            && let Some(error) = not_finite(next, moved, next_kick)
+        {
+            return Err(error);
         }
         self.points.swap(0, 1);
         self.momenta.swap(0, 1);
@@ -237,6 +231,20 @@ where
         let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
         Ok(self.stepper.system().conserved(q, mu))
     }
+}
+
+/// The first site whose state is not finite, with the first of its parts that is not.
+#[cold]
+fn not_finite<T: Scalar, Q: Space<T>, M: Space<T>>(q: &[Q], mu: &[M], kick: &[M]) -> Option<SiteError> {
+    q.iter().zip(mu).zip(kick).enumerate().find_map(|(i, ((q, mu), kick))| {
+        let name = match (q.is_finite(), kick.is_finite(), mu.is_finite()) {
+            (true, true, true) => return None,
+            (false, ..) => "the configuration after the step",
+            (_, false, _) => "the gradient of the potential after the step",
+            _ => "the momentum after the step",
+        };
+        Some(SiteError { site: Some(i), error: Error::NotFinite { name } })
+    })
 }
 
 impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>

@@ -1,7 +1,7 @@
 //! Scenes that fail.
 
 use crate::Scene;
-use clebsch::{Clebsch, Controlled, Ensemble, Error, F64x4, Guess, Scalar, Target};
+use clebsch::{Clebsch, Controlled, Ensemble, Error, F64x4, Guess, Scalar, SiteStorage, Sites, Target};
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
 use clebsch_tests::fixtures::exact_body::ExactBody;
@@ -11,6 +11,7 @@ use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::promised_top::PromisedTop;
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
+use clebsch_tests::fixtures::spin_chain::SpinChain;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use nalgebra::{Matrix3, Quaternion, Vector2, Vector3};
 
@@ -43,6 +44,10 @@ pub struct Swivel;
 
 fn principal() -> Vector3<f64> {
     Vector3::new(1.0, 1.4, 1.9)
+}
+
+fn ring() -> SpinChain<4> {
+    SpinChain { exchange: 1.0, field: Vector3::z() }
 }
 
 fn top() -> HeavyTop {
@@ -84,6 +89,12 @@ fn parameters() -> Vec<Scene> {
     let broken = HeavyTop { weight: f64::NAN, ..top() };
     let wrong = Mistaken.check_potential(&Vector3::new(1.0, 2.0, 3.0));
     vec![
+        Scene {
+            error: Sites::new(ring(), 0.1, SiteStorage::of(vec![Vector3::x(); 3], vec![Vector3::zeros(); 4]))
+                .expect_err("3 of 4")
+                .error,
+            told: &["3 entries", "4 sites", "one entry for each site"],
+        },
         scene(refused(top().stepper(0.0)), &["the step size is 0", "a finite number other than zero"]),
         scene(
             refused(broken.stepper(0.1)),

@@ -7,7 +7,7 @@ use clebsch_tests::fixtures::*;
 use nalgebra::*;
 
 macro_rules! scenes {
-    ($($name:ident: $module:ident::$system:ident$(<$number:ty>)? { $($field:tt: $value:expr),* }, $configuration:expr, $h:expr;)*) => {
+    ($($name:ident: $module:ident::$system:ident$(<$number:tt>)? { $($field:tt: $value:expr),* }, $configuration:expr, $h:expr;)*) => {
         $(
             impl Scene for $module::$system$(<$number>)? {
                 fn ordinary() -> Self {
@@ -135,7 +135,7 @@ scenes! {
     a_spatial_body: spatial_body::SpatialBody { mass_matrix: four(), gravity: 9.81 }, placed(), 0.05;
     a_geodesic_of_the_sphere: sphere_geodesic::SphereGeodesic { }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.1;
     a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
-    a_spin_chain: spin_chain::SpinChain<4> { exchange: 0.7, field: center() }, [unit(), Vector3::x(), -unit(), Vector3::z()], 0.05;
+    a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: center() }, [unit(), Vector3::x(), -unit()], 0.05;
     a_spin_pair: spin_pair::SpinPair { inertia: [1.0, 1.3], anisotropy: [inertia(), inertia()], exchange: [[0.1, 0.2], [0.3, 0.4]] },
         [unit(), Vector3::x()], 0.05;
     a_split_top: split_top::SplitTop { inertia: inertia(), weight: 1.3, center: center() }, turned(), 0.1;

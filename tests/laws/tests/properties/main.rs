@@ -13,6 +13,7 @@ mod mentions;
 mod paths;
 mod places;
 mod plans;
+mod powers;
 mod public;
 mod rotations;
 mod scalars;

@@ -34,7 +34,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     let declaration = parse(source.parse().expect("the table holds Rust"))?;
     let graph = Graph::new();
     let mut diagnostics = Diagnostics::new();
-    let fields = fields::read(&graph, &declaration, &[], &mut diagnostics);
+    let fields = fields::read(&graph, &declaration, &[], None, &mut diagnostics);
     diagnostics.propagate(())?;
     let mut diagnostics = Diagnostics::new();
     let TypedArguments { element, configuration, .. } =
@@ -95,6 +95,7 @@ fn print(value: &Value) -> String {
         Value::Quaternion(expr) => format!("quaternion {expr}"),
         Value::Tuple(parts) => format!("({})", all(parts)),
         Value::Array(parts) => format!("[{}]", all(parts)),
+        other => other.describe(),
     }
 }
 

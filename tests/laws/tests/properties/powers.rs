@@ -1,0 +1,166 @@
+//! Powers: each site is a system of its own, tied to the others by kicks alone.
+
+use crate::arbitrary::{cases, unit, vector};
+use clebsch::__private::{PowerConstants, wrapped};
+use clebsch::{Clebsch, Power, SiteStorage, Sites};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+const N: usize = 5;
+const H: f64 = 0.05;
+
+/// A ring of spins, each of its own mass, in a field that changes.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: [SO<3>; N], q: [Unit<Vector3>; N]| (0..N).map(|i| F[i] * q[i]),
+    cost      = |h, F| (0..N).map(|i| self.mass[i] * (F[i] - I).norm_squared() / (4 * h)).sum(),
+    potential = |t, q| (0..N).map(|i| self.exchange * q[i].dot(&q[(i + 2) % N]) - t.cos() * self.field.dot(&q[i])).sum(),
+)]
+pub struct Ring<const N: usize> {
+    pub mass: [f64; N],
+    pub exchange: f64,
+    pub field: Vector3<f64>,
+}
+
+type Spins = [Vector3<f64>; N];
+
+fn rings() -> BoxedStrategy<Ring<N>> {
+    let made = |(mass, exchange, field)| Ring { mass, exchange, field };
+    (prop::array::uniform5(0.5_f64..2.0), -1.0_f64..1.0, vector::<3>(1.0)).prop_map(made).boxed()
+}
+
+/// Points with momenta across.
+fn spins() -> BoxedStrategy<(Spins, Spins)> {
+    let across = |(q, v): (Spins, Spins)| (q, std::array::from_fn(|i| q[i].cross(&v[i])));
+    (prop::array::uniform5(unit()), prop::array::uniform5(vector::<3>(1.0))).prop_map(across).boxed()
+}
+
+fn apart(a: &Spins, b: &Spins) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(cases(32))]
+
+    #[test]
+    fn sites_are_systems_alone(ring in rings(), (q, mu) in spins(), p in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0) {
+        let constants = ring.power_constants(H)?;
+        let drifted = ring.power_drift(&constants, t, &q, &mu)?;
+        let f = ring.power_inverse_legendre(&constants, t, &q, &mu, 0.0)?;
+        let (image, momenta, coadjoint) = (ring.act_on_sites(&f, &q), ring.momenta_of(&q, &p), ring.coadjoint_of_sites(&f, &mu));
+        let (matrices, projected) = (<Ring<N> as Power<N>>::matrices_of(&mu), ring.projected(&q, &p));
+        prop_assert!(apart(&<Ring<N> as Power<N>>::components_of(&matrices), &mu) < 1e-15);
+        let (mut energy, mut defect, mut largest) = (0.0, 0.0_f64, 0.0_f64);
+        let off: Spins = std::array::from_fn(|i| q[i] * (1.0 + 0.01 * i as f64));
+        for i in 0..N {
+            let site = ring.site(i);
+            let own = site.constants(H)?;
+            prop_assert_eq!(site.act(&f[i], &q[i]), image[i]);
+            prop_assert_eq!(site.momentum_map(&q[i], &p[i]), momenta[i]);
+            prop_assert_eq!(site.coadjoint(&f[i], &mu[i]), coadjoint[i]);
+            prop_assert_eq!(site.project_momentum(&q[i], &p[i]), projected[i]);
+            let (next, moved, _) = site.step(&own, t, &q[i], &mu[i], &(), &())?;
+            prop_assert_eq!((next, moved), (drifted.0[i], drifted.1[i]));
+            prop_assert_eq!(ring.moved(&constants, t, i, &q[i], &mu[i])?, (next, moved));
+            energy += site.kinetic_energy(&own, t, &q[i], &mu[i]);
+            defect += site.isotropy_defect(&q[i], &p[i]).powi(2);
+            largest = largest.max(site.orbit_defect(&off[i]));
+        }
+        prop_assert!((ring.power_kinetic_energy(&constants, t, &q, &mu) - energy).abs() <= 1e-14 * energy);
+        prop_assert!((ring.power_isotropy_defect(&q, &p) - defect.sqrt()).abs() < 1e-14);
+        prop_assert_eq!(ring.power_orbit_defect(&off), largest);
+    }
+
+    /// Differences of the potential, and what kicks make of its gradient.
+    #[test]
+    fn kicks_are_gradients(ring in rings(), (q, _) in spins(), along in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0, weight in -1.0_f64..1.0) {
+        let slope = ring.slope(t, &q);
+        let mut twice = slope;
+        ring.add_gradient(t, &q, &mut twice);
+        prop_assert!(apart(&twice, &slope.map(|slope| 2.0 * slope)) < 1e-14);
+        let moved = |e: f64| ring.potential_of_sites(t, &std::array::from_fn(|i| q[i] + e * along[i]));
+        // a quadratic potential has no error of third order
+        let difference = (moved(1e-3) - moved(-1e-3)) / 2e-3;
+        let expected: f64 = slope.iter().zip(&along).map(|(slope, along)| slope.dot(along)).sum();
+        prop_assert!((difference - expected).abs() < 1e-11, "{} and {}", difference, expected);
+        let kick = ring.power_kick(t, &q, weight);
+        let by_map: Spins = ring.momenta_of(&q, &slope.map(|slope| weight * slope));
+        prop_assert!(apart(&kick, &by_map) < 1e-14);
+        let (mut gradient, mut again, mut momenta) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::y(); N]);
+        let sum = ring.kick_into(t, &q, weight, &mut gradient, &mut again, &mut momenta);
+        prop_assert_eq!((gradient, again), (slope, kick));
+        prop_assert!(apart(&momenta, &kick.map(|kick| kick + Vector3::y())) < 1e-15);
+        prop_assert!((sum - q.iter().chain(&momenta).map(Vector3::sum).sum::<f64>()).abs() < 1e-13);
+        prop_assert_eq!(ring.power_stagger(weight, t, &q, -0.5, -0.5), [Vector3::zeros(); N]);
+        prop_assert!(apart(&ring.power_stagger(weight, t, &q, 0.0, -1.0), &kick.map(|kick| -0.5 * kick)) < 1e-15);
+    }
+
+    /// Kick, move, kick; the transforms of both ends; and the same on T*Q.
+    #[test]
+    fn steps_are_kicks_and_moves(ring in rings(), (q, mu) in spins(), t in -3.0_f64..3.0) {
+        let constants: PowerConstants<_, _> = ring.power_constants(H)?;
+        prop_assert_eq!(constants.part(-0.5), -0.5 * H);
+        let start = ring.power_kick(t, &q, constants.part(-0.5));
+        let (next, momenta, kick) = ring.power_step_of_second_order(&constants, t, &q, &mu, &start)?;
+        let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);
+        let (mut image, mut moved) = ([Vector3::x(); N], [Vector3::x(); N]);
+        prop_assert!(ring.drift_into(&constants, t, &q, &mu, Some(&start), &mut image, &mut moved).is_ok());
+        prop_assert_eq!((image, moved), ring.power_drift(&constants, t, &q, &kicked)?);
+        prop_assert_eq!(next, image);
+        prop_assert_eq!(kick, ring.power_kick(t + H, &next, constants.part(-0.5)));
+        prop_assert!(apart(&momenta, &std::array::from_fn(|i| moved[i] + kick[i])) < 1e-15);
+        let f = ring.power_inverse_legendre(&constants, t, &q, &mu, -0.5)?;
+        prop_assert!(apart(&ring.act_on_sites(&f, &q), &next) < 1e-13);
+        prop_assert!(apart(&ring.power_legendre(H, t, &q, &f, -0.5), &mu) < 1e-12);
+        prop_assert!(apart(&ring.power_legendre_next(H, t, &q, &f, -0.5), &momenta) < 1e-12);
+        let (first, late, ()) = ring.power_step_of_first_order(&constants, t, &q, &mu)?;
+        let (image, moved) = ring.power_drift(&constants, t, &q, &mu)?;
+        let whole = ring.power_kick(t + H, &image, constants.part(-1.0));
+        prop_assert_eq!(first, image);
+        prop_assert!(apart(&late, &std::array::from_fn(|i| moved[i] + whole[i])) < 1e-15);
+        // p = N × q has J(q, p) = N, as N is across q
+        let p: Spins = std::array::from_fn(|i| mu[i].cross(&q[i]));
+        let (there, covectors) = ring.power_step_symmetric(&constants, t, &q, &p, -0.5, -0.5)?;
+        prop_assert!(apart(&there, &next) < 1e-13);
+        prop_assert!(apart(&ring.momenta_of(&there, &covectors), &momenta) < 1e-12);
+    }
+
+    /// Bit for bit, in vectors and in slices.
+    #[test]
+    fn storage_does_not_matter(ring in rings(), (q, mu) in spins(), steps in 0_u64..5) {
+        let stepper = ring.stepper(H)?;
+        let mut state = stepper.state(q, mu)?;
+        let mut vectors = Sites::new(ring.clone(), H, SiteStorage::of(q.to_vec(), mu.to_vec()))?;
+        let mut single = Sites::new(ring, H, SiteStorage::of(q, mu))?;
+        for _ in 0..steps {
+            state = stepper.step(&state)?;
+            single.step()?;
+        }
+        vectors.advance(steps)?;
+        prop_assert_eq!((vectors.configuration(), vectors.momentum()), (&state.configuration()[..], &state.momentum()[..]));
+        prop_assert_eq!((single.configuration(), single.momentum()), (&state.configuration()[..], &state.momentum()[..]));
+        prop_assert_eq!((vectors.time(), vectors.steps()), (state.time(), steps));
+        prop_assert_eq!(vectors.energy()?, stepper.energy(&state));
+        prop_assert_eq!(vectors.stepper().step_size(), H);
+        let storage = vectors.into_storage();
+        prop_assert_eq!((&storage.configuration[..], &storage.momentum[..]), (single.configuration(), single.momentum()));
+    }
+
+    /// What is conserved is a sum over sites.
+    #[test]
+    fn conserved_momenta_are_sums(mut ring in rings(), (q, mu) in spins()) {
+        let along_field = |ring: &Ring<N>| -> Result<f64, TestCaseError> {
+            Ok(Sites::new(ring.clone(), H, SiteStorage::of(q.to_vec(), mu.to_vec()))?.conserved()?[0])
+        };
+        let total: Vector3<f64> = mu.iter().sum();
+        prop_assert!((along_field(&ring)? - total.dot(&ring.field)).abs() < 1e-14);
+        ring.field *= 2.0;
+        prop_assert!((along_field(&ring)? - total.dot(&ring.field)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn indices_go_round(index in -40_isize..40) {
+        prop_assert_eq!(wrapped::<7>(index) as isize, index.rem_euclid(7));
+        prop_assert_eq!(wrapped::<1>(index), 0);
+    }
+}
