@@ -10,10 +10,10 @@ mod rotors;
 mod watch;
 
 use clap::Parser;
-use clebsch::{Clebsch, SiteError, SiteStorage, Sites};
+use clebsch::{Clebsch, Power, SiteError, SiteStorage, Sites};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::Csv;
-use clebsch_examples::flags::{Run, Scene, finite, parse};
+use clebsch_examples::flags::{Order, Run, Scene, finite, parse};
 use clebsch_examples::progress::Progress;
 use clebsch_examples::scene::{Failure, conclude, say};
 use nalgebra::Vector3;
@@ -35,13 +35,50 @@ pub struct SpinChain<const N: usize> {
     pub field: Vector3<f64>,
 }
 
+/// The same ring in steps of first order.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: [SO<3>; N], q: [Unit<Vector3>; N]| (0..N).map(|i| F[i] * q[i]),
+    cost      = |h, F| (0..N).map(|i| (F[i] - I).norm_squared() / (4 * h)).sum(),
+    potential = |q| (0..N).map(|i| -self.exchange * q[i].dot(&q[(i + 1) % N]) - self.field.dot(&q[i])).sum(),
+    order     = 1,
+)]
+pub struct FirstOrderChain<const N: usize> {
+    /// Exchange energy, 1/s².
+    pub exchange: f64,
+    /// Field, 1/s².
+    pub field: Vector3<f64>,
+}
+
+/// A ring of either order.
+pub trait Spins<const N: usize>:
+    Power<N, Site: Clebsch<Configuration = Vector3<f64>, Momentum = Vector3<f64>>>
+    + Clebsch<Scalar = f64, Configuration = [Vector3<f64>; N], Momentum = [Vector3<f64>; N], Time = ()>
+    + Clone
+{
+    /// With this exchange energy and field.
+    fn new(exchange: f64, field: Vector3<f64>) -> Self;
+}
+
+impl<const N: usize> Spins<N> for SpinChain<N> {
+    fn new(exchange: f64, field: Vector3<f64>) -> Self {
+        Self { exchange, field }
+    }
+}
+
+impl<const N: usize> Spins<N> for FirstOrderChain<N> {
+    fn new(exchange: f64, field: Vector3<f64>) -> Self {
+        Self { exchange, field }
+    }
+}
+
 const SCENE: Scene = Scene {
     name: "spin_chain",
     step_size: "0.02",
     time_unit: "seconds",
     steps: "2000",
     order: "2",
-    order_note: "this ring is declared with order 2 alone",
+    order_note: "1: drift and kick, 2: half of the kick at each end",
     columns_note: "mean of the spins q1, q2, q3 and of their momenta N1, N2, N3, the energy of a spin",
 };
 
@@ -68,8 +105,8 @@ struct Flags {
 }
 
 impl Flags {
-    fn ring<const N: usize>(&self) -> SpinChain<N> {
-        SpinChain { exchange: self.exchange, field: Vector3::new(0.0, 0.0, self.field) }
+    fn ring<S: Spins<N>, const N: usize>(&self) -> S {
+        S::new(self.exchange, Vector3::new(0.0, 0.0, self.field))
     }
 
     /// A spiral, tilted in a wave of its own, and turning about the field as the tilt says.
@@ -87,16 +124,16 @@ impl Flags {
 }
 
 /// The spins of a ring in vectors.
-pub type Ring<const N: usize> = Sites<SpinChain<N>, Vec<Vector3<f64>>, Vec<Vector3<f64>>, N>;
+pub type Ring<S, const N: usize> = Sites<S, Vec<Vector3<f64>>, Vec<Vector3<f64>>, N>;
 
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
     conclude(match flags.sites {
-        8 => run::<8>(&flags),
-        64 => run::<64>(&flags),
-        1000 => run::<1000>(&flags),
-        10_000 => run::<10_000>(&flags),
-        100_000 => run::<100_000>(&flags),
+        8 => in_order::<8>(&flags),
+        64 => in_order::<64>(&flags),
+        1000 => in_order::<1000>(&flags),
+        10_000 => in_order::<10_000>(&flags),
+        100_000 => in_order::<100_000>(&flags),
         other => Err(Failure::Flags(format!(
             "--sites: {other} is none of the rings that are compiled here: 8, 64, 1000, 10000 or 100000"
         ))),
@@ -107,19 +144,24 @@ fn failed(step: u64) -> impl Fn(SiteError) -> Failure {
     move |failure| Failure::Step { step, error: failure.error }
 }
 
+fn in_order<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
+    match flags.run.order {
+        Order::First => run::<FirstOrderChain<N>, FirstOrderChain<8>, N>(flags),
+        Order::Second => run::<SpinChain<N>, SpinChain<8>, N>(flags),
+    }
+}
+
 /// A ring at its start, with steps of this size.
-fn ring<const N: usize>(flags: &Flags, step_size: f64) -> Result<Ring<N>, Failure> {
+fn ring<S: Spins<N>, const N: usize>(flags: &Flags, step_size: f64) -> Result<Ring<S, N>, Failure> {
     let (q, mu) = flags.start(N);
     Sites::new(flags.ring(), step_size, SiteStorage::of(q, mu)).map_err(|failure| Failure::Start(failure.error))
 }
 
-fn run<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
-    if flags.run.order == clebsch_examples::flags::Order::First {
-        return Err(Failure::Flags("--order 1: this ring is declared with order 2 alone".to_owned()));
-    }
+/// A ring of N, and of eight.
+fn run<S: Spins<N>, Eight: Spins<8>, const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
     let Run { step_size, steps, .. } = flags.run;
-    let mut spins: Ring<N> = ring(flags, step_size)?;
-    let mut halved: Ring<N> = ring(flags, step_size / 2.0)?;
+    let mut spins: Ring<S, N> = ring(flags, step_size)?;
+    let mut halved: Ring<S, N> = ring(flags, step_size / 2.0)?;
     let mut csv = Csv::create(&flags.run, &["q1", "q2", "q3", "N1", "N2", "N3", "energy"])?;
     let mut watch = Watch::new(&flags.run, flags.field);
     let mut progress = Progress::new(steps);
@@ -140,6 +182,6 @@ fn run<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
     figure::draw(flags, N, &watch)?;
     let mut claims = Claims::new();
     watch.claim(flags, N, &mut claims);
-    rotors::claim(flags, &mut claims)?;
+    rotors::claim::<Eight>(flags, &mut claims)?;
     Ok(claims)
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 17] = [
+const SCENES: [(&str, &str); 18] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
+    ("sphere_molecules", "step,time,L1,L2,L3,kinetic,potential"),
     ("spin_chain", "step,time,q1,q2,q3,N1,N2,N3,energy"),
     ("heavy_top", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     (
@@ -123,6 +124,9 @@ fn other_flags_hold_all_their_claims() {
             "sphere_geodesics",
             &["--sphere", "3", "--discretization", "exponential", "--step-size", "5", "--steps", "100"],
         ),
+        ("sphere_molecules", &["--sites", "12", "--order", "1"]),
+        ("sphere_molecules", &["--sites", "642", "--steps", "20"]),
+        ("spin_chain", &["--order", "1"]),
         ("spin_chain", &["--sites", "8", "--field", "0"]),
         ("spin_chain", &["--sites", "100000", "--steps", "3"]),
         ("spin_chain", &["--tilt", "0", "--turns", "0", "--steps", "10"]),

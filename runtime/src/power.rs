@@ -70,8 +70,16 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// Whether all sites have the same kinetic energy.
     const IS_UNIFORM: bool;
 
-    /// The site with this index, which is below N.
+    /// The site with this index.
+    ///
+    /// # Panics
+    /// As arrays do, for an index that is not below N.
     fn site(&self, i: usize) -> Self::Site;
+
+    /// The constants as those of a power.
+    fn constants_of_sites(
+        constants: &Self::Constants,
+    ) -> &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>;
 
     /// The potential V(t, q), a sum over sites.
     fn potential_of_sites(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> Self::Scalar;
@@ -87,6 +95,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         &self,
         h: Self::Scalar,
     ) -> Result<PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>, Error> {
+        const { assert!(N > 0, "a power has at least one site") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
         (1..others).try_for_each(|i| self.site(i).constants(h).map(drop))?;

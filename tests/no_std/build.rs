@@ -8,11 +8,14 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Parameters of the structs that have some, and what is added to their names.
-const INSTANCES: [(&str, &[(&str, &str)]); 4] = [
+const INSTANCES: [(&str, &[(&str, &str)]); 7] = [
     ("AnnotatedBody", &[("", "<'static, (), 4>")]),
     ("GenericBody", &[("", "<f64>"), (".lanes", "<clebsch::F64x4>")]),
     ("Rock", &[("", "<f64>"), (".lanes", "<clebsch::F64x8>")]),
     ("SpinChain", &[("", "<8>")]),
+    ("FirstOrderChain", &[("", "<8>")]),
+    ("Molecules", &[("", "<8>")]),
+    ("FirstOrderMolecules", &[("", "<8>")]),
 ];
 
 /// What the lanes of `f64` are called in `f32`.

@@ -4,10 +4,6 @@ use super::{Point, Power, SiteMomentum};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 
-/// What no step of a power changes.
-type Constants<P, const N: usize> =
-    super::PowerConstants<<P as Clebsch>::Scalar, <<P as Power<N>>::Site as Clebsch>::Constants>;
-
 /// Where a [`Sites`] keeps what it needs: for each site a configuration q and a momentum N, and room for the next state.
 ///
 /// `Points` and `Momenta` are arrays, slices or vectors of one configuration or momentum for each site.
@@ -90,7 +86,7 @@ macro_rules! sites {
 
 impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>
 where
-    P: Power<N> + Clebsch<Constants = Constants<P, N>>,
+    P: Power<N>,
     Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
 {
@@ -157,7 +153,9 @@ where
         let t = self.time.now();
         let first = P::ORDER == 1;
         let start = if first { None } else { Some(kick) };
-        if let Err((site, error)) = system.drift_into(self.stepper.constants(), t, q, mu, start, next, moved) {
+        if let Err((site, error)) =
+            system.drift_into(P::constants_of_sites(self.stepper.constants()), t, q, mu, start, next, moved)
+        {
             return Err(SiteError { site: Some(site), error });
         }
         let time = self.time.after_step(h);
@@ -216,7 +214,8 @@ where
         let q: &[Point<P, N>; N] = sites!(self.configuration(), N);
         let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
         let (system, t) = (self.stepper.system(), self.time.now());
-        Ok(system.power_kinetic_energy(self.stepper.constants(), t, q, mu) + system.potential_of_sites(t, q))
+        Ok(system.power_kinetic_energy(P::constants_of_sites(self.stepper.constants()), t, q, mu)
+            + system.potential_of_sites(t, q))
     }
 
     /// The conserved momenta, sums over all sites.

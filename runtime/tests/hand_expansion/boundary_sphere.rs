@@ -129,7 +129,7 @@ fn paths_go_downhill_to_a_minimum() -> Result<(), Error> {
 #[test]
 fn symmetric_problems_end_in_symmetric_extremals() -> Result<(), Error> {
     let pendulum = DrivenPendulum { mass: 2.0, length: 0.5, gravity: 9.81, shake: 0.0, rate: 0.0 };
-    for time in [0.6, 1.0, 1.7] {
+    for time in [0.6, 1.0, 1.7].into_iter().take(if cfg!(miri) { 1 } else { 3 }) {
         let stepper = pendulum.stepper(time / 50.0)?;
         let boundary = stepper.boundary();
         let mut path = [boundary.rest(&start()); 50];

@@ -51,7 +51,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// What ties sites together.
     fn sites(&self, power: &Power<'g>, generics: &Generics) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = generics;
         let (ident, length, site) = (&power.item.ident, &power.length, &self.model.item.ident);
         let site_type = self.item_type();
@@ -78,6 +78,10 @@ impl<'g> Emitter<'_, 'g> {
                 fn site(&self, i: ::core::primitive::usize) -> Self::Site {
                     let _ = i;
                     #site { #(#fields)* #marker }
+                }
+                #[inline]
+                fn constants_of_sites(constants: &<Self as #krate::Clebsch>::Constants) -> &<Self as #krate::Clebsch>::Constants {
+                    constants
                 }
                 #of_potential
                 fn potential_of_sites(&self, t: #scalar, q: &[#point; #length]) -> #scalar {

@@ -85,14 +85,7 @@ pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
 /// Steps in arrays, vectors and slices have the same bits.
 pub fn storage_does_not_matter<P, Q, const M: usize>(power: &P, q: [Q; 4], mu: [SVector<f64, M>; 4])
 where
-    P: Power<4>
-        + Clebsch<
-            Scalar = f64,
-            Configuration = [Q; 4],
-            Momentum = [SVector<f64, M>; 4],
-            Input = (),
-            Constants = clebsch::__private::PowerConstants<f64, <<P as Power<4>>::Site as Clebsch>::Constants>,
-        > + Clone,
+    P: Power<4> + Clebsch<Scalar = f64, Configuration = [Q; 4], Momentum = [SVector<f64, M>; 4], Input = ()> + Clone,
     P::Site: Clebsch<Configuration = Q, Momentum = SVector<f64, M>>,
     Q: Space<f64>,
 {

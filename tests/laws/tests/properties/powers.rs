@@ -100,6 +100,7 @@ proptest! {
     fn steps_are_kicks_and_moves(ring in rings(), (q, mu) in spins(), t in -3.0_f64..3.0) {
         let constants: PowerConstants<_, _> = ring.power_constants(H)?;
         prop_assert_eq!(constants.part(-0.5), -0.5 * H);
+        prop_assert_eq!(<Ring<N> as Power<N>>::constants_of_sites(&ring.constants(H)?).part(1.0), H);
         let start = ring.power_kick(t, &q, constants.part(-0.5));
         let (next, momenta, kick) = ring.power_step_of_second_order(&constants, t, &q, &mu, &start)?;
         let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);
