@@ -138,12 +138,13 @@ impl BodiesByHand {
 fn main() {
     println!("Time of a step of one of N spins in a ring, ns; ratio to by hand. {} bytes a spin by `Sites`\n", 7 * 24);
     println!("{:>8} {:24} {:>8} {:>8} {:>6}", "N", "", "least", "median", "ratio");
-    let mut growth = Vec::new();
-    growth.push((4, rings::<4>(Some(&|steps| written_out(Ring4 { exchange: EXCHANGE, field: FIELD }, steps)))));
-    growth.push((16, rings::<16>(Some(&|steps| written_out(Ring16 { exchange: EXCHANGE, field: FIELD }, steps)))));
-    growth.push((64, rings::<64>(None)));
-    growth.push((1000, rings::<1000>(None)));
-    growth.push((100_000, rings::<100_000>(None)));
+    let growth = [
+        (4, rings::<4>(Some(&|steps| written_out(Ring4 { exchange: EXCHANGE, field: FIELD }, steps)))),
+        (16, rings::<16>(Some(&|steps| written_out(Ring16 { exchange: EXCHANGE, field: FIELD }, steps)))),
+        (64, rings::<64>(None)),
+        (1000, rings::<1000>(None)),
+        (100_000, rings::<100_000>(None)),
+    ];
     println!("\ntime of a step ∝ N^{:.2} from 64 to 100000 sites\n", exponent(&growth[2..]));
     println!("Time of a step for each pair of N bodies, ns; ratio to by hand\n");
     println!("{:>8} {:24} {:>8} {:>8} {:>6}", "N", "", "least", "median", "ratio");
