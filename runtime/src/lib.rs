@@ -53,6 +53,7 @@
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars; [`Real`] for one that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
+//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Sites`] steps them in [`SiteStorage`]; [`Power`] is what is derived |
 //!
 //! # Features
 //!

@@ -158,8 +158,9 @@ impl<'a, 'g> Emitter<'a, 'g> {
     }
 
     fn generated(&self, items: &TokenStream) -> TokenStream {
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, text) = (&self.model.item.ident, pretty(items));
+        let item = self.model.power.as_ref().map_or(&self.model.item, |power| &power.item);
+        let Generics { parameters, arguments, predicates } = Generics::of(item, &self.paths);
+        let (ident, text) = (&item.ident, pretty(items));
         quote! {
             #[automatically_derived]
             impl<#parameters> #ident<#arguments> #predicates {

@@ -388,12 +388,15 @@ impl<'g> Emitter<'_, 'g> {
         let private = &self.paths.private;
         let mut checked: Vec<&str> = Vec::new();
         let mut checks = Vec::new();
-        for parameter in power.parameters.iter().chain(self.model.parameters.iter().filter(|one| one.per_site)) {
+        // sites check what they have copies of, but for what differs from site to site
+        let of_sites = self.model.parameters.iter().zip(&power.copied).filter(|(parameter, _)| parameter.per_site);
+        let of_terms = power.parameters.iter().map(|parameter| (parameter, &parameter.field));
+        for (parameter, field) in of_terms.chain(of_sites) {
             if checked.contains(&parameter.name.as_str()) {
                 continue;
             }
             checked.push(&parameter.name);
-            let (field, name) = (&parameter.field, &parameter.name);
+            let name = &parameter.name;
             checks.push(quote!(#private::check_finite(#name, &self.#field)?;));
             let Some(promise) = parameter.promise else { continue };
             let leaves = parameter.leaves.iter().map(|leaf| {

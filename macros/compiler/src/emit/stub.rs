@@ -44,6 +44,11 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
         }
     });
     let momentum = matrix(outline.groups.iter().map(|group| group.dimension()).sum(), 1);
+    let of_sites = |ty: TokenStream| match &outline.sites {
+        Some(length) => quote!([#ty; #length]),
+        None => ty,
+    };
+    let [configuration, element, momentum] = [configuration, element, momentum].map(of_sites);
     let dimension: usize = outline.groups.iter().map(|group| group.dimension()).sum();
     let place = match declaration.kinetic.is_steered() {
         true => (configuration.clone(), dimension),

@@ -3,14 +3,17 @@
 use clebsch_symbolic::{Graph, Group, Shape};
 use quote::ToTokens;
 
+use super::arguments::TypedArguments;
 use super::declared::DeclaredGroups;
 use super::groups::Names;
-use super::{ScalarType, Structure, arguments, spaces};
+use super::{ScalarType, Structure, arguments, power, spaces};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
 /// The types of an integrator, without its mathematics.
 pub struct Outline {
+    /// The const generic that is the number of sites of a power, of which the rest says what one is.
+    pub sites: Option<syn::Ident>,
     /// How the factors nest.
     pub element: Structure,
     /// The groups of the factors.
@@ -37,6 +40,11 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let declared = DeclaredGroups::read(graph, &declaration.groups, &mut ignored);
     let names = Names { generics: &declaration.generics, declared: &declared };
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
+    let sites = power::site_types((types.group, types.space), &declaration.generics).ok()?;
+    let types = match &sites {
+        Some(sites) => TypedArguments { group: sites.group, space: sites.space, ..types },
+        None => types,
+    };
     let groups = spaces::read_groups(types.group, names, &mut ignored)?;
     let mut spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
     let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
@@ -47,6 +55,7 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
         (spaces.structure, spaces.leaves) = (Structure::Tuple(Vec::new()), Vec::new());
     }
     Some(Outline {
+        sites: sites.map(|sites| sites.length.clone()),
         inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
         input: input.map_or(Structure::Tuple(Vec::new()), |input| input.structure),
         element: groups.structure,

@@ -94,3 +94,59 @@ fn single_precision_is_the_same_system() {
         assert!((a - b.cast::<f64>()).norm() < 1e-5);
     }
 }
+
+/// What is generated for N sites is told of the struct itself, and is the same for every N.
+#[test]
+fn generated_code_does_not_grow() {
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action    = |F: [SO<3>; N], q: [Unit<Vector3>; N]| (0..N).map(|i| F[i] * q[i]),
+        cost      = |h, F| (0..N).map(|i| (F[i] - I).norm_squared() / (4 * h)).sum(),
+        potential = |q| -(0..N).map(|i| q[i].dot(&q[(i + 1) % N])).sum(),
+        emit      = [generated],
+    )]
+    struct Seen<const N: usize> {}
+    assert!(Seen::<4>::GENERATED.contains("impl<const N: usize> ::clebsch::Clebsch for Seen<N>"));
+    assert_eq!(Seen::<4>::GENERATED, Seen::<100>::GENERATED);
+    assert!(Seen::<4>::DERIVATION.starts_with("Seen\n\nA power: N sites"));
+    assert_eq!(Seen::<4>::NAME, "Seen");
+}
+
+/// Free bodies are bodies alone, of a tuple struct, each with its own inertia.
+#[test]
+fn free_bodies_are_bodies_alone() {
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: [SO<3>; N], R: [SO<3>; N]| (0..N).map(|i| R[i] * F[i]),
+        lagrangian     = |omega| (0..N).map(|i| self.1 * omega[i].dot(&(self.0[i] * omega[i])) / 2).sum(),
+        discretization = moser_veselov,
+    )]
+    struct Cloud<const N: usize>(#[clebsch(symmetric)] [Matrix3<f64>; N], f64);
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian     = |omega| omega.dot(&(self.0 * omega)) / 2,
+        discretization = moser_veselov,
+    )]
+    struct Alone(#[clebsch(symmetric)] Matrix3<f64>);
+    let random = &mut Random::new(11);
+    let inertia: [Matrix3<f64>; 3] = std::array::from_fn(|_| random.inertia());
+    let (q, mu): ([Matrix3<f64>; 3], [Vector3<f64>; 3]) =
+        (std::array::from_fn(|_| random.rotation(1.0)), std::array::from_fn(|_| random.vector()));
+    let stepper = Cloud(inertia, 2.0).into_stepper(0.1).expect("three bodies");
+    let mut all = stepper.state(q, mu).expect("a state");
+    let steppers = inertia.map(|inertia| Alone(2.0 * inertia).into_stepper(0.1).expect("a body"));
+    let mut each: [_; 3] = std::array::from_fn(|i| steppers[i].state(q[i], mu[i]).expect("a state"));
+    for _ in 0..50 {
+        all = stepper.step(&all).expect("a step of all");
+        each = std::array::from_fn(|i| steppers[i].step(&each[i]).expect("a step"));
+    }
+    for (i, alone) in each.iter().enumerate() {
+        assert!((all.configuration()[i] - alone.configuration()).amax() < 1e-12);
+        assert!((all.momentum()[i] - alone.momentum()).amax() < 1e-12);
+    }
+    let mut skew = inertia;
+    skew[2][(0, 1)] += 0.1;
+    let error = Cloud(skew, 2.0).into_stepper(0.1).expect_err("the third is not symmetric");
+    assert!(matches!(error, Error::NotSymmetric { field: "field_0", .. }), "{error:?}");
+}
