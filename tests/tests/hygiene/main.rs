@@ -26,7 +26,7 @@ macro_rules! all_of {
     ($($module:ident)*) => {$(
         #[test]
         fn $module() {
-            use $module::{Body, Lopsided, Pair, Pendulum, Top};
+            use $module::{Body, Lopsided, Pair, Pendulum, Sites, Top};
             let (z, zero) = (Vector3::z(), Vector3::zeros());
             let top = Top { mass_matrix: Matrix3::identity(), weight: 1.0, center: z };
             steps(&top, Matrix3::identity(), zero);
@@ -35,6 +35,7 @@ macro_rules! all_of {
             steps(&Pair { mass: [1.0, 2.0], coupling: 3.0 }, ([z, z], zero), nalgebra::SVector::zeros());
             steps(&Pendulum(1.0, 2.0), nalgebra::Vector2::y(), nalgebra::Vector1::zeros());
             steps(&Lopsided { gravity: 9.81 }, z, zero);
+            steps(&Sites { mass: [1.0, 2.0] }, [z, -z], [zero, zero]);
         }
     )*};
 }

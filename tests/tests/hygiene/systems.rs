@@ -67,3 +67,16 @@ pub struct Lopsided {
     /// In m/s².
     pub gravity: f64,
 }
+
+/// Equal sites, generic in their number, each with its own mass, whose sum is conserved; a constant of the module.
+#[derive(::clebsch::Clebsch, ::core::clone::Clone, ::core::fmt::Debug)]
+#[clebsch(
+    action    = |F: [SO<3>; N], q: [Unit<Vector3>; N]| (0..N).map(|i| F[i] * q[i]),
+    cost      = |h, F| (0..N).map(|i| self.mass[i] * (F[i] - I).norm_squared()).sum() / (4 * h),
+    potential = |q| (0..N).map(|i| (0..i).map(|j| self.mass[j] * GRAVITY * q[i].dot(&q[j])).sum() + (i * q[i].z).sin()).sum() + q[N - 1].z,
+    emit      = [generated],
+)]
+pub struct Sites<const N: ::core::primitive::usize> {
+    /// In kg.
+    pub mass: [f64; N],
+}

@@ -25,9 +25,12 @@ impl Names {
     /// The names for a model.
     pub fn new(model: &Model<'_>) -> Names {
         let mut taken = BTreeSet::new();
-        collect(model.item.ident.to_token_stream(), &mut taken);
-        collect(model.item.generics.to_token_stream(), &mut taken);
-        collect(model.item.generics.where_clause.to_token_stream(), &mut taken);
+        // of a power the user's struct is another item than that of a site
+        for item in [&model.item].into_iter().chain(model.power.as_ref().map(|power| &power.item)) {
+            collect(item.ident.to_token_stream(), &mut taken);
+            collect(item.generics.to_token_stream(), &mut taken);
+            collect(item.generics.where_clause.to_token_stream(), &mut taken);
+        }
         model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
         if let ScalarType::Parameter(ident) = &model.item.scalar {
             taken.insert(ident.to_string());

@@ -373,7 +373,7 @@ impl<'g> Emitter<'_, 'g> {
                 #documentation
                 fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved {
                     let mut sum = [<#scalar as #private::Zero>::zero(); #count];
-                    for (q, mu) in q.iter().zip(mu) {
+                    for (q, mu) in ::core::iter::zip(q, mu) {
                         #locals
                         #(#added)*
                     }
