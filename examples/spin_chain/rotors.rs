@@ -1,8 +1,9 @@
 //! A ring of eight against an integrator that knows nothing of spheres.
 
 use crate::{Flags, Spins};
+use clebsch::State;
 use clebsch_examples::claims::Claims;
-use clebsch_examples::flags::Order;
+use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::reference::solve;
 use clebsch_examples::scene::Failure;
 use nalgebra::{SVector, Vector3};
@@ -28,33 +29,20 @@ fn field(flags: &Flags, y: &Numbers) -> Numbers {
     joined(&moved, &turned)
 }
 
-/// Claims that halved steps are nearer by as much as their order says.
+/// Claims the order of the steps.
 pub fn claim<S: Spins<EIGHT>>(flags: &Flags, claims: &mut Claims) -> Result<(), Failure> {
     let (q, mu) = flags.start(EIGHT);
+    let steps = (TIME / flags.run.step_size).ceil() as u64;
     let rate = 1.0 + (2.0 * flags.exchange.abs() + flags.field.abs()).sqrt();
-    let exact = solve(|y| field(flags, y), joined(&q, &mu), TIME, rate);
-    let error = |steps: u32| -> Result<f64, Failure> {
-        let stepper = flags.ring::<S, EIGHT>().into_stepper(TIME / f64::from(steps))?;
-        let start: (Vec<_>, Vec<_>) = (q.clone(), mu.clone());
-        let fits = |_| Failure::Flags("eight spins are eight".to_owned());
-        let (points, momenta) = (start.0.try_into().map_err(fits)?, start.1.try_into().map_err(fits)?);
-        let mut state = stepper.state(points, momenta)?;
-        for step in 1..=u64::from(steps) {
-            state = stepper.step(&state).map_err(|error| Failure::Step { step, error })?;
-        }
-        Ok((joined(state.configuration(), state.momentum()) - exact.end).amax())
-    };
-    let steps = 200;
-    let (whole, half) = (error(steps)?, error(2 * steps)?);
-    let reason = "against extrapolation of order 16, which knows nothing of spheres";
-    let (name, ratio) = match flags.run.order {
-        Order::First => ("eight spins: halved steps are twice as near to another integrator", 1.9..=2.1),
-        Order::Second => ("eight spins: halved steps are four times nearer to another integrator", 3.9..=4.1),
-    };
-    if half > 100.0 * exact.error {
-        claims.within(name, whole / half, ratio, 3, reason);
-    } else {
-        claims.at_most(name, whole, 100.0 * exact.error, "nothing moves far enough for the order to show");
-    }
+    let exact = solve(|y| field(flags, y), joined(&q, &mu), flags.run.time(steps), rate);
+    let start = (std::array::from_fn(|i| q[i]), std::array::from_fn(|i| mu[i]));
+    let ends = refined(&flags.ring::<S, EIGHT>(), &flags.run, steps, |stepper| stepper.state(start.0, start.1))?;
+    let error = |end: State<S>| (joined(end.configuration(), end.momentum()) - exact.end).amax();
+    let convergence = Convergence { errors: ends.map(error), reference: exact.error, steps };
+    convergence.claim(
+        flags.run.order,
+        "eight spins: the order, by extrapolation that knows nothing of spheres",
+        claims,
+    );
     Ok(())
 }

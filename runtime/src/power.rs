@@ -20,6 +20,11 @@ pub type Point<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Configur
 pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element;
 /// The momentum of a site.
 pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
+/// What no step of a power with these sites changes.
+type Constants<P, const N: usize> =
+    PowerConstants<<P as Clebsch>::Scalar, <<P as Power<N>>::Site as Clebsch>::Constants>;
+/// A state of all sites.
+type Arrays<P, const N: usize> = ([Point<P, N>; N], [SiteMomentum<P, N>; N]);
 /// The representing matrix of the momentum of a site.
 type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::MomentumMatrix;
 
@@ -77,9 +82,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     fn site(&self, i: usize) -> Self::Site;
 
     /// The constants as those of a power.
-    fn constants_of_sites(
-        constants: &Self::Constants,
-    ) -> &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>;
+    fn constants_of_sites(constants: &Self::Constants) -> &Constants<Self, N>;
 
     /// The potential V(t, q), a sum over sites.
     fn potential_of_sites(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> Self::Scalar;
@@ -91,10 +94,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     ///
     /// # Errors
     /// Those of a site.
-    fn power_constants(
-        &self,
-        h: Self::Scalar,
-    ) -> Result<PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>, Error> {
+    fn power_constants(&self, h: Self::Scalar) -> Result<Constants<Self, N>, Error> {
         const { assert!(N > 0, "a power has at least one site") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
@@ -166,32 +166,42 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         sum
     }
 
+    /// What a site gives with its constants, which are made anew where sites differ.
+    ///
+    /// # Errors
+    /// Those of `act`, and of the constants of the site.
+    #[inline(always)]
+    fn at_site<R>(
+        &self,
+        constants: &Constants<Self, N>,
+        i: usize,
+        act: impl FnOnce(&Self::Site, &<Self::Site as Clebsch>::Constants) -> Result<R, Error>,
+    ) -> Result<R, Error> {
+        let site = self.site(i);
+        match Self::IS_UNIFORM {
+            true => act(&site, &constants.site),
+            false => act(&site, &site.constants(constants.h)?),
+        }
+    }
+
     /// Moves one site with the momentum n.
     ///
     /// # Errors
     /// Those of a step of the site.
     #[inline(always)]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn moved(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         i: usize,
         q: &Point<Self, N>,
         n: &SiteMomentum<Self, N>,
     ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
-        let site = self.site(i);
-        let own;
-        let constants = match Self::IS_UNIFORM {
-            true => &constants.site,
-            false => {
-                own = site.constants(constants.h)?;
-                &own
-            }
-        };
-        let impulse = site.impulse(constants, t, q, n);
-        let (q, n, _) = site.step(constants, t, q, n, &impulse, &())?;
-        Ok((q, n))
+        self.at_site(constants, i, |site, constants| {
+            let impulse = site.impulse(constants, t, q, n);
+            site.step(constants, t, q, n, &impulse, &()).map(|(q, n, _)| (q, n))
+        })
     }
 
     /// Moves all sites with their momenta, and with `kick` beside them, in the storage of others.
@@ -202,7 +212,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
@@ -228,19 +238,17 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// # Errors
     /// Those of a step of a site.
     #[inline]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_drift(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
-    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
+    ) -> Result<Arrays<Self, N>, Error> {
         let (mut next, mut moved) = (*q, *mu);
-        match self.drift_into(constants, t, q, mu, None, &mut next, &mut moved) {
-            Ok(()) => Ok((next, moved)),
-            Err((_, error)) => Err(error),
-        }
+        self.drift_into(constants, t, q, mu, None, &mut next, &mut moved).map_err(|(_, error)| error)?;
+        Ok((next, moved))
     }
 
     /// Half a kick, the move, half a kick.
@@ -248,19 +256,17 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// # Errors
     /// Those of a step of a site.
     #[inline]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_step_of_second_order(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
         impulse: &[SiteMomentum<Self, N>; N],
     ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
         let (mut next, mut momentum) = (*q, *mu);
-        if let Err((_, error)) = self.drift_into(constants, t, q, mu, Some(impulse), &mut next, &mut momentum) {
-            return Err(error);
-        }
+        self.drift_into(constants, t, q, mu, Some(impulse), &mut next, &mut momentum).map_err(|(_, error)| error)?;
         let kick = self.power_kick(t + constants.h, &next, constants.part(-0.5));
         momentum.iter_mut().zip(&kick).for_each(|(momentum, kick)| *momentum = plus(momentum, kick));
         Ok((next, momentum, kick))
@@ -271,10 +277,10 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// # Errors
     /// Those of a step of a site.
     #[inline]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_step_of_first_order(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
@@ -318,7 +324,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// Those of a site.
     fn power_inverse_legendre(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
@@ -327,12 +333,8 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         let kick = self.power_kick(t, q, constants.part(part));
         let mut elements = [Space::origin(); N];
         for (i, element) in elements.iter_mut().enumerate() {
-            let site = self.site(i);
             let n = plus(&mu[i], &kick[i]);
-            *element = match Self::IS_UNIFORM {
-                true => site.inverse_legendre(&constants.site, t, &q[i], &n)?,
-                false => site.inverse_legendre(&site.constants(constants.h)?, t, &q[i], &n)?,
-            };
+            *element = self.at_site(constants, i, |site, constants| site.inverse_legendre(constants, t, &q[i], &n))?;
         }
         Ok(elements)
     }
@@ -357,10 +359,10 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     ///
     /// # Errors
     /// Those of a step of a site.
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_step_symmetric(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         p: &[Point<Self, N>; N],
@@ -373,11 +375,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         };
         let (mut next, mut moved) = (*q, kicked(p, t, q, start));
         for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
-            let site = self.site(i);
-            (*q, *p) = match Self::IS_UNIFORM {
-                true => site.step_symmetric(&constants.site, t, q, p)?,
-                false => site.step_symmetric(&site.constants(constants.h)?, t, q, p)?,
-            };
+            (*q, *p) = self.at_site(constants, i, |site, constants| site.step_symmetric(constants, t, q, p))?;
         }
         let p = kicked(&moved, t + constants.h, &next, end);
         Ok((next, p))
@@ -386,21 +384,16 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// The kinetic energy of all sites.
     fn power_kinetic_energy(
         &self,
-        constants: &PowerConstants<Self::Scalar, <Self::Site as Clebsch>::Constants>,
+        constants: &Constants<Self, N>,
         t: Self::Scalar,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
     ) -> Self::Scalar {
         let mut sum = <Self::Scalar as num_traits::Zero>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
-            let site = self.site(i);
-            sum += match Self::IS_UNIFORM {
-                true => site.kinetic_energy(&constants.site, t, q, mu),
-                // by construction: the constants of all sites have been made once
-                false => site
-                    .constants(constants.h)
-                    .map_or(Self::Scalar::from_f64(f64::INFINITY), |own| site.kinetic_energy(&own, t, q, mu)),
-            };
+            let energy = self.at_site(constants, i, |site, constants| Ok(site.kinetic_energy(constants, t, q, mu)));
+            // by construction: the constants of all sites have been made once
+            sum += energy.unwrap_or(Self::Scalar::from_f64(f64::INFINITY));
         }
         sum
     }

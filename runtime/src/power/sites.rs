@@ -4,7 +4,7 @@ use super::{Point, Power, SiteMomentum};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 
-/// Where a [`Sites`] keeps what it needs: for each site a configuration q and a momentum N, and room for the next state.
+/// Where [`Sites`] keep what they need: for each site a configuration q and a momentum N, and room for the next state.
 ///
 /// `Points` and `Momenta` are arrays, slices or vectors of one configuration or momentum for each site.
 #[derive(Clone, Debug)]
@@ -159,6 +159,9 @@ where
             return Err(SiteError { site: Some(site), error });
         }
         let time = self.time.after_step(h);
+        if !time.now().is_finite() {
+            return Err(SiteError { site: None, error: Error::NotFinite { name: "the time after the step" } });
+        }
         let weight = h * Scalar::from_f64(if first { -1.0 } else { -0.5 });
         if !system.kick_into(t + h, next, weight, gradient, next_kick, moved).is_finite()
             && let Some(error) = not_finite(next, moved, next_kick)

@@ -17,10 +17,7 @@ pub(super) fn links<'g>(model: &Model<'g>) -> Vec<Link<'g>> {
     let Some(power) = &model.power else { return Vec::new() };
     let link = |term: &Term<'g>| {
         let symbols = term.value.symbols();
-        let at = |place: usize, leaf: usize| {
-            let role = Role::At(place, leaf);
-            symbols.iter().copied().find(|symbol| symbol.as_symbol().is_some_and(|data| data.role == role))
-        };
+        let at = |place: usize, leaf: usize| symbol_at(&symbols, place, leaf);
         let slope = |place: usize, leaf: usize| match at(place, leaf) {
             Some(symbol) => term.value.gradient(symbol),
             None => model.graph.zero(model.configurations[leaf].shape),
@@ -33,6 +30,12 @@ pub(super) fn links<'g>(model: &Model<'g>) -> Vec<Link<'g>> {
     power.terms.iter().map(link).collect()
 }
 
+/// The symbol of a leaf of the configuration at a place, if it is among some.
+fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr<'g>> {
+    let role = Role::At(place, leaf);
+    symbols.iter().copied().find(|symbol| symbol.as_symbol().is_some_and(|data| data.role == role))
+}
+
 /// The change of each term where all of its sites move alike: by `motion`, given for the site itself.
 pub(super) fn moved<'g>(model: &Model<'g>, links: &[Link<'g>], motion: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let of_link = |link: &Link<'g>| {
@@ -40,12 +43,7 @@ pub(super) fn moved<'g>(model: &Model<'g>, links: &[Link<'g>], motion: &[Expr<'g
         let mut change = model.graph.integer(0);
         for (place, gradient) in &link.gradient {
             let there: Vec<(Expr<'g>, Expr<'g>)> = (model.configurations.iter().enumerate())
-                .filter_map(|(leaf, configuration)| {
-                    let role = Role::At(*place, leaf);
-                    let symbol =
-                        symbols.iter().find(|symbol| symbol.as_symbol().is_some_and(|data| data.role == role))?;
-                    Some((configuration.symbol, *symbol))
-                })
+                .filter_map(|(leaf, configuration)| Some((configuration.symbol, symbol_at(&symbols, *place, leaf)?)))
                 .collect();
             for (slope, motion) in gradient.iter().zip(motion) {
                 change = change + slope.pairing(motion.substitute(&there));

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Rational, Role, integer};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::code::{Scope, Spelled, accessor, grid, locals, nested_type};
+use super::code::{accessor, grid, locals, nested_type};
 use super::{Emitter, Generics, docs};
 use crate::lower::{Kernel, LinkKernels};
 use crate::model::{Order, Parameter, Place, Power, Promise};
@@ -99,13 +99,8 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// The scope of a term.
-    fn scope_of_terms(&self) -> Scope<'_, 'g> {
-        Scope { system: quote!(self), spelled: Spelled::default(), ..self.scope_of_system() }
-    }
-
     fn potential_of_power(&self, power: &Power<'g>) -> TokenStream {
-        let scope = self.scope_of_terms();
+        let scope = self.scope_of_system();
         let terms = self.program.links.iter().zip(&self.program.formulas.links).map(|(kernels, link)| {
             let (locals, value) = (locals(&scope, &kernels.value), scope.code(&kernels.value.outputs[0].1[0], false));
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
@@ -115,7 +110,7 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     fn gradient_of_power(&self, power: &Power<'g>) -> TokenStream {
-        let scope = self.scope_of_terms();
+        let scope = self.scope_of_system();
         let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &crate::derive::Link<'g>)| {
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
             let locals = locals(&scope, gradient);
@@ -357,7 +352,7 @@ impl<'g> Emitter<'_, 'g> {
         let ident = &power.item.ident;
         let names = self.program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.as_str());
         let count = Literal::usize_unsuffixed(self.program.formulas.symmetries.conserved.len());
-        let scope = self.scope_of_terms();
+        let scope = self.scope_of_system();
         let (locals, entries) = (locals(&scope, kernel), &kernel.outputs[0].1);
         let added = entries.iter().enumerate().map(|(k, entry)| {
             let (k, value) = (Literal::usize_unsuffixed(k), scope.code(entry, false));

@@ -8,7 +8,7 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
-use super::power::{Kind, PerSite, const_generic};
+use super::power::{self, Kind, PerSite};
 use super::scalar::Agreement;
 use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::Value;
@@ -80,7 +80,9 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let entry = sites.and_then(|sites| entry_of_site(&field.ty, &declaration.generics, sites));
+        let entry = power::array(&field.ty, &declaration.generics)
+            .filter(|(length, _)| Some(*length) == sites)
+            .map(|(_, entry)| entry);
         let parameter = match field_type(entry.unwrap_or(&field.ty), &declaration.generics) {
             Ok(ty) => {
                 if let Some(written) = ty.scalar {
@@ -107,16 +109,6 @@ pub(super) fn read<'g>(
         known.insert(name, value);
     }
     Fields { known, parameters, scalar: scalar.settle() }
-}
-
-/// The type of one entry, where a field is an array with one for each site.
-fn entry_of_site<'t>(ty: &'t Type, generics: &Generics, sites: &syn::Ident) -> Option<&'t Type> {
-    match ty {
-        Type::Array(array) => (const_generic(&array.len, generics)? == sites).then_some(&*array.elem),
-        Type::Group(group) => entry_of_site(&group.elem, generics, sites),
-        Type::Paren(paren) => entry_of_site(&paren.elem, generics, sites),
-        _ => None,
-    }
 }
 
 /// The shape of a field's type.

@@ -8,8 +8,9 @@ mod bounds;
 
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 use proc_macro2::Ident;
-use syn::{GenericParam, Generics, Type};
+use syn::{Generics, Type};
 
+use super::sizes::const_generic;
 use super::value::Value;
 use super::{Configuration, Item, Kinetic, Leaf, Model, Order, Parameter, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place as Where};
@@ -118,24 +119,14 @@ fn unequal(ty: &Type, inner: &Type, length: &Ident) -> Diagnostic {
         .note(format!("the other argument has {length} times `{inner}`, and each site is moved by its own element"))
 }
 
-/// `[T; N]` with a const generic N.
-fn array<'d>(ty: &'d Type, generics: &'d Generics) -> Option<(&'d Ident, &'d Type)> {
+/// N and `T` of `[T; N]` with a const generic N.
+pub(super) fn array<'t, 'd>(ty: &'t Type, generics: &'d Generics) -> Option<(&'d Ident, &'t Type)> {
     match ty {
         Type::Group(group) => array(&group.elem, generics),
         Type::Paren(paren) => array(&paren.elem, generics),
-        Type::Array(array) => Some((const_generic(&array.len, generics)?, &*array.elem)),
+        Type::Array(array) => Some((const_generic(&crate::parse::spell(&array.len), generics)?, &*array.elem)),
         _ => None,
     }
-}
-
-/// The const generic that an expression is.
-pub(super) fn const_generic<'d>(expr: &syn::Expr, generics: &'d Generics) -> Option<&'d Ident> {
-    let syn::Expr::Path(path) = expr else { return None };
-    let name = path.path.get_ident()?;
-    generics.params.iter().find_map(|parameter| match parameter {
-        GenericParam::Const(constant) if constant.ident == *name => Some(&constant.ident),
-        _ => None,
-    })
 }
 
 /// What closures need to know of a power, and what they find.

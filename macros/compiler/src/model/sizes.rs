@@ -41,7 +41,7 @@ pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic
 }
 
 fn no_size(place: Place, text: &str, generics: &Generics) -> Diagnostic {
-    if is_const_generic(text, generics) {
+    if const_generic(text, generics).is_some() {
         return Diagnostic::later(place, format!("the const generic `{text}` as a size")).help("write a number");
     }
     Diagnostic::new(place, format!("the size `{text}` is not a number"))
@@ -49,8 +49,12 @@ fn no_size(place: Place, text: &str, generics: &Generics) -> Diagnostic {
         .note("a macro sees the text of the declaration, not the values of constants")
 }
 
-fn is_const_generic(name: &str, generics: &Generics) -> bool {
-    generics.params.iter().any(|parameter| matches!(parameter, GenericParam::Const(constant) if constant.ident == name))
+/// The const generic with a name.
+pub(super) fn const_generic<'p>(name: &str, generics: &'p Generics) -> Option<&'p syn::Ident> {
+    generics.params.iter().find_map(|parameter| match parameter {
+        GenericParam::Const(constant) if constant.ident == name => Some(&constant.ident),
+        _ => None,
+    })
 }
 
 /// Whether the type is a type parameter of the struct.

@@ -38,34 +38,33 @@ pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
     F: Space<f64> + Flat,
 {
     assert_eq!(4 * M, L);
-    let near = |found: &dyn Fn() -> f64, what: &str| {
-        let distance = found();
+    let near = |distance: f64, what: &str| {
         assert!(distance < 1e-11, "{what}: {distance:.1e} apart for {}", P::NAME);
     };
     let (a, b) = (power.stepper(H).expect("a regular power"), unrolled.stepper(H).expect("a regular system"));
     let mut x = a.state(q, mu).expect("a state of the power");
     let mut y = b.state(q, joined(&mu)).expect("a state");
     let p: [Q; 4] = q.map(|q| q.zip_map(&q, |x, _| 0.3 * x + 0.1));
-    near(&|| far(&power.momentum_map(&q, &p), &joined::<L>(&unrolled.momentum_map(&q, &p))), "J");
+    near(far(&power.momentum_map(&q, &p), &joined::<L>(&unrolled.momentum_map(&q, &p))), "J");
     let f = power.inverse_legendre(&power.constants(H).expect("constants"), 0.3, &q, &mu).expect("a solution");
     let g = unrolled.inverse_legendre(&unrolled.constants(H).expect("constants"), 0.3, &q, &joined(&mu));
-    near(&|| far(&f, g.as_ref().expect("a solution")), "F");
-    near(&|| far(&power.act(&f, &q), &unrolled.act(&f, &q)), "the action");
-    near(&|| far(&power.coadjoint(&f, &mu), &unrolled.coadjoint(&f, &joined(&mu))), "Ad*");
-    near(&|| far(&power.legendre(H, 0.3, &q, &f), &unrolled.legendre(H, 0.3, &q, &f)), "F⁻ℓd");
-    near(&|| far(&power.legendre(H, 0.3, &q, &f), &mu), "F⁻ℓd inverted");
-    near(&|| far(&power.legendre_next(H, 0.3, &q, &f), &unrolled.legendre_next(H, 0.3, &q, &f)), "F⁺ℓd");
-    near(&|| far(&power.stagger(H, 0.3, &q), &unrolled.stagger(H, 0.3, &q)), "what the momentum is ahead by");
-    near(&|| far(&P::momentum_matrix(&mu), &U::momentum_matrix(&joined(&mu))), "M");
-    near(&|| far(&P::momentum_components(&P::momentum_matrix(&mu)), &mu), "the components of M");
+    near(far(&f, g.as_ref().expect("a solution")), "F");
+    near(far(&power.act(&f, &q), &unrolled.act(&f, &q)), "the action");
+    near(far(&power.coadjoint(&f, &mu), &unrolled.coadjoint(&f, &joined(&mu))), "Ad*");
+    near(far(&power.legendre(H, 0.3, &q, &f), &unrolled.legendre(H, 0.3, &q, &f)), "F⁻ℓd");
+    near(far(&power.legendre(H, 0.3, &q, &f), &mu), "F⁻ℓd inverted");
+    near(far(&power.legendre_next(H, 0.3, &q, &f), &unrolled.legendre_next(H, 0.3, &q, &f)), "F⁺ℓd");
+    near(far(&power.stagger(H, 0.3, &q), &unrolled.stagger(H, 0.3, &q)), "what the momentum is ahead by");
+    near(far(&P::momentum_matrix(&mu), &U::momentum_matrix(&joined(&mu))), "M");
+    near(far(&P::momentum_components(&P::momentum_matrix(&mu)), &mu), "the components of M");
     let some = std::array::from_fn(|_| random.vector::<M>());
-    near(&|| far(&power.project_momentum(&q, &some), &unrolled.project_momentum(&q, &joined(&some))), "the projection");
+    near(far(&power.project_momentum(&q, &some), &unrolled.project_momentum(&q, &joined(&some))), "the projection");
     let defect = |a: f64, b: f64| (a - b).abs();
-    near(&|| defect(power.isotropy_defect(&q, &some), unrolled.isotropy_defect(&q, &joined(&some))), "the defect of μ");
+    near(defect(power.isotropy_defect(&q, &some), unrolled.isotropy_defect(&q, &joined(&some))), "the defect of μ");
     let off: [Q; 4] = std::array::from_fn(|i| q[i].zip_map(&q[i], |x, _| x * (1.0 + 0.01 * i as f64)));
-    near(&|| defect(power.orbit_defect(&off), unrolled.orbit_defect(&off)), "the defect of q");
-    near(&|| defect(power.potential(0.3, &q), unrolled.potential(0.3, &q)), "V");
-    near(&|| defect(a.kinetic_energy(&x), b.kinetic_energy(&y)), "T");
+    near(defect(power.orbit_defect(&off), unrolled.orbit_defect(&off)), "the defect of q");
+    near(defect(power.potential(0.3, &q), unrolled.potential(0.3, &q)), "V");
+    near(defect(a.kinetic_energy(&x), b.kinetic_energy(&y)), "T");
     let mut upstairs = a.cotangent_state(q, p).expect("a state of the power on T*Q");
     let mut written = b.cotangent_state(q, p).expect("a state on T*Q");
     for _ in 0..20 {
@@ -75,11 +74,11 @@ pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
         written = b.step_symmetric(&written).expect("a step on T*Q");
     }
     assert!(far(x.configuration(), &q) > 1e-3, "it moves");
-    near(&|| far(x.configuration(), y.configuration()).max(far(x.momentum(), y.momentum())), "20 steps");
+    near(far(x.configuration(), y.configuration()).max(far(x.momentum(), y.momentum())), "20 steps");
     let there =
         far(upstairs.configuration(), written.configuration()).max(far(upstairs.covector(), written.covector()));
-    near(&|| there, "20 steps on T*Q");
-    near(&|| defect(a.energy(&x), b.energy(&y)), "the energy");
+    near(there, "20 steps on T*Q");
+    near(defect(a.energy(&x), b.energy(&y)), "the energy");
 }
 
 /// Steps in arrays, vectors and slices have the same bits.

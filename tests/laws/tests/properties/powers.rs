@@ -61,6 +61,7 @@ proptest! {
             prop_assert_eq!(site.project_momentum(&q[i], &p[i]), projected[i]);
             let (next, moved, _) = site.step(&own, t, &q[i], &mu[i], &(), &())?;
             prop_assert_eq!((next, moved), (drifted.0[i], drifted.1[i]));
+            prop_assert_eq!(ring.at_site(&constants, i, |site, own| site.inverse_legendre(own, t, &q[i], &mu[i]))?, f[i]);
             prop_assert_eq!(ring.moved(&constants, t, i, &q[i], &mu[i])?, (next, moved));
             energy += site.kinetic_energy(&own, t, &q[i], &mu[i]);
             defect += site.isotropy_defect(&q[i], &p[i]).powi(2);
