@@ -8,7 +8,9 @@ pub use crate::composition::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17, comp
 pub use crate::element::{
     below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,
 };
-pub use crate::energy::{VelocityEquation, kinetic_energy, kinetic_energy_at, legendre_fenchel};
+pub use crate::energy::{
+    VelocityEquation, kinetic_energy, kinetic_energy_at, kinetic_energy_uniform, legendre_fenchel,
+};
 pub use crate::exponential::{exponential, phi};
 pub use crate::free_rotation::{
     FreeRotation, KeptRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
@@ -19,15 +21,21 @@ pub use crate::implicit::{
 };
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
+pub use crate::matrices::{
+    block, determinant, diagonal, diagonal_matrix, embedded, largest_entry, matrix_of, pairing, product, scaled,
+    shifted, skew, skew_components, skew_outer, skew_times, trace,
+};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{
     largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
     orthogonal_with_rest, orthogonality_defect,
 };
 pub use crate::parameters::{
-    annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric, check_unit, invert,
+    InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric,
+    check_unit, distance, invert, invert_uniform, orientation_of_inertia, orientation_of_uniform,
 };
 pub use crate::power::{Power, PowerConstants, wrapped};
+pub use crate::sphere::{great_circle, on_sphere, pushed, tangent};
 pub use crate::splitting::{GRADIENT_4, GRADIENT_6, PLAIN_4, PLAIN_6, split};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,

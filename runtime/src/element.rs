@@ -84,7 +84,7 @@ pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
 
 /// The error of the first lane whose momentum is finite, as the others have none of their own.
 #[cold]
-fn beyond_right_angle<T: Scalar>(sine_squared: T) -> Error {
+pub(crate) fn beyond_right_angle<T: Scalar>(sine_squared: T) -> Error {
     match (0..T::LANES).map(|lane| sine_squared.lane(lane)).find(|square| square.is_finite()) {
         Some(square) => Error::Unsolvable {
             solvable_fraction: square.sqrt().recip().to_f64(),

@@ -2,6 +2,7 @@
 
 use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
+use crate::matrices::pairing;
 use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
 use core::marker::PhantomData;
@@ -15,6 +16,11 @@ pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu:
         energy += mu[i] * velocity;
     }
     energy * T::from_ratio(1, 2)
+}
+
+/// ½ |μ|²/κ of the inertia κI, given 1/κ.
+pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVector<T, M>) -> T {
+    pairing(mu, mu) * *inverse * T::from_ratio(1, 2)
 }
 
 /// ½ μ·Σ⁻¹μ of an inertia that depends on the configuration; +∞ where Σ is singular, for there μ determines no velocity.

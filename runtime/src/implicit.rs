@@ -15,6 +15,7 @@ pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
 use crate::linear::{Orientation, rows, solve_dense};
+use crate::matrices::total;
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -271,8 +272,18 @@ fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: 
 /// The sum of all |x_i|: NaN where one of them is.
 #[inline]
 fn size<T: Scalar, const M: usize>(vector: &SVector<T, M>) -> T {
-    vector.iter().fold(T::zero(), |sum, x| sum + x.abs())
+    if M < LONG {
+        return vector.iter().fold(T::zero(), |sum, x| sum + x.abs());
+    }
+    let mut sums = [T::zero(); 8];
+    for entries in vector.as_slice().chunks(8) {
+        sums.iter_mut().zip(entries).for_each(|(sum, x)| *sum += x.abs());
+    }
+    total(sums)
 }
+
+/// From as many unknowns on, a sum in which each waits for those before it takes longer than eight sums.
+const LONG: usize = 16;
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,9 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
-use crate::linear::{eliminate, multiple_of_identity, rows};
+use crate::linear::{Orientation, eliminate, multiple_of_identity, rows};
+use crate::matrices::{diagonal, pairing, product};
 use crate::space::{check_lanes, lane_of, larger, set_lane};
-use crate::{Error, Real, Scalar, Space};
+use crate::{Error, Mask, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
@@ -72,6 +73,86 @@ pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SM
         Ok(())
     })?;
     Ok(inverse)
+}
+
+/// Σ⁻¹, and its diagonal where it has nothing else.
+#[derive(Clone, Debug)]
+pub struct InertiaInverse<T: Scalar, const N: usize> {
+    matrix: SMatrix<T, N, N>,
+    diagonal: Option<SVector<T, N>>,
+}
+
+impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
+    /// The inverse of Σ.
+    ///
+    /// # Errors
+    /// [`Error::SingularKineticEnergy`].
+    pub fn new(inertia: &SMatrix<T, N, N>) -> Result<Self, Error> {
+        let matrix = invert(inertia)?;
+        let is_zero = |(k, entry): (usize, &T)| k % (N + 1) == 0 || entry.equals(T::zero()).all();
+        let is_diagonal = matrix.iter().enumerate().all(is_zero);
+        Ok(Self { matrix, diagonal: is_diagonal.then(|| diagonal(&matrix)) })
+    }
+
+    /// Σ⁻¹μ.
+    #[inline]
+    pub fn times(&self, mu: &SVector<T, N>) -> SVector<T, N> {
+        match &self.diagonal {
+            Some(diagonal) => diagonal.component_mul(mu),
+            None => product(&self.matrix, mu),
+        }
+    }
+
+    /// Σ⁻¹ itself.
+    #[inline]
+    pub fn matrix(&self) -> &SMatrix<T, N, N> {
+        &self.matrix
+    }
+
+    /// ½ μ·Σ⁻¹μ.
+    pub fn energy(&self, mu: &SVector<T, N>) -> T {
+        pairing(mu, &self.times(mu)) * T::from_ratio(1, 2)
+    }
+}
+
+/// 1/κ of the inertia κI.
+///
+/// # Errors
+/// [`Error::SingularKineticEnergy`].
+pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
+    let inverse = T::one() / *kappa;
+    check_lanes::<T>(|lane| match inverse.lane(lane).is_finite() {
+        true => Ok(()),
+        false => Err(Error::SingularKineticEnergy { condition: f64::INFINITY }),
+    })?;
+    Ok(inverse)
+}
+
+/// The sign of det Σ/h.
+///
+/// # Errors
+/// [`Error::SingularKineticEnergy`].
+pub fn orientation_of_inertia<T: Scalar, const N: usize>(
+    inertia: &SMatrix<T, N, N>,
+    h: T,
+) -> Result<Orientation, Error> {
+    let scaled = inertia.map(|entry| entry / h);
+    Orientation::of(rows(&scaled)).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
+}
+
+/// The sign of κⁿ.
+///
+/// # Errors
+/// [`Error::SingularKineticEnergy`].
+pub fn orientation_of_uniform<T: Scalar>(kappa: T, n: usize) -> Result<Orientation, Error> {
+    let kappa = if n.is_multiple_of(2) { kappa * kappa } else { kappa };
+    Orientation::of([[kappa]]).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
+}
+
+/// The Euclidean distance of two vectors.
+pub fn distance<T: Scalar, const M: usize>(a: &SVector<T, M>, b: &SVector<T, M>) -> T {
+    let difference = a - b;
+    T::from_lanes(|lane| length(&lane_of(&difference, lane).into()))
 }
 
 fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {

@@ -94,10 +94,21 @@ impl Basis {
 
     /// The square ⟨E_i, E_i⟩ of the elements, if they are orthogonal to each other and equally long.
     pub fn uniform_gram(&self) -> Option<Rational> {
-        let gram = self.gram();
-        let square = gram.first()?[0].clone();
-        let expected = |i: usize, j: usize| if i == j { square.clone() } else { Rational::zero() };
-        let fits = gram.iter().enumerate().all(|(i, row)| row.iter().enumerate().all(|(j, g)| *g == expected(i, j)));
+        let square_of =
+            |element: &Sparse| element.iter().fold(Rational::zero(), |sum, (_, _, value)| sum + value * value);
+        let square = square_of(self.elements.first()?);
+        // those of large bases have no entry in common
+        let mut places: Vec<(usize, usize)> = self.elements.iter().flatten().map(|(i, j, _)| (*i, *j)).collect();
+        places.sort_unstable();
+        let is_apart = places.windows(2).all(|pair| pair[0] != pair[1]);
+        let fits = match is_apart {
+            true => self.elements.iter().all(|element| square_of(element) == square),
+            false => {
+                let expected = |i: usize, j: usize| if i == j { square.clone() } else { Rational::zero() };
+                let gram = self.gram();
+                gram.iter().enumerate().all(|(i, row)| row.iter().enumerate().all(|(j, g)| *g == expected(i, j)))
+            }
+        };
         fits.then_some(square)
     }
 

@@ -3,6 +3,9 @@
 use crate::node::{Exponent, Term};
 use crate::{Expr, Rational, Shape};
 
+/// A longer vector is looked at as a whole before the derivatives are taken along each of its directions.
+const LONG: usize = 16;
+
 impl<'g> Expr<'g> {
     /// The matrix A with `self` = A·v, for an expression that is linear in the vector symbol v.
     pub fn matrix_of_linear(self, vector: Expr<'g>) -> Expr<'g> {
@@ -29,9 +32,29 @@ impl<'g> Expr<'g> {
     pub fn jacobian(self, vector: Expr<'g>) -> Expr<'g> {
         let graph = self.graph;
         let shape = Shape::new(self.shape().rows, vector.shape().rows);
+        if shape.columns > LONG
+            && let Some(factor) = self.over(vector)
+        {
+            return factor * graph.identity(shape.rows);
+        }
         let columns: Vec<Expr<'g>> =
             (0..shape.columns).map(|j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))])).collect();
         graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).collect())
+    }
+
+    /// s, where the expression is the multiple s·v of a vector v that s does not depend on, as it is written.
+    pub fn over(self, vector: Expr<'g>) -> Option<Expr<'g>> {
+        let graph = self.graph;
+        let mut sum = graph.integer(0);
+        for term in self.terms() {
+            let scale = Term { word: Vec::new(), ..term.clone() };
+            let scale = graph.collect(Shape::scalar(), [scale]);
+            if term.word != [vector.id] || scale.depends_on(vector) {
+                return None;
+            }
+            sum = sum + scale;
+        }
+        Some(sum)
     }
 
     /// 2^exponent times the expression.

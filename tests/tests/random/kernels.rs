@@ -84,6 +84,9 @@ impl Run<'_> {
             Code::Function(function, x) => Number::function(self.code(x), *function),
             Code::Call(callee, _) => panic!("{callee:?} returns a matrix"),
             Code::Output(local, _, output) => self.output(*local, *output),
+            Code::Whole(whole) => {
+                panic!("{:?} keeps a matrix: the two forms are compared by their steps", whole.operation)
+            }
         }
     }
 }

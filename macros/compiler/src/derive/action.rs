@@ -82,16 +82,42 @@ pub(super) fn impulse<'g>(
     impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
 }
 
+/// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are: then it is the orthogonal projection to them,
+/// for ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes of each other. c is 1 on spheres, and |E_i|² where matrices are multiplied.
+pub(super) fn projection<'g>(
+    model: &Model<'g>,
+    symbols: &Symbols<'g>,
+    generator: &[Expr<'g>],
+    momentum_map: &[Expr<'g>],
+) -> Option<Vec<Expr<'g>>> {
+    let alike: Vec<_> = symbols.algebra.iter().zip(&symbols.momenta).map(|(xi, mu)| (*xi, *mu)).collect();
+    let velocities = generator.iter().map(|velocity| velocity.substitute(&alike));
+    let velocities: Vec<_> = symbols.covectors.iter().copied().zip(velocities).collect();
+    let projection: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&velocities)).collect();
+    let motions: Vec<_> = symbols.momenta.iter().zip(momentum_map).map(|(mu, momentum)| (*mu, *momentum)).collect();
+    let kept = |(k, momentum): (usize, &Expr<'g>)| {
+        let twice = projection[k].substitute(&motions);
+        let others = symbols.momenta.iter().enumerate().filter(|(j, _)| *j != k);
+        let is_alone = others.into_iter().all(|(_, mu)| !projection[k].depends_on(*mu));
+        let scale = [1, 2].into_iter().find(|&scale| identity::equal(&[twice], &[scale * *momentum]))?;
+        (is_alone || model.factors.len() == 1).then(|| projection[k] / scale)
+    };
+    momentum_map.iter().enumerate().map(kept).collect()
+}
+
 /// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
 pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
     if generator.is_empty() {
         return false;
     }
-    let columns = generator_columns(symbols, generator);
     let moving = model.factors.iter().filter(|factor| factor.moves);
     let moving: usize = moving.map(|factor| factor.group.dimension()).sum();
-    let dimension = columns.len();
     let rows: usize = generator.iter().map(|velocity| velocity.shape().len()).sum();
+    if rows < moving {
+        return false;
+    }
+    let columns = generator_columns(symbols, generator);
+    let dimension = columns.len();
     let entries = (0..rows).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
     identity::rank(model.graph.stack(Shape::new(rows, dimension), entries)) == moving
 }

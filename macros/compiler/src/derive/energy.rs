@@ -179,6 +179,9 @@ fn is_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> bool {
 
 fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
     let inertia = inertia(symbols, energy);
+    if is_multiple_of_identity(inertia) {
+        return Ok(());
+    }
     let (rank, dimension) = (identity::rank(inertia), inertia.shape().rows);
     if rank == dimension {
         return Ok(());
@@ -202,6 +205,12 @@ fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) ->
             .help(format!("add a term such as `({name} - I).norm_squared() / (2 * h)`")),
     };
     Err(error.into())
+}
+
+/// Whether a matrix is written as a multiple of the identity that does not vanish.
+pub(super) fn is_multiple_of_identity(matrix: Expr<'_>) -> bool {
+    let (kappa, identity) = (matrix.entry(0, 0), matrix.graph().identity(matrix.shape().rows));
+    matrix == kappa * identity && !identity::vanishes(kappa)
 }
 
 /// What a degenerate kinetic energy leaves undetermined.
@@ -239,6 +248,14 @@ pub(super) fn inertia<'g>(symbols: &Symbols<'g>, energy: Expr<'g>) -> Expr<'g> {
         row += gradient.shape().rows;
     }
     blocks
+}
+
+/// κ, where Σξ = κξ.
+pub(super) fn uniform<'g>(symbols: &Symbols<'g>, energy: Expr<'g>, inertia: Expr<'g>) -> Option<Expr<'g>> {
+    let kappa = inertia.entry(0, 0).expand();
+    let is_still = symbols.algebra.iter().all(|xi| !kappa.depends_on(*xi));
+    let is_multiple = |xi: &Expr<'g>| identity::equal(&[energy.gradient(*xi)], &[kappa * *xi]);
+    (is_still && symbols.algebra.iter().all(is_multiple)).then_some(kappa)
 }
 
 /// V(t, q): the declared potential and what the cost holds of one.

@@ -36,7 +36,7 @@ use std::cell::OnceCell;
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Model, Order};
+use crate::model::{Isotropy, Model, Order, Space};
 
 pub(crate) use action::generator_columns;
 pub(crate) use cayley::of_increment as cayley_coordinates;
@@ -52,6 +52,7 @@ pub use force::EdgeForce;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
 pub use power::Link;
 pub use print::Formula;
+pub(crate) use print::MOST_LISTED;
 pub use reference::Reference;
 pub use structure::Structure;
 pub use symbols::{ChartBlock, Symbols};
@@ -69,6 +70,8 @@ pub struct Formulas<'g> {
     pub generator: Vec<Expr<'g>>,
     /// Whether only the identity fixes a general configuration.
     pub is_free: bool,
+    /// J(q, μ_Q(q)) for each factor, where that is the orthogonal projection of μ to 𝔤_q^⊥, as on spheres.
+    pub projection: Option<Vec<Expr<'g>>>,
     /// J(q, p), for each factor.
     pub momentum_map: Vec<Expr<'g>>,
     /// Ad*_F μ, for each factor.
@@ -77,6 +80,8 @@ pub struct Formulas<'g> {
     pub cotangent_lift: Vec<Expr<'g>>,
     /// Σ, the Hessian of ℓ(ξ) in the components of all factors.
     pub inertia: Expr<'g>,
+    /// κ, where Σ = κ I.
+    pub uniform_inertia: Option<Expr<'g>>,
     /// The kinetic part of the continuous Lagrangian, ½ ξ·Σξ + A·ξ.
     pub energy: Energy<'g>,
     /// V(q), that of the cost included.
@@ -239,9 +244,12 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         legendre_next,
         legendre_kick,
         listing: OnceCell::new(),
+        projection: action::projection(&model, &symbols, &generator, &momentum_map),
         is_free,
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
+        uniform_inertia: energy::uniform(&symbols, energy.kinetic, inertia)
+            .filter(|kappa| !equation::is_moving(&model, *kappa)),
         inertia,
         model,
         symbols,
@@ -277,9 +285,11 @@ fn steered<'g>(
         legendre_kick: None,
         listing: OnceCell::new(),
         is_free: action::is_free(&model, &symbols, &generator),
+        projection: None,
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: Vec::new(),
         inertia: graph.zero(Shape::square(model.dimension())),
+        uniform_inertia: None,
         energy: Energy { kinetic: zero, gyroscopic: zero, general: None },
         potential_energy: zero,
         links: Vec::new(),
@@ -421,7 +431,14 @@ fn total<'g>(one: Option<Vec<Expr<'g>>>, other: Option<Vec<Expr<'g>>>) -> Option
 impl Formulas<'_> {
     /// How many directions the kinetic energy is positive and negative in, for positive parameters.
     pub fn signature(&self) -> Option<(usize, usize)> {
-        signature::signature(self.inertia)
+        match energy::is_multiple_of_identity(self.inertia) {
+            true => {
+                let (positive, negative) = signature::signature(self.inertia.entry(0, 0))?;
+                let dimension = self.inertia.shape().rows;
+                Some((positive * dimension, negative * dimension))
+            }
+            false => signature::signature(self.inertia),
+        }
     }
 
     /// Of how many steps of second order a step is composed, where it is.
@@ -454,6 +471,28 @@ impl Formulas<'_> {
     /// The chart in which small motions of a factor are written.
     pub fn retraction(&self, k: usize) -> Chart {
         variation::retraction(&self.model, &self.symbols, k)
+    }
+
+    /// Whether a step turns a point on a sphere along a great circle, its momentum M = wqᵀ − qwᵀ as it is: then it can be made in (q, w).
+    pub fn follows_great_circles(&self) -> bool {
+        let ([factor], [leaf], [substep]) =
+            (self.model.factors.as_slice(), self.model.configurations.as_slice(), self.substeps.as_slice())
+        else {
+            return false;
+        };
+        let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == Space::Unit;
+        let turns = factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
+        rotates
+            && self.generator[0] == turns
+            && self.symbols.charts[0] == Chart::Sine
+            && self.uniform_inertia.is_some()
+            && self.model.isotropy == Isotropy::Fixed
+            && substep.unchanged[0]
+            && substep.rest.is_none()
+            && substep.force.is_none()
+            && substep.other.is_none()
+            && !self.is_timed()
+            && !self.is_compensated()
     }
 
     /// Whether the kinetic energy changes with the configuration or the time.

@@ -21,8 +21,12 @@ fn direction_in_words(model: &Model<'_>, group: Group, j: usize) -> String {
     let turn = |n: usize, j: usize| match n {
         3 => format!("rotation about `e{}`", j + 1),
         _ => {
-            let pairs: Vec<_> = (1..=n).flat_map(|a| (a + 1..=n).map(move |b| (a, b))).collect();
-            format!("rotation in the plane of `e{}` and `e{}`", pairs[j].0, pairs[j].1)
+            // row a of the pairs above the diagonal begins behind those before it
+            let (mut a, mut start) = (1, 0);
+            while start + n - a <= j {
+                (a, start) = (a + 1, start + n - a);
+            }
+            format!("rotation in the plane of `e{a}` and `e{}`", a + 1 + j - start)
         }
     };
     let shift = |j: usize| format!("translation along `e{}`", j + 1);
@@ -38,13 +42,16 @@ fn direction_in_words(model: &Model<'_>, group: Group, j: usize) -> String {
     }
 }
 
+/// A basis element, `in the plane of e1 and e2`.
+pub(super) fn basis_element(model: &Model<'_>, group: Group, index: usize) -> String {
+    let words = direction_in_words(model, group, index).replace('`', "");
+    words.trim_start_matches("rotation ").trim_start_matches("translation ").to_string()
+}
+
 /// A combination of basis elements, `about e3`, `in the plane of e1 and e2`, `along E12 + E21`.
 pub(super) fn combination(model: &Model<'_>, group: Group, weights: &[Rational]) -> String {
     let single = |index: &usize| weights.iter().enumerate().all(|(i, weight)| weight.is_zero() != (i == *index));
-    let in_words = |index: usize| {
-        let words = direction_in_words(model, group, index).replace('`', "");
-        words.trim_start_matches("rotation ").trim_start_matches("translation ").to_string()
-    };
+    let in_words = |index: usize| basis_element(model, group, index);
     let named = matches!(
         group,
         Group::SpecialOrthogonal(_) | Group::UnitQuaternions | Group::Translation(_) | Group::SpecialEuclidean(_)

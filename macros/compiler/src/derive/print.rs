@@ -87,6 +87,9 @@ impl fmt::Display for Formula {
     }
 }
 
+/// More conserved momenta are told by the first and the last of them.
+pub(crate) const MOST_LISTED: usize = 16;
+
 impl<'g> Formulas<'g> {
     /// The user's name for the configuration: `q`, or `(p, q)`.
     pub fn q(&self) -> String {
@@ -274,10 +277,17 @@ impl<'g> Formulas<'g> {
 
     /// The conserved momenta by their names.
     pub fn formulas_of_conserved(&self) -> Vec<Formula> {
-        let conserved = self.symmetries.conserved.iter();
-        conserved
-            .map(|momentum| Formula::new("conserved", momentum.name.clone(), &readable(&[momentum.value])))
-            .collect()
+        let formula = |momentum: &super::ConservedMomentum<'g>| {
+            Formula::new("conserved", momentum.name.clone(), &readable(&[momentum.value]))
+        };
+        match self.symmetries.conserved.as_slice() {
+            [first, .., last] if self.symmetries.conserved.len() > MOST_LISTED => {
+                let mut last = formula(last);
+                last.symbol.insert_str(0, "… ");
+                vec![formula(first), last]
+            }
+            few => few.iter().map(formula).collect(),
+        }
     }
 
     /// The terms of the potential of a power.

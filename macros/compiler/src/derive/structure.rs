@@ -11,6 +11,9 @@ use super::equation::{Equation, Solution, Sources, chart_slope, is_moving};
 use super::symbols::ChartBlock;
 use pattern::Pattern;
 
+/// Jacobians of more unknowns are taken as they are: those of large groups are full.
+const LARGEST: usize = 20;
+
 /// The structure of a Jacobian, which its linear systems are solved by.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Structure {
@@ -29,6 +32,10 @@ pub enum Structure {
 pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>) -> Vec<Equation<'g>> {
     if equation.solution != Solution::Newton {
         return vec![equation];
+    }
+    if equation.components.len() > LARGEST {
+        let is_inertial = pattern::is_inertial_as_a_whole(sources, &equation);
+        return vec![Equation { is_inertial, ..equation }];
     }
     let mut whole = Reduced::new(sources, equation, Vec::new());
     whole.equation.is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);

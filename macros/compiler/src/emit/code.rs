@@ -32,6 +32,8 @@ pub struct Scope<'a, 'g> {
     pub momentum: &'static str,
     /// The user's struct as a type, for the methods behind an opaque potential.
     pub item: TokenStream,
+    /// Whether the program keeps whole matrices.
+    pub keeps_matrices: bool,
     /// What has been spelled.
     pub spelled: Spelled,
 }
@@ -67,7 +69,7 @@ pub fn accessor(text: &str) -> TokenStream {
 }
 
 impl Scope<'_, '_> {
-    fn read(&self, input: &Input) -> TokenStream {
+    pub(super) fn read(&self, input: &Input) -> TokenStream {
         if let Some(known) = self.spelled.reads.borrow().get(input) {
             return known.clone();
         }
@@ -85,7 +87,11 @@ impl Scope<'_, '_> {
         };
         let factor = |k: usize| self.model.factors[k].accessor.as_str();
         match input.role {
-            Role::StepSize => quote!(h),
+            Role::StepSize => match &self.constants {
+                // what is written out has taken all that depends on h into its constants
+                Some(constants) => quote!(#constants.step_size),
+                None => quote!(h),
+            },
             Role::Time => quote!(t),
             Role::Parameter(leaf) => self.parameter(leaf, index),
             Role::Constant(index) => self.constant_of_crate(index),
@@ -120,6 +126,10 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 entry("x", &self.coordinates, self.model.offset(k) + input.row)
             }
+            Role::Auxiliary(_) if self.keeps_matrices => {
+                let constants = &self.constants;
+                quote!(#constants.inertia_inverse.matrix() #index)
+            }
             Role::Auxiliary(_) => match &self.constants {
                 Some(constants) => quote!(#constants.inertia_inverse #index),
                 None => quote!(inertia_inverse #index),
@@ -127,7 +137,7 @@ impl Scope<'_, '_> {
         }
     }
 
-    fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
+    pub(super) fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
         let of_terms = self.model.power.iter().flat_map(|power| &power.parameters);
         let all = self
             .model
@@ -178,6 +188,11 @@ impl Scope<'_, '_> {
                 operator(tokens, '.');
                 word(tokens, &self.constant_names[*index]);
             }
+            Code::Term(index) if self.keeps_matrices => {
+                // behind the target
+                let index = Literal::usize_unsuffixed(*index + 1);
+                tokens.extend(quote!(terms.#index));
+            }
             Code::Term(index) => {
                 word(tokens, "terms");
                 let index = TokenTree::from(Literal::usize_unsuffixed(*index));
@@ -216,6 +231,7 @@ impl Scope<'_, '_> {
             Code::Call(callee, arguments) => tokens.extend(self.call(callee, arguments)),
             Code::Output(local, callee, output) => tokens.extend(self.output(*local, callee, *output)),
             Code::Function(function, x) => tokens.extend(self.function(*function, x)),
+            Code::Whole(whole) => tokens.extend(self.whole(whole)),
         }
     }
 
@@ -419,11 +435,22 @@ pub fn locals(scope: &Scope<'_, '_>, kernel: &Kernel) -> TokenStream {
     for (index, code) in kernel.locals.iter().enumerate() {
         word(&mut tokens, "let");
         word(&mut tokens, &format!("t{index}"));
+        tokens.extend(scope.type_of(code));
         operator(&mut tokens, '=');
         scope.write(&mut tokens, code, false);
         operator(&mut tokens, ';');
     }
     tokens
+}
+
+/// Those of the shared terms whose index passes a test.
+pub fn locals_where(scope: &Scope<'_, '_>, kernel: &Kernel, test: impl Fn(usize) -> bool) -> TokenStream {
+    let locals = kernel.locals.iter().enumerate().filter(|(index, _)| test(*index));
+    let locals = locals.map(|(index, code)| {
+        let (name, matrix, value) = (format_ident!("t{index}"), scope.type_of(code), scope.code(code, false));
+        quote!(let #name #matrix = #value;)
+    });
+    quote!(#(#locals)*)
 }
 
 /// A matrix of entries, row by row, whatever its shape.
@@ -437,6 +464,11 @@ pub fn matrix(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStr
 /// A matrix, vector or quaternion of entries.
 pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code], is_quaternion: bool) -> TokenStream {
     let private = &scope.paths.private;
+    if let [whole] = entries
+        && !shape.is_scalar()
+    {
+        return scope.code(whole, false);
+    }
     match shape.columns {
         _ if is_quaternion => {
             let entries = entries_of(scope, entries);

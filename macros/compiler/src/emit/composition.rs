@@ -55,6 +55,9 @@ impl Emitter<'_, '_> {
             let krate = &self.paths.krate;
             return quote!(#krate::Clebsch::steps(self, constants, (t, constants.step_size), 1, q, mu, impulse, u));
         }
+        if self.follows_great_circles() {
+            return self.great_circles_taken();
+        }
         if self.program.formulas.stages().is_none() {
             return quote!(#step::euler_poincare(&#step { system: self, constants }, #time q, mu, impulse, #input));
         }
@@ -62,6 +65,19 @@ impl Emitter<'_, '_> {
             #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, impulse)| {
                 #step::euler_poincare(&#step { system: self, constants }, #time &q, &mu, &impulse, #input)
             })
+        }
+    }
+
+    /// A step, or those that it is composed of, in (q, w).
+    fn great_circles_taken(&self) -> TokenStream {
+        let (private, step) = (&self.paths.private, &self.names.step);
+        match self.program.formulas.stages() {
+            None => quote!(#step::euler_poincare_steps(&#step { system: self, constants }, 1, q, mu)),
+            Some(_) => quote! {
+                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, _)| {
+                    #step::euler_poincare_steps(&#step { system: self, constants }, 1, &q, &mu)
+                })
+            },
         }
     }
 
@@ -98,6 +114,10 @@ impl Emitter<'_, '_> {
             Some(split) => {
                 ("Several steps, the drift at the end of one and that at the start of the next in one.", split)
             }
+            None if self.follows_great_circles() && self.program.formulas.stages().is_none() => (
+                "Several steps in (q, w).",
+                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu)),
+            ),
             None if self.keeps_motions() => (
                 "Several steps of one motion.",
                 quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu, impulse)),

@@ -1,9 +1,10 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
+use clebsch_symbolic::Role;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, code, docs};
+use super::{Emitter, code, docs, matrices};
 use crate::derive::Solution;
 use crate::lower::Solve;
 use crate::model::{Promise, Side};
@@ -14,7 +15,14 @@ impl Emitter<'_, '_> {
         let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         let names = self.program.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
-        let inverse = self.paths.matrix(self.dimension(), self.dimension());
+        let inverse = match self.has_uniform_inertia() {
+            true => quote!(#scalar),
+            false if self.program.form.keeps_matrices() => {
+                let dimension = Literal::usize_unsuffixed(self.dimension());
+                quote!(#private::InertiaInverse<#scalar, #dimension>)
+            }
+            false => self.paths.matrix(self.dimension(), self.dimension()),
+        };
         let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let kind = self.kind_of_free_rotation();
         let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::#kind<#scalar>,));
@@ -34,9 +42,34 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// Whether Σ is kept as the number κ of κI.
+    pub(super) fn has_uniform_inertia(&self) -> bool {
+        self.program.form.keeps_matrices() && self.program.formulas.uniform_inertia.is_some()
+    }
+
+    /// Σ as an expression, or κ of κI.
+    pub(super) fn inertia(&self, scope: &code::Scope<'_, '_>) -> TokenStream {
+        let kernel = &self.program.inertia;
+        if !self.program.form.keeps_matrices() || self.has_uniform_inertia() {
+            let (locals, (shape, entries)) = (code::locals(scope, kernel), &kernel.outputs[0]);
+            return match self.has_uniform_inertia() {
+                true => {
+                    let kappa = scope.code(&entries[0], false);
+                    quote!(#locals #kappa)
+                }
+                false => {
+                    let inertia = code::grid(scope, *shape, entries, false);
+                    quote!(#locals #inertia)
+                }
+            };
+        }
+        let (locals, inertia) = matrices::matrix_of(scope, kernel, 0, "x", |role| matches!(role, Role::Algebra(_)));
+        quote!(#locals #inertia)
+    }
+
     /// Whether the size of a step is a constant by itself.
     fn needs_step_size(&self) -> bool {
-        self.program.splitting.is_some() || self.program.collocation.is_some()
+        self.program.splitting.is_some() || self.program.collocation.is_some() || self.program.form.keeps_matrices()
     }
 
     /// Whether the orientation of an equation is a constant, made of Σ.
@@ -87,6 +120,15 @@ impl Emitter<'_, '_> {
     /// The sign of det Σ/h for some components, Dρ at the identity but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
         let (private, krate) = (&self.paths.private, &self.paths.krate);
+        if self.program.form.keeps_matrices() && components.len() == self.dimension() {
+            return match self.has_uniform_inertia() {
+                true => {
+                    let dimension = Literal::usize_unsuffixed(self.dimension());
+                    quote!(#private::orientation_of_uniform(inertia / h, #dimension)?)
+                }
+                false => quote!(#private::orientation_of_inertia(&inertia, h)?),
+            };
+        }
         let rows = components.iter().map(|&i| {
             let row = components.iter().map(|&j| {
                 let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
@@ -107,10 +149,15 @@ impl Emitter<'_, '_> {
         let (constants, checks) = (&self.names.constants, self.checks());
         let moves = self.program.formulas.inertia_moves();
         let inertia = (!moves).then(|| {
-            let inertia = code::body(&scope, &self.program.inertia, None);
+            let inertia = self.inertia(&scope);
+            let invert = match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
+                (true, _) => quote!(invert_uniform),
+                (false, true) => quote!(InertiaInverse::new),
+                (false, false) => quote!(invert),
+            };
             quote! {
                 let inertia = { #inertia };
-                let inertia_inverse = #private::invert(&inertia)?;
+                let inertia_inverse = #private::#invert(&inertia)?;
             }
         });
         let inverse = (!moves).then(|| quote!(inertia_inverse,));

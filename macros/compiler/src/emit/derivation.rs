@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use clebsch_symbolic::{Chart, Group};
 
-use crate::derive::{Collocation, Equation, Solution, Structure, Substep};
-use crate::lower::{Program, Solve};
-use crate::model::{Discretization, Isotropy, Kinetic, Model, Order, Side, Space};
+use crate::derive::{Collocation, Equation, MOST_LISTED, Solution, Structure, Substep};
+use crate::lower::{Form, LARGEST_UNROLLED, Program, Solve};
+use crate::model::{CodeForm, Discretization, Isotropy, Kinetic, Model, Order, Side, Space};
 
 /// The text of `DERIVATION`.
 pub fn derivation(program: &Program<'_>) -> String {
@@ -18,7 +18,7 @@ pub fn derivation(program: &Program<'_>) -> String {
     // by construction: writing to a string does not fail
     let _ = write!(
         text,
-        "{}\n\n{}{}{}{}{}\n{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
+        "{}\n\n{}{}{}{}{}\n{}{}\n{}\nFormulas\n\n{}\nCost\n\n{}",
         model.power.as_ref().map_or(&model.item, |power| &power.item).ident,
         sites(program),
         frames(model),
@@ -26,11 +26,29 @@ pub fn derivation(program: &Program<'_>) -> String {
         forces(program),
         conserved(program),
         scheme(program),
+        form(program),
         left_out(program),
         program.formulas,
         costs(program),
     );
     text
+}
+
+/// How the code is written, and why.
+fn form(program: &Program<'_>) -> String {
+    let Form { code, estimate, is_asked } = program.form;
+    let written = match code {
+        CodeForm::Unrolled => "Code is written out, entry by entry",
+        CodeForm::Matrices => "Code keeps whole matrices, in loops",
+    };
+    let why = match (is_asked, code) {
+        (true, _) => "as the declaration asks".to_string(),
+        (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
+        (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
+    };
+    format!(
+        "{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}.\n"
+    )
 }
 
 /// What a power is.
@@ -118,7 +136,8 @@ fn energy(program: &Program<'_>) -> String {
         .flat_map(|xi| (0..xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i + 1))))
         .collect();
     let mut terms = String::new();
-    for (i, first) in names.iter().enumerate() {
+    let is_kept = program.form.keeps_matrices();
+    for (i, first) in names.iter().enumerate().filter(|_| !is_kept) {
         for (j, second) in names.iter().enumerate().skip(i) {
             let Some(text) = program.energy_coefficient(i, j) else { continue };
             let square = if i == j { format!("{first}²") } else { format!("{first} {second}") };
@@ -138,7 +157,9 @@ fn energy(program: &Program<'_>) -> String {
         }
         None => "of a signature that depends on the parameters".to_string(),
     };
-    format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
+    let coordinates =
+        if is_kept { String::new() } else { format!(" in these coordinates{to_second_order}: {terms}{linear}") };
+    format!("Kinetic energy{coordinates}{} is {signature}.\n", if is_kept { "" } else { ". It" })
 }
 
 fn grouped(text: &str) -> String {
@@ -193,8 +214,14 @@ fn conserved(program: &Program<'_>) -> String {
     let symmetries = &program.formulas.symmetries;
     let mut text = String::new();
     let summed = if program.formulas.model.power.is_some() { ", summed over all sites" } else { "" };
-    for momentum in &symmetries.conserved {
-        let _ = writeln!(text, "Conserved: the momentum {}{summed}.", momentum.name);
+    match symmetries.conserved.as_slice() {
+        [first, .., last] if symmetries.conserved.len() > MOST_LISTED => {
+            let (count, from, to) = (symmetries.conserved.len(), &first.name, &last.name);
+            let _ = writeln!(text, "Conserved: {count} momenta, from that {from}{summed} to that {to}{summed}.");
+        }
+        few => few.iter().for_each(|momentum| {
+            let _ = writeln!(text, "Conserved: the momentum {}{summed}.", momentum.name);
+        }),
     }
     if symmetries.conserved.is_empty() {
         let known = if symmetries.undecided { " that could be proved" } else { "" };

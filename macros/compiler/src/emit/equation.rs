@@ -1,11 +1,11 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{Role, Shape};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::names::Names;
-use super::{Emitter, Generics, code, docs};
+use super::{Emitter, Generics, code, docs, matrices};
 use crate::derive::{Equation, Formula, Solution};
 use crate::lower::Solve;
 
@@ -62,6 +62,7 @@ impl<'g> Emitter<'_, 'g> {
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
             Some(kernel) => {
+                let by_reference = self.program.form.keeps_matrices().then(|| quote!(let x = &x;));
                 let (locals, sine) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
                 let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
                 let documentation = docs::formulas(
@@ -74,7 +75,7 @@ impl<'g> Emitter<'_, 'g> {
                     #[inline]
                     fn closed_form(&self, target: &#target) -> ::core::result::Result<#vector, #krate::Error> {
                         let x = { #body };
-                        #private::below_right_angle(x, { #locals #sine })
+                        #private::below_right_angle(x, { #by_reference #locals #sine })
                     }
                 }
             }
@@ -136,11 +137,17 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// The vector and the matrix that a kernel gives.
-    fn linearized(&self, scope: &code::Scope<'_, '_>, solve: &Solve) -> (TokenStream, TokenStream) {
+    /// The terms, the vector and the matrix that a kernel gives.
+    fn linearized(&self, scope: &code::Scope<'_, '_>, solve: &Solve) -> (TokenStream, TokenStream, TokenStream) {
         let [vector, matrix] = [0, 1].map(|k| &solve.linearize.outputs[k]);
+        let value = code::grid(scope, vector.0, &vector.1, false);
+        if self.program.form.keeps_matrices() {
+            let is_direction = |role: Role| matches!(role, Role::Auxiliary(block) if block != usize::MAX);
+            let (locals, jacobian) = matrices::matrix_of(scope, &solve.linearize, 1, "delta", is_direction);
+            return (locals, value, jacobian);
+        }
         let square = Shape::square(solve.dimension);
-        (code::grid(scope, vector.0, &vector.1, false), code::grid(scope, square, &matrix.1, false))
+        (code::locals(scope, &solve.linearize), value, code::grid(scope, square, &matrix.1, false))
     }
 
     fn linear_equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
@@ -154,8 +161,7 @@ impl<'g> Emitter<'_, 'g> {
         let structure = self.equation_structure(&name, derived, Some(solve));
         let formula = self.program.formulas.formula_of_jacobian(derived);
         let documentation = docs::formulas("Dρ and −ρ(0).", &[formula], Some(&solve.linearize));
-        let (place, locals) = (self.place(solve), code::locals(&scope, &solve.linearize));
-        let (right, left) = self.linearized(&scope, solve);
+        let (place, (locals, right, left)) = (self.place(solve), self.linearized(&scope, solve));
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
@@ -183,9 +189,21 @@ impl<'g> Emitter<'_, 'g> {
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
+        let keeps = self.program.form.keeps_matrices();
         let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
+        let (terms, target_again) = match keeps {
+            true => {
+                let types = solve.prepare.outputs.iter().map(|(shape, _)| match shape.is_scalar() {
+                    true => quote!(#scalar),
+                    false => self.paths.matrix(shape.rows, shape.columns),
+                });
+                (quote!((#target, #(#types,)*)), quote!(let target = &terms.0;))
+            }
+            false => (quote!([#scalar; #terms]), quote!()),
+        };
         let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
         let prepare_locals = code::locals(&scope, &solve.prepare);
+        let prepared = if keeps { quote!((*target, #(#prepared,)*)) } else { quote!([#(#prepared),*]) };
         let predict = solve.predict.as_ref().map(|kernel| {
             let body = code::body(&scope, kernel, None);
             quote! {
@@ -196,8 +214,7 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
-        let (place, locals) = (self.place(solve), code::locals(&scope, &solve.linearize));
-        let (residual, jacobian) = self.linearized(&scope, solve);
+        let (place, (locals, residual, jacobian)) = (self.place(solve), self.linearized(&scope, solve));
         let derived = &self.program.formulas.substeps[index].equations[number];
         let formulas =
             [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
@@ -210,6 +227,7 @@ impl<'g> Emitter<'_, 'g> {
                 #documentation
                 #[inline]
                 fn residual(&self, terms: &Self::Terms, x: &#vector) -> #vector {
+                    #target_again
                     #body
                 }
             }
@@ -240,13 +258,13 @@ impl<'g> Emitter<'_, 'g> {
             #structure
 
             impl<#lifetime, #parameters> #private::Equation<#dimensions> for #name<#lifetime, #arguments> #predicates {
-                type Terms = [#scalar; #terms];
+                type Terms = #terms;
 
                 #[inline]
                 fn prepare(&self, target: &#target) -> Self::Terms {
                     #place
                     #prepare_locals
-                    [#(#prepared),*]
+                    #prepared
                 }
 
                 #predict
@@ -256,6 +274,7 @@ impl<'g> Emitter<'_, 'g> {
                 #linearized
                 #[inline]
                 fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #matrix) {
+                    #target_again
                     #place
                     #locals
                     (#residual, #jacobian)

@@ -11,6 +11,7 @@ mod docs;
 mod equation;
 mod exact;
 mod jacobian;
+mod matrices;
 mod names;
 mod opaque;
 mod path;
@@ -193,6 +194,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
             blocks: self.program.formulas.symbols.blocks.iter().map(|block| block.offset).collect(),
             momentum: "mu",
             item: self.item_type(),
+            keeps_matrices: self.program.form.keeps_matrices(),
             spelled: Spelled::default(),
         }
     }
@@ -259,6 +261,9 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
+        if self.follows_great_circles() {
+            return false;
+        }
         let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts - 1]);
         let (start, end) = (
             &self.program.formulas.substeps[0].start,
@@ -269,6 +274,11 @@ impl<'a, 'g> Emitter<'a, 'g> {
             && last.end.is_some()
             && self.program.splitting.is_none()
             && self.program.collocation.is_none()
+    }
+
+    /// Whether steps are made in (q, w).
+    fn follows_great_circles(&self) -> bool {
+        self.program.form.keeps_matrices() && self.program.formulas.follows_great_circles()
     }
 
     fn impulse_type(&self) -> TokenStream {

@@ -303,6 +303,9 @@ impl Emitter<'_, '_> {
         if let Some(collocation) = &self.program.collocation {
             return self.collocated(collocation);
         }
+        if self.follows_great_circles() {
+            return self.along_great_circles();
+        }
         let (krate, configuration, momentum, impulse) =
             (&self.paths.krate, self.configuration_type(), self.momentum_type(), self.left_type());
         let (time, input, inline) = (self.time_parameter(), self.input_parameter(), self.inline_of_steps());
@@ -328,6 +331,56 @@ impl Emitter<'_, '_> {
                 #next_impulse
                 #kept_on_spaces
                 ::core::result::Result::Ok((q, mu, #left))
+            }
+            #symmetric
+        }
+    }
+
+    /// Steps along great circles in (q, w): kick, turn, kick, each in n numbers.
+    fn along_great_circles(&self) -> TokenStream {
+        let (krate, private) = (&self.paths.krate, &self.paths.private);
+        let (configuration, momentum, symmetric) = (self.configuration_type(), self.momentum_type(), self.symmetric());
+        let step = &self.program.steps[0];
+        let pushed = |name: &str| {
+            let name = format_ident!("{name}");
+            quote!(w = #private::pushed(&q, &w, &self.#name(&q));)
+        };
+        let start = step.start_gradient.as_ref().map(|_| "start_gradient");
+        let end = step.end_gradient.as_ref().map(|_| "end_gradient");
+        let (before, start, end) = match (start, end) {
+            // the same kick twice, its gradient made once
+            (Some(_), Some(_)) if step.end_is_start => (
+                Some(quote!(let mut gradient = self.start_gradient(&q);)),
+                Some(quote!(w = #private::pushed(&q, &w, &gradient);)),
+                Some(quote! {
+                    gradient = self.start_gradient(&q);
+                    w = #private::pushed(&q, &w, &gradient);
+                }),
+            ),
+            (start, end) => (None, start.map(pushed), end.map(pushed)),
+        };
+        quote! {
+            /// (q, N) ↦ (q⁺, N⁺), as many times as there are steps.
+            ///
+            /// Between the first and the last N is wqᵀ − qwᵀ: w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁;
+            /// what is not perpendicular to q is taken off w each time, which rounding makes necessary.
+            fn euler_poincare_steps(
+                &self,
+                steps: ::core::primitive::usize,
+                q: &#configuration,
+                mu: &#momentum,
+            ) -> ::core::result::Result<(#configuration, #momentum, ()), #krate::Error> {
+                let mut q = *q;
+                let mut w = #private::tangent(&q, mu);
+                let a = self.constants.step_size * self.constants.inertia_inverse;
+                #before
+                for _ in 0..steps {
+                    #start
+                    (q, w) = #private::great_circle(a, &q, &w)?;
+                    #end
+                    q = #private::on_sphere(q);
+                }
+                ::core::result::Result::Ok((q, #krate::Clebsch::momentum_map(self.system, &q, &w), ()))
             }
             #symmetric
         }

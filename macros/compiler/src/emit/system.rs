@@ -261,12 +261,16 @@ impl Emitter<'_, '_> {
         };
         let energy = match self.program.formulas.inertia_moves() {
             true => {
-                let inertia = code::body(&scope, &self.program.inertia, None);
+                let inertia = self.inertia(&scope);
                 quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
             }
             false => {
                 let whole = self.whole();
-                quote!(#private::kinetic_energy(&#whole.inertia_inverse, #mu))
+                match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
+                    (true, _) => quote!(#private::kinetic_energy_uniform(&#whole.inertia_inverse, #mu)),
+                    (false, true) => quote!(#whole.inertia_inverse.energy(#mu)),
+                    (false, false) => quote!(#private::kinetic_energy(&#whole.inertia_inverse, #mu)),
+                }
             }
         };
         quote!(#shift #energy)
@@ -428,6 +432,10 @@ impl Emitter<'_, '_> {
         let (scope, orbit_defect) = (self.scope_of_system(), self.orbit_defect());
         let (defect, projection) = match &self.program.generator {
             None => (quote!(<#scalar as #private::Zero>::zero()), quote!(*mu)),
+            Some(kernel) if self.program.form.keeps_matrices() => {
+                let projection = code::body(&scope, kernel, None);
+                (quote!(#private::distance(mu, &{ #projection })), projection)
+            }
             Some(kernel) => {
                 let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
                 let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();

@@ -30,6 +30,17 @@ impl Kernel {
 }
 
 impl Cost {
+    /// So many times the cost.
+    pub fn times(self, count: usize) -> Cost {
+        Cost {
+            additions: self.additions * count,
+            multiplications: self.multiplications * count,
+            divisions: self.divisions * count,
+            roots: self.roots * count,
+            calls: self.calls * count,
+        }
+    }
+
     /// All operations.
     pub fn total(self) -> usize {
         self.additions + self.multiplications + self.divisions + self.roots + self.calls
@@ -71,6 +82,10 @@ impl Cost {
             Code::Call(_, arguments) => {
                 self.calls += 1;
                 arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| self.count(entry));
+            }
+            Code::Whole(whole) => {
+                *self = self.plus(whole.cost);
+                whole.operands.iter().for_each(|operand| self.count(operand));
             }
             Code::Read(_) | Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) => {}
             Code::Local(_) | Code::Output(..) => {}

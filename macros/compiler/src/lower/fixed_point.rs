@@ -4,8 +4,8 @@
 //! linearisations with their linear systems, whose code is long.
 
 use super::kernel::kernel;
-use super::{Code, Hoisted, Hoisting, Kernel, Scalars, grids};
-use crate::derive::{Equation, Formulas};
+use super::{Code, Hoisted, Hoisting, Kernel, Scalars, grids, matrices};
+use crate::derive::{Equation, Formulas, Solution};
 use crate::model::Solver;
 use clebsch_symbolic::Expr;
 
@@ -46,6 +46,18 @@ pub(super) fn residual<'g>(
         (*hoisted, *terms) = (constants, more);
         residual
     })
+}
+
+/// The same where whole matrices are kept: its own terms, as nothing is taken out.
+pub(super) fn residual_of_matrices<'g>(
+    formulas: &Formulas<'g>,
+    equation: &Equation<'g>,
+    predict: Option<&Kernel>,
+) -> Option<Kernel> {
+    let serves = equation.is_inertial && !equation.moves && equation.coupled.is_empty() && predict.is_some();
+    // a linear system costs more than many residuals
+    let is_asked = formulas.model.solver != Some(Solver::Newton);
+    (serves && is_asked && equation.solution == Solution::Newton).then(|| matrices::kernel(&[equation.residual]))
 }
 
 /// The operations of a kernel, with those of the functions of matrices that it calls.

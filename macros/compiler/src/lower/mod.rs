@@ -9,8 +9,10 @@ mod cost;
 mod displacement;
 mod factors;
 mod fixed_point;
+mod form;
 mod grid;
 mod kernel;
+mod matrices;
 mod names;
 mod pairs;
 mod print;
@@ -19,7 +21,7 @@ mod stepping;
 mod sums;
 mod variation;
 
-use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
+use clebsch_symbolic::{Expr, Property, Shape, identity};
 
 use crate::derive::{Formulas, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -27,8 +29,9 @@ use crate::model::{Factor, Isotropy, Space};
 
 pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
+pub use form::{Form, LARGEST_UNROLLED};
 pub use grid::{Grid, Lowering};
-pub use kernel::{Code, Hoisted, Hoisting, Kernel};
+pub use kernel::{Code, Hoisted, Hoisting, Kernel, Operation, Whole};
 pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
 pub use stepping::{CollocationKernels, Solve, SplittingKernels, StepKernels};
 pub use variation::{EdgeKernels, VariationKernels};
@@ -43,6 +46,8 @@ const LARGEST_KERNEL: usize = 20_000;
 pub struct Program<'g> {
     /// The formulas that it computes.
     pub formulas: Formulas<'g>,
+    /// Whether kernels are written out or keep whole matrices, and why.
+    pub form: Form,
     /// Φ_F(q), from F and q.
     pub act: Kernel,
     /// J(q, p).
@@ -57,10 +62,10 @@ pub struct Program<'g> {
     pub stagger: Option<Kernel>,
     /// V(q).
     pub potential: Kernel,
-    /// Σ.
+    /// Σ; where matrices are kept Σξ as a function of ξ, or κ of an inertia κI.
     pub inertia: Kernel,
-    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy: what its print in coordinates is made of.
-    pub energy_coefficients: Kernel,
+    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy: what its print in coordinates is made of, where it is written out.
+    pub energy_coefficients: Option<Kernel>,
     /// The representing matrices of μ.
     pub momentum_matrix: Kernel,
     /// The components of momentum matrices.
@@ -73,7 +78,8 @@ pub struct Program<'g> {
     pub conserved: Option<Kernel>,
     /// What vanishes where the leaves of the configuration lie on their groups, apart from rotations and unit vectors.
     pub membership: Option<Kernel>,
-    /// The matrix of ξ ↦ ξ_Q(q), unless the action is free, or motions that fix q are asked for.
+    /// The matrix of ξ ↦ ξ_Q(q), unless the action is free, or motions that fix q are asked for; where matrices are kept the projection of μ
+    /// to the momenta of motions.
     pub generator: Option<Kernel>,
     /// The kernels of each substep.
     pub steps: Vec<StepKernels>,
@@ -95,8 +101,6 @@ pub struct Program<'g> {
     pub constants: Kernel,
     /// A short name for each constant.
     pub constant_names: Vec<String>,
-    /// Whether a constant is made of Σ⁻¹.
-    pub needs_inertia_inverse: bool,
 }
 
 /// The kernels of a term of a power.
@@ -112,13 +116,11 @@ pub struct LinkKernels {
 /// # Errors
 /// A system whose unrolled code would be too large.
 pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
-    let dimension = formulas.inertia.shape().rows;
-    if dimension > 64 {
-        return Err(too_large(&formulas, format!("{dimension} unknowns")));
-    }
+    let form = form::choose(&formulas)?;
     // rounding decides where plans go that start from a saddle: what they are made of is computed as it is written
     let mut scalars = Scalars::default();
     scalars.keeps_sums = formulas.model.is_steered();
+    scalars.keeps_matrices = form.keeps_matrices();
     let mut hoisted = Hoisted::default();
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let splitting = stepping::splitting(&formulas, &mut scalars, &mut hoisted);
@@ -151,30 +153,37 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         legendre_next: stacked(&after, &mut scalars),
         stagger: formulas.stagger.as_ref().map(|stagger| stacked(stagger, &mut scalars)),
         potential: outputs(&mut scalars, &[formulas.potential_energy]),
-        inertia: outputs(&mut scalars, &[formulas.inertia]),
-        energy_coefficients: energy_coefficients(&formulas, &mut scalars),
+        inertia: inertia(&formulas, &mut scalars),
+        energy_coefficients: (!form.keeps_matrices()).then(|| energy_coefficients(&formulas, &mut scalars)),
         momentum_matrix: outputs(&mut scalars, &momentum_matrices(&formulas)),
         momentum_components: stacked(&momentum_components(&formulas), &mut scalars),
         velocity: velocity(&formulas, &mut scalars),
         gyroscopic: gyroscopic(&formulas, &mut scalars),
         conserved: conserved(&formulas, &mut scalars),
         membership: membership(&formulas, &mut scalars),
-        generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed)
-            .then(|| generator(&formulas, &mut scalars)),
+        generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed).then(|| {
+            match formulas.projection.as_ref().filter(|_| scalars.keeps_matrices) {
+                Some(projection) => stacked(projection, &mut scalars),
+                None => generator(&formulas, &mut scalars),
+            }
+        }),
         cotangent_lift: lift,
         splitting,
         collocation,
         variations,
         control,
         endpoint,
-        needs_inertia_inverse: hoisted.scalars.iter().any(|&scalar| uses_inertia_inverse(&scalars, scalar)),
         constants,
         constant_names: names,
         steps,
+        form,
         formulas,
     };
     let whole = program.cost().total();
     let kernel = program.kernels().into_iter().map(|(_, kernel)| kernel.cost().total()).max().unwrap_or(0);
+    if program.form.keeps_matrices() {
+        return Ok(program);
+    }
     for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
         if operations > most {
             return Err(too_large(
@@ -225,12 +234,18 @@ fn replaced<'g>(expressions: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)])
 
 /// Several expressions, one output each, nothing taken out.
 fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
+    if scalars.keeps_matrices {
+        return matrices::kernel(expressions);
+    }
     let grids = grids(scalars, expressions);
     kernel::kernel(scalars, &grids, Hoisting::Nothing)
 }
 
 /// Vectors, one after the other in one output.
 fn stack(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
+    if scalars.keeps_matrices {
+        return matrices::stack(expressions);
+    }
     let entries: Vec<Scalar> = grids(scalars, expressions).into_iter().flat_map(|(_, entries)| entries).collect();
     kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing)
 }
@@ -250,6 +265,20 @@ fn momentum_matrices<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
 fn momentum_components<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     let factors = formulas.model.factors.iter().zip(&formulas.symbols.momentum_matrices);
     factors.map(|(factor, matrix)| factor.group.components(*matrix)).collect()
+}
+
+/// Σ; where matrices are kept Σξ or κ.
+fn inertia(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+    if !scalars.keeps_matrices {
+        return plain(scalars, &[formulas.inertia]);
+    }
+    match formulas.uniform_inertia {
+        Some(kappa) => plain(scalars, &[kappa]),
+        None => {
+            let slopes = formulas.symbols.algebra.iter().map(|xi| formulas.energy.kinetic.gradient(*xi).expand());
+            stack(scalars, &slopes.collect::<Vec<_>>())
+        }
+    }
 }
 
 /// The rows of ξ ↦ ξ_Q(q) on all components, one row for each entry of the configuration.
@@ -321,7 +350,8 @@ fn conserved(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
     let inverses: Vec<_> = leaves.flatten().collect();
     let values: Vec<_> =
         formulas.symmetries.conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
-    (!values.is_empty()).then(|| stack(scalars, &values))
+    let conserved = || if scalars.keeps_matrices { matrices::list(&values) } else { stack(scalars, &values) };
+    (!values.is_empty()).then(conserved)
 }
 
 /// The equations of the groups that leaves of the configuration are promised to lie on, in one vector. Those of SO(n) and of the
@@ -331,7 +361,11 @@ fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
         Space::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
         _ => Vec::new(),
     });
-    let entries: Vec<Scalar> = grids(scalars, &equations.collect::<Vec<_>>())
+    let equations: Vec<_> = equations.collect();
+    if scalars.keeps_matrices {
+        return (!equations.is_empty()).then(|| matrices::largest(&equations));
+    }
+    let entries: Vec<Scalar> = grids(scalars, &equations)
         .into_iter()
         .flat_map(|(_, entries)| entries)
         .filter(|&entry| !scalars.is_zero(entry))
@@ -343,13 +377,6 @@ fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
 fn inertia_inverse<'g>(formulas: &Formulas<'g>) -> Expr<'g> {
     crate::derive::inertia_inverse(formulas.model.graph, formulas.inertia.shape())
-}
-
-fn uses_inertia_inverse(scalars: &Scalars, scalar: Scalar) -> bool {
-    match scalars.node(scalar) {
-        Node::Input(input) => matches!(input.role, Role::Auxiliary(_)),
-        _ => scalars.children(scalar).into_iter().any(|child| uses_inertia_inverse(scalars, child)),
-    }
 }
 
 impl Program<'_> {

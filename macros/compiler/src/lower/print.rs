@@ -6,7 +6,7 @@ use clebsch_symbolic::{Analytic, integer};
 
 use crate::derive::Solution;
 
-use super::{Callee, Code, Cost, Input, Kernel, Program, VariationKernels};
+use super::{Callee, Code, Cost, Input, Kernel, Operation, Program, VariationKernels, Whole};
 
 impl Cost {
     /// The sum of two costs.
@@ -200,8 +200,9 @@ impl fmt::Display for Program<'_> {
 impl Program<'_> {
     /// The coefficient of ξ_i ξ_j in the kinetic energy as text; `None` where it is zero.
     pub fn energy_coefficient(&self, i: usize, j: usize) -> Option<String> {
-        let (shape, entries) = &self.energy_coefficients.outputs[0];
-        let code = inlined(&self.energy_coefficients, &entries[i * shape.columns + j]);
+        let kernel = self.energy_coefficients.as_ref()?;
+        let (shape, entries) = &kernel.outputs[0];
+        let code = inlined(kernel, &entries[i * shape.columns + j]);
         (code != Code::Number(integer(0))).then(|| self.text(&code, 0))
     }
 
@@ -269,25 +270,41 @@ impl Program<'_> {
                 _ => format!("t{local}[{},{}]", output.row, output.column),
             },
             Code::Function(function, x) => format!("{}({})", function.name(), self.text(x, 0)),
+            Code::Whole(whole) => self.whole(whole, place),
         }
+    }
+
+    /// The text of an operation on whole matrices.
+    fn whole(&self, whole: &Whole, place: usize) -> String {
+        let operands: Vec<String> = whole.operands.iter().map(|operand| self.text(operand, 1)).collect();
+        let (text, is_sum) = match &whole.operation {
+            Operation::Argument(input) => (input.name.clone(), false),
+            Operation::Entries => (format!("[{}]", operands.join(", ")), false),
+            Operation::Sum(weights) => {
+                let weighted = |(weight, operand): (&clebsch_symbolic::Rational, &String)| match weight {
+                    one if *one == integer(1) => operand.clone(),
+                    _ => format!("{weight}*{operand}"),
+                };
+                (weights.iter().zip(&operands).map(weighted).collect::<Vec<_>>().join(" + "), true)
+            }
+            Operation::Scaled | Operation::Product => (operands.join("*"), false),
+            Operation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
+            Operation::Transpose => (format!("{}ᵀ", operands[0]), false),
+            Operation::Skew => (format!("{}^", operands[0]), false),
+            Operation::SkewTimes => (format!("{}^*{}", operands[0], operands[1]), false),
+            Operation::SkewComponents => (format!("⟨{}, E⟩", operands[0]), false),
+            Operation::SkewOuter => (format!("⟨{}*{}ᵀ, E⟩", operands[0], operands[1]), false),
+            Operation::Pairing => (format!("⟨{}, {}⟩", operands[0], operands[1]), false),
+            Operation::Entry(i, j) => (format!("{}[{i},{j}]", operands[0]), false),
+            other => (format!("{other:?}({})", operands.join(", ")).to_lowercase(), false),
+        };
+        if is_sum && place > 0 { format!("({text})") } else { text }
     }
 }
 
 /// A code with the shared terms of its kernel put in.
 fn inlined(kernel: &Kernel, code: &Code) -> Code {
-    let inner = |code: &Code| inlined(kernel, code);
-    match code {
-        Code::Local(index) => inner(&kernel.locals[*index]),
-        Code::Sum(constant, terms) => {
-            Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
-        }
-        Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
-        Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
-        Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
-        Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
-        Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
-        other => other.clone(),
-    }
+    code.with_locals(&|index| inlined(kernel, &kernel.locals[index]))
 }
 
 impl fmt::Display for Callee {

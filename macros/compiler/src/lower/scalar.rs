@@ -112,6 +112,8 @@ impl Node {
 pub struct Scalars {
     /// Whether kernels leave sums as they are written, sums within them too.
     pub keeps_sums: bool,
+    /// Whether kernels keep whole matrices and are not written out.
+    pub keeps_matrices: bool,
     nodes: Interner<Node>,
     rates: Vec<Rate>,
     calls: Vec<Call>,

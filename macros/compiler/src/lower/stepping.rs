@@ -7,6 +7,7 @@ use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, Zero, identity};
 use super::displacement;
 use super::fixed_point;
 use super::kernel::kernel;
+use super::matrices;
 use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
 use crate::derive::{Equation, Formulas, Solution, Structure, Substep, by_inertia, chart_slope, increments};
 use crate::model::Factor;
@@ -254,11 +255,17 @@ fn step<'g>(
 
 /// Vectors in one output, constants taken out.
 fn stack(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) -> Kernel {
+    if scalars.keeps_matrices {
+        return matrices::stack(parts);
+    }
     let entries: Vec<Scalar> = grids(scalars, parts).into_iter().flat_map(|(_, entries)| entries).collect();
     kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Constants(hoisted))
 }
 
 fn separate(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) -> Kernel {
+    if scalars.keeps_matrices {
+        return matrices::kernel(parts);
+    }
     let grids = grids(scalars, parts);
     kernel(scalars, &grids, Hoisting::Constants(hoisted))
 }
@@ -273,6 +280,7 @@ fn solve<'g>(
     let start = match (equation.formula, equation.solution) {
         (Some(formula), _) => Some(vec![formula]),
         (None, Solution::Linear | Solution::FreeRotation) => None,
+        (None, _) if scalars.keeps_matrices => whole_predictor(formulas, substep, equation),
         (None, _) => predictor(formulas, substep, equation),
     };
     let predict = start.map(|start| stack(scalars, hoisted, &start));
@@ -282,9 +290,24 @@ fn solve<'g>(
         Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
         }
+        Solution::Linear | Solution::Newton if scalars.keeps_matrices => {
+            let linearize = match equation.solution {
+                Solution::Linear => [-equation.residual.substitute(&at_rest(formulas)), equation.directional],
+                _ => [equation.residual, equation.directional],
+            };
+            let linearize = matrices::kernel(&linearize);
+            match fixed_point::residual_of_matrices(formulas, equation, predict.as_ref()) {
+                Some(alone) => {
+                    let (prepare, alone) = matrices::hoisted(alone);
+                    residual = Some(alone);
+                    (prepare, linearize)
+                }
+                None if equation.solution == Solution::Newton => matrices::hoisted(linearize),
+                None => (kernel(scalars, &[], Hoisting::Nothing), linearize),
+            }
+        }
         Solution::Linear => {
-            let rest = formulas.symbols.blocks.iter().map(|block| block.coordinates);
-            let rest: Vec<_> = rest.map(|x| (x, formulas.model.graph.zero(x.shape()))).collect();
+            let rest = at_rest(formulas);
             let columns = equation.columns(&formulas.symbols);
             let columns: Vec<Expr<'g>> = columns.iter().map(|column| column.substitute(&rest)).collect();
             let outputs = linearized(scalars, -equation.residual.substitute(&rest), &columns);
@@ -326,6 +349,12 @@ fn solve<'g>(
     solve
 }
 
+/// The replacement of all chart coordinates by zero.
+fn at_rest<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let coordinates = formulas.symbols.blocks.iter().map(|block| block.coordinates);
+    coordinates.map(|x| (x, formulas.model.graph.zero(x.shape()))).collect()
+}
+
 /// A vector and the matrix with these columns.
 fn linearized(scalars: &mut Scalars, vector: Expr<'_>, columns: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
     let vector = grids(scalars, &[vector]).remove(0);
@@ -338,7 +367,9 @@ fn linearized(scalars: &mut Scalars, vector: Expr<'_>, columns: &[Expr<'_>]) -> 
 impl Solve {
     /// Whether an entry of Dρ is zero, whatever the numbers are.
     pub fn is_zero(&self, i: usize, j: usize) -> bool {
-        matches!(&self.linearize.outputs[1].1[i * self.dimension + j], Code::Number(value) if value.is_zero())
+        // of a matrix that is kept as a whole no entry is known
+        let entry = self.linearize.outputs[1].1.get(i * self.dimension + j);
+        matches!(entry, Some(Code::Number(value)) if value.is_zero())
     }
 
     /// The components of the momentum and the chart coordinates that its kernels read, by their indices among those of all factors.
@@ -351,6 +382,14 @@ impl Solve {
                 Role::Chart(block) => coordinates.insert(formulas.symbols.blocks[block].offset + input.row),
                 _ => false,
             };
+        }
+        let kernels = [&self.prepare, &self.linearize].into_iter().chain(&self.predict).chain(&self.sine_squared);
+        for (input, shape) in kernels.flat_map(Kernel::arguments) {
+            match input.role {
+                Role::Momentum(k) => momenta.extend((0..shape.rows).map(|row| formulas.model.offset(k) + row)),
+                Role::Chart(block) => coordinates.extend(formulas.symbols.blocks[block].components()),
+                _ => {}
+            }
         }
         (momenta, coordinates)
     }
@@ -381,6 +420,25 @@ fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equa
             .map(|(velocity, component)| slope_of_chart(formulas, component, substep.parts) * h * velocity)
             .collect(),
     )
+}
+
+/// The same for all components of each block at once.
+fn whole_predictor<'g>(
+    formulas: &Formulas<'g>,
+    substep: &Substep<'g>,
+    equation: &Equation<'g>,
+) -> Option<Vec<Expr<'g>>> {
+    let (symbols, h) = (&formulas.symbols, formulas.model.step_size);
+    let velocity = match formulas.uniform_inertia {
+        Some(kappa) => matrices::stacked(&symbols.momenta)? / kappa,
+        None => inertia_inverse(formulas) * matrices::stacked(&symbols.momenta)?,
+    };
+    let blocks = symbols.blocks_of(&equation.components).into_iter().map(|i| {
+        let block = symbols.blocks[i];
+        let part = velocity.block(block.offset, 0, Shape::vector(block.dimension()));
+        slope_of_chart(formulas, block.offset, substep.parts) * h * part
+    });
+    Some(blocks.collect())
 }
 
 /// dx/dξ at the identity for a component of one of so many parts of a step.

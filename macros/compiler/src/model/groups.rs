@@ -43,8 +43,11 @@ const GROUPS: [(&str, Maker); 11] = [
     ("Sim",         Maker::One(2, Group::Similarity)),
 ];
 
-/// The largest dimension of one group: its components are the unknowns of an equation that is written out.
+/// The largest dimension of one group: its components are the unknowns of an equation.
 const DIMENSION: usize = 128;
+
+/// The same of rotations, for the spheres that they move: their components need no equation.
+const ROTATIONS: usize = 8128;
 
 /// SU(2) is made of quaternions, the others of real matrices.
 fn special_unitary(n: usize) -> Group {
@@ -113,8 +116,9 @@ fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
         let message = format!("the matrices of `{text}` have {rows} rows, more than {LARGEST}");
         return Err(Diagnostic::new(Place::of(ty), message).note(note));
     }
-    if group.dimension() > DIMENSION {
-        let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", group.dimension());
+    let most = if matches!(group, Group::SpecialOrthogonal(_)) { ROTATIONS } else { DIMENSION };
+    if group.dimension() > most {
+        let message = format!("`{text}` has {} dimensions, more than {most}", group.dimension());
         return Err(Diagnostic::new(Place::of(ty), message).note(note));
     }
     Ok(group)

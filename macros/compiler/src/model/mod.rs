@@ -34,7 +34,7 @@ mod vectors;
 mod velocity;
 
 pub use crate::parse::{
-    ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
+    ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
 pub use outline::{Outline, outline};
 pub use power::{Place, Power, Term};
@@ -132,6 +132,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         tolerance: dials.tolerance.clone(),
         iterations: dials.iterations.clone(),
         summation: dials.summation.clone(),
+        code: dials.code.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
         chart: dials.chart.as_ref().map(|chart| chart.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),

@@ -6,8 +6,8 @@ use clebsch_symbolic::Expr;
 
 use super::scalar::spell_scalar;
 use super::{
-    ChartChoice, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter,
-    Promise, Side, Solver, Space, Summation,
+    ChartChoice, CodeForm, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order,
+    Parameter, Promise, Side, Solver, Space, Summation,
 };
 
 impl fmt::Display for Model<'_> {
@@ -77,6 +77,9 @@ impl fmt::Display for Model<'_> {
         }
         if let Some(summation) = &self.summation {
             writeln!(f, "  summation  {}", summation.value)?;
+        }
+        if let Some(code) = &self.code {
+            writeln!(f, "  code       {}", code.value)?;
         }
         if let Some(chart) = self.chart {
             writeln!(f, "  chart      {chart}")?;
@@ -189,6 +192,15 @@ impl fmt::Display for Summation {
         f.write_str(match self {
             Summation::Plain => "plain",
             Summation::Compensated => "compensated",
+        })
+    }
+}
+
+impl fmt::Display for CodeForm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            CodeForm::Unrolled => "unrolled",
+            CodeForm::Matrices => "matrices",
         })
     }
 }

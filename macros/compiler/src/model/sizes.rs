@@ -6,11 +6,13 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{spell, spell_type};
 
 /// Rows or columns of one matrix, and the length of one array.
-pub(super) const LARGEST: usize = 64;
+pub(super) const LARGEST: usize = 128;
 /// Factors of a group, leaves of a configuration.
 pub(super) const LEAVES: usize = 128;
 /// Entries of all matrices in one field.
-pub(super) const ENTRIES: usize = 4096;
+pub(super) const ENTRIES: usize = 16_384;
+/// Terms of one range, and entries of an array that is repeated.
+pub(super) const TERMS: usize = 4096;
 
 /// The size that a generic argument stands for.
 pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> Result<usize, Diagnostic> {

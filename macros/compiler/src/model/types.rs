@@ -4,7 +4,9 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::{Power, Structure};
-use crate::parse::{ChartChoice, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation};
+use crate::parse::{
+    ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
+};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -63,6 +65,8 @@ pub struct Model<'g> {
     pub iterations: Option<Located<u32>>,
     /// How a step adds to q and N; `None` for plain sums.
     pub summation: Option<Located<Summation>>,
+    /// How a step is written as code, where the user chooses.
+    pub code: Option<Located<CodeForm>>,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.

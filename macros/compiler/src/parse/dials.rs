@@ -53,6 +53,15 @@ pub enum Summation {
     Compensated,
 }
 
+/// How a step is written as code.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum CodeForm {
+    /// Entry by entry, in straight lines.
+    Unrolled,
+    /// With whole matrices, in loops.
+    Matrices,
+}
+
 /// What becomes of motions of the group that move no configuration.
 #[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
 pub enum Isotropy {

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span};
 
-use super::dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Solver, Summation};
+use super::dials::{ChartChoice, CodeForm, Discretization, Emit, Isotropy, Order, Solver, Summation};
 use super::{Closure, DeclaredGroup, Potential};
 
 /// A value and where it was written.
@@ -30,6 +30,7 @@ pub(super) enum Kind {
     Tolerance,
     Iterations,
     Summation,
+    Code,
     Isotropy,
     Emit,
     Scalar,
@@ -39,7 +40,7 @@ pub(super) enum Kind {
 }
 
 /// All keys.
-pub(super) const KEYS: [(&str, Kind); 26] = [
+pub(super) const KEYS: [(&str, Kind); 27] = [
     ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
     ("cost", Kind::Closure("|h, F| …")),
     ("lagrangian", Kind::Closure("|omega| …")),
@@ -60,6 +61,7 @@ pub(super) const KEYS: [(&str, Kind); 26] = [
     ("tolerance", Kind::Tolerance),
     ("iterations", Kind::Iterations),
     ("summation", Kind::Summation),
+    ("code", Kind::Code),
     ("emit", Kind::Emit),
     ("scalar", Kind::Scalar),
     ("crate", Kind::Crate),
@@ -88,6 +90,10 @@ pub(super) const SOLVERS: [(&str, Option<Solver>); 2] =
 /// Kinds of summation by name.
 pub(super) const SUMMATIONS: [(&str, Option<Summation>); 2] =
     [("plain", Some(Summation::Plain)), ("compensated", Some(Summation::Compensated))];
+
+/// Forms of code by name.
+pub(super) const CODES: [(&str, Option<CodeForm>); 2] =
+    [("unrolled", Some(CodeForm::Unrolled)), ("matrices", Some(CodeForm::Matrices))];
 
 /// What becomes of motions that move nothing, by name.
 pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
@@ -123,6 +129,8 @@ pub struct Dials {
     pub iterations: Option<Located<u32>>,
     /// `summation = compensated`.
     pub summation: Option<Located<Summation>>,
+    /// `code = matrices`.
+    pub code: Option<Located<CodeForm>>,
     /// `isotropy = fixed`.
     pub isotropy: Option<Located<Isotropy>>,
     /// `emit = [generated]`.

@@ -18,7 +18,7 @@ mod values;
 pub use closure::{Argument, Closure, Pattern};
 pub use control::Control;
 pub use declaration::{Declaration, Kinetic, Potential};
-pub use dials::{ChartChoice, Discretization, Emit, Isotropy, Order, Promise, Solver, Summation};
+pub use dials::{ChartChoice, CodeForm, Discretization, Emit, Isotropy, Order, Promise, Solver, Summation};
 pub use field::Field;
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Dials, Located};

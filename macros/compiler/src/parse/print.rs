@@ -65,6 +65,9 @@ impl fmt::Display for Declaration {
         if let Some(summation) = &dials.summation {
             writeln!(f, "  summation  = {}", summation.value)?;
         }
+        if let Some(code) = &dials.code {
+            writeln!(f, "  code       = {}", code.value)?;
+        }
         if let Some(isotropy) = &dials.isotropy {
             writeln!(f, "  isotropy   = {}", isotropy.value)?;
         }

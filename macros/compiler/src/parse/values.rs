@@ -8,7 +8,9 @@ use syn::punctuated::Punctuated;
 use syn::{Expr, ExprClosure, Lit, LitInt, Path, Token, bracketed, parenthesized};
 
 use super::dials::{Emit, Order};
-use super::keys::{CHARTS, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS, SUMMATIONS};
+use super::keys::{
+    CHARTS, CODES, DISCRETIZATIONS, EMITTED, ISOTROPIES, Keys, Kind, Located, ORDERS, SOLVERS, SUMMATIONS,
+};
 use super::{Closure, Potential, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
 
@@ -25,6 +27,7 @@ pub(super) fn example(kind: Kind) -> &'static str {
         Kind::Tolerance => "1e-8",
         Kind::Iterations => "4",
         Kind::Summation => "compensated",
+        Kind::Code => "matrices",
         Kind::Isotropy => "free",
         Kind::Emit => "[generated]",
         Kind::Scalar => "f64",
@@ -85,6 +88,7 @@ pub(super) fn read(
             keys.dials.iterations = read_iterations(&literal, diagnostics);
         }
         Kind::Summation => keys.dials.summation = read_name(key, kind, stream, &SUMMATIONS, diagnostics)?,
+        Kind::Code => keys.dials.code = read_name(key, kind, stream, &CODES, diagnostics)?,
         Kind::Isotropy => keys.dials.isotropy = read_name(key, kind, stream, &ISOTROPIES, diagnostics)?,
         Kind::Emit => {
             if !stream.peek(syn::token::Bracket) {

@@ -48,7 +48,7 @@ impl Group {
     pub fn has_cayley_chart(self, graph: &Graph) -> bool {
         match self {
             Group::Translation(_) => false,
-            Group::UnitQuaternions => true,
+            Group::UnitQuaternions | Group::SpecialOrthogonal(_) => true,
             _ => super::sample::is_cayley_tangent(graph, self),
         }
     }

@@ -42,6 +42,25 @@ pub(super) fn is_inertial<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>
     })
 }
 
+/// The same of the products with a direction of all unknowns, without the entries of the matrices.
+pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &Equation<'_>) -> bool {
+    let (model, symbols) = (sources.model, sources.symbols);
+    let blocks: Vec<usize> = symbols.blocks_of(&equation.components);
+    // the unknowns are those of all factors, in their order
+    if blocks.len() != symbols.blocks.len() {
+        return false;
+    }
+    let shape = Shape::vector(equation.components.len());
+    let direction = blocks.iter().fold(model.graph.zero(shape), |sum, &i| {
+        let (block, (numerator, denominator)) = (symbols.blocks[i], chart_slope(model, symbols, i));
+        let scaled = denominator * sources.parts * block.direction / (numerator * model.step_size);
+        sum + scaled.embed(shape, block.offset, 0)
+    });
+    let at_rest = symbols.at_rest();
+    let slope = equation.directional.substitute(&at_rest);
+    identity::equal(&[slope], &[sources.inertia * direction])
+}
+
 impl Pattern {
     pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> Pattern {
         let (model, symbols) = (sources.model, sources.symbols);

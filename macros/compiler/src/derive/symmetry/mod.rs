@@ -6,6 +6,7 @@
 //! direction w is ⟨p, δq⟩ = ⟨N, ξ⟩ with ξ_Q(q) = δq.
 
 mod directions;
+mod large;
 mod special;
 
 use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
@@ -72,6 +73,9 @@ pub(super) fn find<'g>(
     inertia: Expr<'g>,
     (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
 ) -> Symmetries<'g> {
+    if model.factors.iter().any(|factor| factor.group.dimension() > large::LARGE) {
+        return large::find(model, symbols, generator, lagrangian);
+    }
     let (families, directions) = directions(model, symbols, generator);
     if directions.is_empty() {
         return Symmetries::default();

@@ -2,7 +2,7 @@
 
 use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, ExprTuple, RangeLimits};
 
-use super::super::sizes::ENTRIES;
+use super::super::sizes::TERMS;
 use super::super::value::Value;
 use super::{Elaborator, Growth};
 use crate::diagnostic::{Diagnostic, Place};
@@ -31,7 +31,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `[a; 3]`.
     pub(super) fn repeat(&mut self, repeat: &ExprRepeat) -> Option<Value<'g>> {
         let value = self.elaborate(&repeat.expr);
-        let length = self.position(&repeat.len, ENTRIES + 1, "lengths")?;
+        let length = self.position(&repeat.len, TERMS + 1, "lengths")?;
         Some(Value::Array(vec![value?; length]))
     }
 
@@ -53,9 +53,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let end = self.position(end, RANGE, "ends of ranges");
         let (start, end) = start.zip(end)?;
         let end = if matches!(range.limits, RangeLimits::Closed(_)) { end.saturating_add(1) } else { end };
-        if end.saturating_sub(start) > ENTRIES {
+        if end.saturating_sub(start) > TERMS {
             let message = format!(
-                "the range `{}` has {} terms, more than {ENTRIES}",
+                "the range `{}` has {} terms, more than {TERMS}",
                 spell(&Syntax::Range(range.clone())),
                 end - start
             );

@@ -1,0 +1,251 @@
+//! Tokens of operations on whole matrices: calls of the runtime's loops, and nalgebra's sums.
+
+use clebsch_symbolic::{Analytic, Rational, Role, Shape, integer};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::code::{self, Scope, accessor, nested};
+use crate::lower::{Callee, Code, Kernel, Operation, Whole};
+
+impl Scope<'_, '_> {
+    /// An operation on whole matrices.
+    pub(super) fn whole(&self, whole: &Whole) -> TokenStream {
+        let Whole { operation, operands, shape, .. } = whole;
+        let private = &self.paths.private;
+        let call = |name: &str| {
+            let name = format_ident!("{name}");
+            let operands = operands.iter().map(|operand| self.by_reference(operand));
+            quote!(#private::#name(#(#operands),*))
+        };
+        let placed = |name: &str, i: usize, j: usize| {
+            let (name, matrix) = (format_ident!("{name}"), self.by_reference(&operands[0]));
+            let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
+            quote!(#private::#name(#matrix, #i, #j))
+        };
+        match operation {
+            Operation::Argument(input) => self.argument(input.role, *shape),
+            Operation::Zero => {
+                let (scalar, matrix) = (&self.paths.scalar, self.paths.matrix(shape.rows, shape.columns));
+                quote!(<#matrix as #private::Space<#scalar>>::origin())
+            }
+            Operation::Entries => code::grid(self, *shape, operands, false),
+            Operation::Sum(weights) => self.weighted_sum(weights, operands),
+            Operation::Scaled => {
+                let (matrix, number) = (self.by_reference(&operands[0]), self.code(&operands[1], false));
+                quote!(#private::scaled(#matrix, #number))
+            }
+            Operation::Shifted => {
+                let (matrix, number) = (self.by_reference(&operands[0]), self.code(&operands[1], false));
+                quote!(#private::shifted(#matrix, #number))
+            }
+            Operation::Product => call("product"),
+            Operation::InertiaTimes => {
+                let (constants, vector) = (&self.constants, self.by_reference(&operands[0]));
+                quote!(#constants.inertia_inverse.times(#vector))
+            }
+            Operation::Transpose => {
+                let matrix = self.code(&operands[0], true);
+                quote!(#matrix.transpose())
+            }
+            Operation::Inverse => call("inverse"),
+            Operation::Analytic(Analytic::Exponential) => call("exponential"),
+            Operation::Analytic(Analytic::Phi) => call("phi"),
+            Operation::Analytic(Analytic::Logarithm) => call("logarithm"),
+            Operation::Value => self.opaque(&Callee::Value(String::new()), operands),
+            Operation::Gradient(leaf) => self.opaque_gradient(*leaf, operands),
+            Operation::Block(i, j) => placed("block", *i, *j),
+            Operation::Embedded(i, j) => placed("embedded", *i, *j),
+            Operation::Hadamard => {
+                let (a, b) = (self.code(&operands[0], true), self.by_reference(&operands[1]));
+                quote!(#a.component_mul(#b))
+            }
+            Operation::DiagonalMatrix => call("diagonal_matrix"),
+            Operation::Diagonal => call("diagonal"),
+            Operation::Skew => call("skew"),
+            Operation::SkewComponents => call("skew_components"),
+            Operation::SkewTimes => call("skew_times"),
+            Operation::SkewOuter => call("skew_outer"),
+            Operation::Pairing => call("pairing"),
+            Operation::Trace => call("trace"),
+            Operation::Determinant => call("determinant"),
+            Operation::Largest => call("largest_entry"),
+            Operation::Entry(i, j) => {
+                let matrix = self.code(&operands[0], true);
+                let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
+                quote!(#matrix[(#i, #j)])
+            }
+        }
+    }
+
+    /// The type of a shared term, where what is called does not say it.
+    pub(super) fn type_of(&self, code: &Code) -> Option<TokenStream> {
+        let Code::Whole(whole) = code else { return None };
+        let is_open = matches!(
+            whole.operation,
+            Operation::Block(..)
+                | Operation::Embedded(..)
+                | Operation::Skew
+                | Operation::SkewComponents
+                | Operation::SkewOuter
+        );
+        let matrix = self.paths.matrix(whole.shape.rows, whole.shape.columns);
+        is_open.then(|| quote!(: #matrix))
+    }
+
+    /// A matrix as an argument of a function.
+    fn by_reference(&self, operand: &Code) -> TokenStream {
+        match operand {
+            Code::Whole(whole) => match &whole.operation {
+                Operation::Argument(input) => self.argument_by_reference(input.role, whole.shape),
+                _ => {
+                    let value = self.code(operand, false);
+                    quote!(&#value)
+                }
+            },
+            _ => {
+                let value = self.code(operand, false);
+                quote!(&#value)
+            }
+        }
+    }
+
+    /// Σ c_i A_i, those that are added first.
+    fn weighted_sum(&self, weights: &[Rational], operands: &[Code]) -> TokenStream {
+        let (one, zero) = (integer(1), integer(0));
+        let mut terms: Vec<_> = weights.iter().zip(operands).collect();
+        terms.sort_by_key(|(weight, _)| **weight < zero);
+        let mut tokens = TokenStream::new();
+        for (position, (weight, operand)) in terms.into_iter().enumerate() {
+            let (operand, size) = (self.code(operand, true), weight.abs());
+            let term = match size == one {
+                true => quote!(#operand),
+                false => {
+                    let size = self.number(&size);
+                    quote!(#operand * #size)
+                }
+            };
+            tokens = match (position, *weight < zero) {
+                (0, false) => term,
+                (0, true) => quote!(-(#term)),
+                (_, false) => quote!(#tokens + #term),
+                (_, true) => quote!(#tokens - #term),
+            };
+        }
+        tokens
+    }
+
+    /// A matrix among the arguments of a function, by value.
+    fn argument(&self, role: Role, shape: Shape) -> TokenStream {
+        let place = self.place(role, shape);
+        match place {
+            Place::Reference(name) => quote!((*#name)),
+            Place::Value(value) => value,
+        }
+    }
+
+    fn argument_by_reference(&self, role: Role, shape: Shape) -> TokenStream {
+        match self.place(role, shape) {
+            Place::Reference(name) => name,
+            Place::Value(value) => quote!(&#value),
+        }
+    }
+
+    fn place(&self, role: Role, shape: Shape) -> Place {
+        let leaf = |name: &str, access: &str| {
+            let name = format_ident!("{name}");
+            match access {
+                "" => Place::Reference(quote!(#name)),
+                _ => {
+                    let access = accessor(access);
+                    Place::Value(quote!(#name #access))
+                }
+            }
+        };
+        let factor = |k: usize| self.model.factors[k].accessor.as_str();
+        match role {
+            Role::Parameter(leaf) => Place::Value(self.parameter(leaf, quote!())),
+            Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
+            Role::Image(i) => leaf("next", &self.model.configurations[i].accessor),
+            Role::Input(i) => leaf("u", &self.model.inputs[i].accessor),
+            Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
+            Role::Element(k) => leaf("f", factor(k)),
+            Role::Increment(k) => leaf("d", factor(k)),
+            Role::Following(k) => leaf("second", factor(k)),
+            Role::MomentumMatrix(k) => leaf("m", factor(k)),
+            Role::Momentum(k) => self.part(self.momentum, &self.momenta, self.model.offset(k), shape),
+            Role::Chart(block) => self.part("x", &self.coordinates, self.blocks[block], shape),
+            Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
+                self.part("x", &self.coordinates, self.model.offset(k), shape)
+            }
+            Role::Auxiliary(usize::MAX) => {
+                let constants = &self.constants;
+                Place::Reference(quote!(#constants.inertia_inverse.matrix()))
+            }
+            Role::Auxiliary(block) => self.part("delta", &self.coordinates, self.blocks[block], shape),
+            // by construction: the other roles are numbers, or of systems that are written out
+            _ => Place::Value(quote!()),
+        }
+    }
+
+    /// The part of a flat vector, which holds some of all components, that begins with one of them.
+    fn part(&self, vector: &str, held: &[usize], first: usize, shape: Shape) -> Place {
+        let private = &self.paths.private;
+        let name = format_ident!("{vector}");
+        // by construction: kernels read what their vectors hold
+        let of = |component: usize| held.iter().position(|&other| other == component).unwrap_or(0);
+        let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
+        if positions.iter().copied().eq(0..held.len()) {
+            return Place::Reference(quote!(#name));
+        }
+        let start = positions.first().copied().unwrap_or(0);
+        if positions.iter().copied().eq(start..start + shape.rows) {
+            let (start, part) = (Literal::usize_unsuffixed(start), self.paths.matrix(shape.rows, 1));
+            return Place::Value(quote!({ let part: #part = #private::block(#name, #start, 0); part }));
+        }
+        let entries = positions.into_iter().map(Literal::usize_unsuffixed);
+        Place::Value(quote!(#private::vector([#(#name[#entries]),*])))
+    }
+
+    /// The value of an opaque potential, or its gradient.
+    fn opaque(&self, callee: &Callee, operands: &[Code]) -> TokenStream {
+        let (method, system) = (self.method(callee), &self.system);
+        let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+        let time = timed.then(|| self.code(&operands[0], false)).map(|time| quote!(#time,));
+        let leaves = &operands[usize::from(timed)..];
+        let configuration = nested(&self.model.configuration, &mut |leaf| self.code(&leaves[leaf], false));
+        quote!(#method(#system, #time &#configuration))
+    }
+
+    fn opaque_gradient(&self, argument: usize, operands: &[Code]) -> TokenStream {
+        let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+        let gradient = self.opaque(&Callee::Gradient(String::new()), operands);
+        let access = accessor(&self.model.configurations[argument - usize::from(timed)].accessor);
+        quote!(#gradient #access)
+    }
+}
+
+/// How a matrix among the arguments is reached.
+enum Place {
+    /// By a reference of this name.
+    Reference(TokenStream),
+    /// By value.
+    Value(TokenStream),
+}
+
+/// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`; terms that do not depend on it stand
+/// before.
+pub(super) fn matrix_of(
+    scope: &Scope<'_, '_>,
+    kernel: &Kernel,
+    output: usize,
+    argument: &str,
+    is_argument: impl Fn(Role) -> bool,
+) -> (TokenStream, TokenStream) {
+    let (private, depends) = (&scope.paths.private, kernel.depends_on(is_argument));
+    let (before, within) =
+        (code::locals_where(scope, kernel, |k| !depends[k]), code::locals_where(scope, kernel, |k| depends[k]));
+    let (shape, entries) = &kernel.outputs[output];
+    let value = code::grid(scope, *shape, entries, false);
+    let (argument, vector) = (format_ident!("{argument}"), scope.paths.matrix(scope.coordinates.len(), 1));
+    (before, quote!(#private::matrix_of(|#argument: &#vector| { #within #value })))
+}

@@ -1,0 +1,147 @@
+//! Whether the kernels of a system are written out, entry by entry, or keep whole matrices.
+
+use clebsch_symbolic::{Expr, Group, Table, View};
+
+use super::too_large;
+use crate::derive::{Formulas, Solution};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{CodeForm, Isotropy};
+
+/// The most multiplications of a linearisation that is written out, by estimate.
+///
+/// Steps of systems on either side of it were measured in both forms (`cargo bench -p clebsch-tests --bench large`).
+pub const LARGEST_UNROLLED: usize = 10_000;
+
+/// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
+const MOST_UNKNOWNS: usize = 64;
+
+/// How kernels are written, and why.
+#[derive(Clone, Debug)]
+pub struct Form {
+    /// Entry by entry or with whole matrices.
+    pub code: CodeForm,
+    /// The multiplications of a step that is written out, by estimate.
+    pub estimate: usize,
+    /// Whether the declaration asks for it.
+    pub is_asked: bool,
+}
+
+impl Form {
+    /// Whether kernels keep whole matrices.
+    pub fn keeps_matrices(&self) -> bool {
+        self.code == CodeForm::Matrices
+    }
+}
+
+/// The form of a system: what the declaration asks for, else matrices where unrolled code would pass the budget.
+///
+/// # Errors
+/// A system too large for the only form that it has, or a form that is asked for and not there.
+pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
+    let estimate = estimate(formulas);
+    let asked = formulas.model.code.as_ref();
+    let dimension = formulas.inertia.shape().rows;
+    let is_large = estimate > LARGEST_UNROLLED || dimension > MOST_UNKNOWNS;
+    let code = match asked {
+        Some(asked) => asked.value,
+        None if is_large && without_matrices(formulas).is_none() => CodeForm::Matrices,
+        None => CodeForm::Unrolled,
+    };
+    match (code, asked, without_matrices(formulas)) {
+        (CodeForm::Matrices, Some(asked), Some(why)) => {
+            let error = Diagnostic::new(asked.span, format!("{why} has no code with whole matrices yet"));
+            return Err(error.help("leave out `code`, or write `code = unrolled`").into());
+        }
+        (CodeForm::Unrolled, ..) if dimension > MOST_UNKNOWNS => {
+            return Err(too_large(formulas, format!("{dimension} unknowns")));
+        }
+        _ => {}
+    }
+    let largest = largest_system(formulas);
+    if code == CodeForm::Matrices && largest > MOST_UNKNOWNS {
+        return Err(too_large(formulas, format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most")));
+    }
+    Ok(Form { code, estimate, is_asked: asked.is_some() })
+}
+
+/// The largest linear system that a step or a set-up solves.
+fn largest_system(formulas: &Formulas<'_>) -> usize {
+    let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
+    let solved = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));
+    let inertia = if formulas.uniform_inertia.is_some() { 0 } else { formulas.inertia.shape().rows };
+    solved.map(|equation| equation.components.len()).chain([inertia]).max().unwrap_or(0)
+}
+
+/// What of a system has no code with whole matrices.
+fn without_matrices(formulas: &Formulas<'_>) -> Option<&'static str> {
+    let model = &formulas.model;
+    let is_quaternion = model.configurations.iter().any(|leaf| leaf.is_quaternion)
+        || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions);
+    let is_held = !formulas.is_free && model.isotropy == Isotropy::Fixed;
+    let rows = [
+        (model.is_steered() || model.control.is_some(), "a choice of inputs"),
+        (model.power.is_some(), "a power"),
+        (is_quaternion, "a system of quaternions"),
+        (formulas.splitting.is_some() || formulas.turns_whole(), "a step of exact drifts"),
+        (!formulas.weighted().is_empty(), "the free rotation of a body"),
+        (formulas.collocation.is_some(), "`order = 16`"),
+        (formulas.is_compensated(), "`summation = compensated`"),
+        (model.emit.tangent, "`emit = [tangent]`"),
+        (model.emit.boundary, "`emit = [boundary]`"),
+        (formulas.covector.is_some(), "a force"),
+        (is_held && formulas.projection.is_none(), "a configuration that some motions leave where it is"),
+        (formulas.energy.general.is_some(), "a Lagrangian that is not quadratic"),
+    ];
+    rows.into_iter().find_map(|(has, what)| has.then_some(what))
+}
+
+/// About the multiplications of a linearisation of each momentum equation, written out: each column of the Jacobian is a directional
+/// derivative.
+fn estimate(formulas: &Formulas<'_>) -> usize {
+    let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
+    let iterated = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));
+    let solves: usize = iterated.map(|equation| products(&[equation.directional]) * equation.components.len()).sum();
+    let moves: Vec<Expr<'_>> = formulas.model.action.iter().chain(&formulas.coadjoint).copied().collect();
+    solves + products(&moves)
+}
+
+/// The multiplications in the products of some expressions, entry by entry.
+fn products(expressions: &[Expr<'_>]) -> usize {
+    let mut known: Table<usize, bool> = Table::default();
+    let mut open: Vec<Expr<'_>> = expressions.to_vec();
+    let mut count = 0;
+    while let Some(expr) = open.pop() {
+        if known.contains(&expr.position()) {
+            continue;
+        }
+        known.insert(expr.position(), true);
+        let of_word = |word: &[Expr<'_>]| -> usize {
+            let pairs = word.windows(2);
+            pairs.map(|pair| word[0].shape().rows.min(pair[1].shape().columns) * pair[0].shape().len()).sum()
+        };
+        match expr.view() {
+            View::Sum(terms) => {
+                count += terms.iter().map(|term| of_word(&term.word)).sum::<usize>();
+                open.extend(
+                    terms
+                        .iter()
+                        .flat_map(|term| term.scalars.iter().map(|(base, _)| *base).chain(term.word.iter().copied())),
+                );
+            }
+            View::Word(word) | View::Trace(word) => {
+                count += of_word(&word);
+                open.extend(word);
+            }
+            View::Inverse(a) | View::Determinant(a) | View::Analytic(_, a) => {
+                count += a.shape().rows * a.shape().len();
+                open.push(a);
+            }
+            View::Transpose(a) | View::Function(_, a) | View::Block(a, ..) | View::Embed(a, ..) => open.push(a),
+            View::DiagonalMatrix(a) | View::Diagonal(a) | View::Wedge(_, a) | View::Components(_, a) => open.push(a),
+            View::Hadamard(a, b) => open.extend([a, b]),
+            View::Stack(entries) | View::Opaque(_, _, entries) => open.extend(entries),
+            View::Symbol(_) | View::Pi | View::Literal(_) => {}
+        }
+    }
+    count
+}

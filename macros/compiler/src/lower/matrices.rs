@@ -1,0 +1,681 @@
+//! Lowering that keeps matrices: a statement for each operation on them, for systems that are too large to be written out.
+//!
+//! The expressions are those that are written out elsewhere, entry by entry. What is decided here is what a writer of matrix code
+//! decides: the order in which products are made, letters that sums of products have in common, and products that never need
+//! their matrix, such as Zv and ⟨abᵀ, E⟩ for rotations.
+
+use clebsch_symbolic::{
+    Algebra, Expr, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
+};
+
+use super::kernel::{Operation, Whole};
+use super::{Code, Cost, Input, Kernel};
+
+/// One output for each expression.
+pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
+    let mut lowering = Matrices::default();
+    let outputs = expressions.iter().map(|&expr| (expr.shape(), vec![lowering.value(expr)])).collect();
+    Kernel { locals: lowering.locals, outputs }
+}
+
+/// Vectors, one after the other in one output.
+pub(super) fn stack(expressions: &[Expr<'_>]) -> Kernel {
+    kernel(&stacked(expressions).into_iter().collect::<Vec<_>>())
+}
+
+/// Numbers, one after the other in one output.
+pub(super) fn list(expressions: &[Expr<'_>]) -> Kernel {
+    let mut lowering = Matrices::default();
+    let entries: Vec<Code> = expressions.iter().map(|&expr| lowering.value(expr)).collect();
+    Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] }
+}
+
+/// The largest entry of each expression, in one output.
+pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
+    let mut lowering = Matrices::default();
+    let mut largest = |expr: Expr<'_>| {
+        let value = lowering.value(expr);
+        match expr.shape().is_scalar() {
+            true => value,
+            false => lowering.operation(Operation::Largest, vec![value], Shape::scalar(), Cost::default()),
+        }
+    };
+    let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
+    Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] }
+}
+
+/// A kernel of an iteration, and the one that makes what does not change during it: terms that do not depend on the coordinates or on a
+/// direction of them.
+pub(super) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
+    let depends = kernel.depends_on(|role| match role {
+        Role::Chart(_) => true,
+        Role::Auxiliary(index) => index != usize::MAX,
+        _ => false,
+    });
+    let uses = |code: &Code| {
+        let mut used = Vec::new();
+        code.any(&mut |part| {
+            used.extend(local(part));
+            false
+        });
+        used
+    };
+    let outputs = kernel.outputs.iter().flat_map(|(_, entries)| entries);
+    let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
+    let mut terms: Vec<usize> = moving.chain(outputs).flat_map(uses).filter(|&index| !depends[index]).collect();
+    terms.sort_unstable();
+    terms.dedup();
+    // each kind of local has its own numbers
+    let mut counts = [0, 0];
+    let numbers: Vec<usize> = depends
+        .iter()
+        .map(|&depends| {
+            let count = &mut counts[usize::from(depends)];
+            *count += 1;
+            *count - 1
+        })
+        .collect();
+    let renamed = |within: bool| {
+        let (depends, terms, numbers) = (&depends, &terms, &numbers);
+        move |index: usize| match terms.iter().position(|&term| term == index) {
+            Some(term) if within && !depends[index] => Code::Term(term),
+            _ => Code::Local(numbers[index]),
+        }
+    };
+    let (before, after) = (renamed(false), renamed(true));
+    let mut prepare = Kernel { locals: Vec::new(), outputs: Vec::new() };
+    let mut rest = Kernel { locals: Vec::new(), outputs: Vec::new() };
+    for (code, depends) in kernel.locals.iter().zip(&depends) {
+        match depends {
+            true => rest.locals.push(code.with_locals(&after)),
+            false => prepare.locals.push(code.with_locals(&before)),
+        }
+    }
+    prepare.outputs = terms.iter().map(|&index| (shape(&kernel.locals[index]), vec![before(index)])).collect();
+    rest.outputs = kernel
+        .outputs
+        .iter()
+        .map(|(shape, entries)| (*shape, entries.iter().map(|entry| entry.with_locals(&after)).collect()))
+        .collect();
+    (prepare, rest)
+}
+
+/// The index of a shared term.
+fn local(code: &Code) -> Option<usize> {
+    match code {
+        Code::Local(index) => Some(*index),
+        _ => None,
+    }
+}
+
+/// The shape of a shared term.
+fn shape(code: &Code) -> Shape {
+    match code {
+        Code::Whole(whole) => whole.shape,
+        _ => Shape::scalar(),
+    }
+}
+
+/// Vectors, one after the other.
+pub(super) fn stacked<'g>(expressions: &[Expr<'g>]) -> Option<Expr<'g>> {
+    let (&first, rest) = expressions.split_first()?;
+    if rest.is_empty() {
+        return Some(first);
+    }
+    let shape = Shape::vector(expressions.iter().map(|part| part.shape().rows).sum());
+    let mut row = 0;
+    Some(expressions.iter().fold(first.graph().zero(shape), |sum, part| {
+        let placed = part.embed(shape, row, 0);
+        row += part.shape().rows;
+        sum + placed
+    }))
+}
+
+/// A term: its coefficient, its scalar factors and its word.
+struct Weighted<'g> {
+    coefficient: Rational,
+    /// The product of the scalar factors; `None` if there are none.
+    scale: Option<Code>,
+    word: Vec<Expr<'g>>,
+}
+
+/// What is lowered of one kernel.
+#[derive(Default)]
+struct Matrices {
+    locals: Vec<Code>,
+    known: Table<usize, Code>,
+}
+
+impl Matrices {
+    /// The code of an expression: a scalar where it is 1×1, else the matrix as a whole.
+    fn value(&mut self, expr: Expr<'_>) -> Code {
+        if let Some(known) = self.known.get(&expr.position()) {
+            return known.clone();
+        }
+        let code = self.made(expr);
+        let code = self.shared(code);
+        self.known.insert(expr.position(), code.clone());
+        code
+    }
+
+    /// The code as a shared term, unless it is simply read; the same code is one term.
+    fn shared(&mut self, code: Code) -> Code {
+        work::spend(2 + self.locals.len() / 16);
+        let is_read = match &code {
+            Code::Read(_) | Code::Number(_) | Code::Pi | Code::Local(_) => true,
+            Code::Whole(whole) => matches!(whole.operation, Operation::Argument(_)),
+            _ => false,
+        };
+        if is_read {
+            return code;
+        }
+        let index = self.locals.iter().position(|known| *known == code).unwrap_or_else(|| {
+            self.locals.push(code);
+            self.locals.len() - 1
+        });
+        Code::Local(index)
+    }
+
+    fn operation(&mut self, operation: Operation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
+        self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
+    }
+
+    fn made(&mut self, expr: Expr<'_>) -> Code {
+        let (shape, graph) = (expr.shape(), expr.graph());
+        match expr.view() {
+            View::Symbol(symbol) => argument(&symbol),
+            View::Pi => Code::Pi,
+            View::Sum(terms) if shape.is_scalar() => self.scalar_sum(terms),
+            View::Sum(terms) => self.sum(graph, shape, terms),
+            View::Literal(entries) => self.entries(shape, entries.into_iter().map(Code::Number).collect()),
+            View::Stack(entries) => {
+                let entries = entries.into_iter().map(|entry| self.value(entry)).collect();
+                self.entries(shape, entries)
+            }
+            View::Word(word) => self.scalar_word(&word),
+            View::Trace(word) => self.trace(&word),
+            View::Transpose(a) => {
+                let a = self.value(a);
+                self.transposed(a, shape)
+            }
+            View::Inverse(a) => {
+                let (n, a) = (shape.rows, self.value(a));
+                let cost = Cost { additions: n * n * n, multiplications: n * n * n, divisions: n, ..Cost::default() };
+                self.operation(Operation::Inverse, vec![a], shape, cost)
+            }
+            View::Analytic(function, a) => {
+                let (n, a) = (shape.rows, self.value(a));
+                // squarings and a rational approximation
+                let cost = product_cost(n, n, n).times(12);
+                self.operation(Operation::Analytic(function), vec![a], shape, Cost { calls: 1, ..cost })
+            }
+            View::Opaque(_, output, arguments) => {
+                let arguments: Vec<Code> = arguments.into_iter().map(|argument| self.value(argument)).collect();
+                let operation = if output == 0 { Operation::Value } else { Operation::Gradient(output - 1) };
+                self.operation(operation, arguments, shape, Cost { calls: 1, ..Cost::default() })
+            }
+            View::Determinant(a) => {
+                let (n, a) = (a.shape().rows, self.value(a));
+                let third = n * n * n / 3;
+                let cost = Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() };
+                self.operation(Operation::Determinant, vec![a], shape, cost)
+            }
+            View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
+            View::Block(a, row, column) => self.block(a, row, column, shape),
+            View::Embed(a, row, column) => {
+                let a = self.value(a);
+                self.operation(Operation::Embedded(row, column), vec![a], shape, Cost::default())
+            }
+            View::Hadamard(a, b) => {
+                let operands = vec![self.value(a), self.value(b)];
+                let cost = Cost { multiplications: shape.len(), ..Cost::default() };
+                match shape.is_scalar() {
+                    true => Code::Product(operands),
+                    false => self.operation(Operation::Hadamard, operands, shape, cost),
+                }
+            }
+            View::DiagonalMatrix(a) => {
+                let a = self.value(a);
+                self.operation(Operation::DiagonalMatrix, vec![a], shape, Cost::default())
+            }
+            View::Diagonal(a) => {
+                let a = self.value(a);
+                self.operation(Operation::Diagonal, vec![a], shape, Cost::default())
+            }
+            View::Wedge(algebra, x) => {
+                let x = self.value(x);
+                match is_rotations(graph, algebra) {
+                    true => self.operation(Operation::Skew, vec![x], shape, Cost::default()),
+                    false => self.wedge(graph, algebra, &x),
+                }
+            }
+            View::Components(algebra, a) => match self.outer(graph, algebra, a) {
+                Some(components) => components,
+                None => {
+                    let a = self.value(a);
+                    self.components(graph, algebra, a)
+                }
+            },
+        }
+    }
+
+    fn entries(&mut self, shape: Shape, entries: Vec<Code>) -> Code {
+        self.operation(Operation::Entries, entries, shape, Cost::default())
+    }
+
+    /// Entry (i, j) of a matrix.
+    fn entry(&mut self, a: &Code, i: usize, j: usize) -> Code {
+        let whole = Whole {
+            operation: Operation::Entry(i, j),
+            operands: vec![a.clone()],
+            shape: Shape::scalar(),
+            cost: Cost::default(),
+        };
+        Code::Whole(Box::new(whole))
+    }
+
+    fn transposed(&mut self, a: Code, shape: Shape) -> Code {
+        self.operation(Operation::Transpose, vec![a], shape, Cost::default())
+    }
+
+    fn block(&mut self, a: Expr<'_>, row: usize, column: usize, shape: Shape) -> Code {
+        // an entry of an argument is read
+        if shape.is_scalar()
+            && let Some(symbol) = a.as_symbol()
+        {
+            return Code::Read(input(&symbol, row, column));
+        }
+        let value = self.value(a);
+        match shape.is_scalar() {
+            true => self.entry(&value, row, column),
+            false => self.operation(Operation::Block(row, column), vec![value], shape, Cost::default()),
+        }
+    }
+
+    /// Σ x_k E_k of a basis that has no function of its own, entry by entry.
+    fn wedge(&mut self, graph: &Graph, algebra: Algebra, x: &Code) -> Code {
+        let (basis, shape) = (graph.basis(algebra), algebra.matrix_shape());
+        let mut entries = vec![Vec::new(); shape.len()];
+        for (k, element) in basis.elements.iter().enumerate() {
+            for (i, j, value) in element {
+                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(x, k, 0) };
+                entries[i * shape.columns + j].push((value.clone(), x));
+            }
+        }
+        let entries = entries.into_iter().map(|terms| linear(integer(0), terms)).collect();
+        self.entries(shape, entries)
+    }
+
+    fn components(&mut self, graph: &Graph, algebra: Algebra, a: Code) -> Code {
+        let shape = Shape::vector(algebra.dimension());
+        if is_rotations(graph, algebra) {
+            let cost = Cost { additions: shape.rows, ..Cost::default() };
+            return self.operation(Operation::SkewComponents, vec![a], shape, cost);
+        }
+        let basis = graph.basis(algebra);
+        let component = |element: &clebsch_symbolic::Sparse| {
+            let terms = element.iter().map(|(i, j, value)| (value.clone(), self.entry(&a, *i, *j))).collect();
+            linear(integer(0), terms)
+        };
+        let components: Vec<Code> = basis.elements.iter().map(component).collect();
+        match components.len() {
+            1 => components.into_iter().next().unwrap_or(Code::Number(integer(0))),
+            _ => self.entries(shape, components),
+        }
+    }
+
+    /// ⟨abᵀ, E⟩ of rotations, without the matrix.
+    fn outer(&mut self, graph: &Graph, algebra: Algebra, a: Expr<'_>) -> Option<Code> {
+        let terms = a.word_terms();
+        let [term] = terms.as_slice() else { return None };
+        let cut = term.word.iter().position(|letter| letter.shape().rows == 1)?;
+        let plain = term.coefficient.is_one() && term.scalars.is_empty() && cut > 0;
+        if !plain || !is_rotations(graph, algebra) {
+            return None;
+        }
+        let column = self.product(&term.word[..cut]);
+        let row = term.word[cut..].iter().rev().map(|letter| letter.transpose()).collect::<Vec<_>>();
+        let row = self.product(&row);
+        let m = algebra.dimension();
+        let cost = Cost { additions: m, multiplications: 2 * m, ..Cost::default() };
+        Some(self.operation(Operation::SkewOuter, vec![column, row], Shape::vector(m), cost))
+    }
+
+    fn scalar_sum(&mut self, terms: Vec<WordTerm<'_>>) -> Code {
+        let mut constant = integer(0);
+        let mut parts = Vec::new();
+        for term in terms {
+            let mut factors = self.powers(&term.scalars);
+            factors.extend((!term.word.is_empty()).then(|| self.scalar_word(&term.word)));
+            match factors.len() {
+                0 => constant += term.coefficient,
+                1 => parts.extend(factors.pop().map(|factor| (term.coefficient, factor))),
+                _ => parts.push((term.coefficient, Code::Product(factors))),
+            }
+        }
+        linear(constant, parts)
+    }
+
+    fn powers(&mut self, scalars: &[(Expr<'_>, (i64, i64))]) -> Vec<Code> {
+        let mut factors = Vec::new();
+        for (base, (numerator, denominator)) in scalars {
+            let base = self.value(*base);
+            let root = match denominator {
+                1 => base,
+                _ => Code::Root(Box::new(base), (if *numerator < 0 { -1 } else { 1 } * numerator, *denominator)),
+            };
+            let count = if *denominator == 1 { numerator.unsigned_abs() as usize } else { 1 };
+            let root = if count > 1 { self.shared(root) } else { root };
+            let factor = match count {
+                1 => root,
+                _ => Code::Product(vec![root; count]),
+            };
+            let factor = if *numerator < 0 { Code::reciprocal(factor) } else { factor };
+            factors.push(self.shared(factor));
+        }
+        factors
+    }
+
+    /// A product of letters that is 1×1.
+    fn scalar_word(&mut self, word: &[Expr<'_>]) -> Code {
+        match word {
+            [only] => self.value(*only),
+            [first, rest @ ..] => {
+                let (a, b) = (self.product(&[first.transpose()]), self.product(rest));
+                let n = first.shape().columns;
+                let cost = Cost { additions: n, multiplications: n, ..Cost::default() };
+                match n {
+                    1 => Code::Product(vec![a, b]),
+                    _ => self.operation(Operation::Pairing, vec![a, b], Shape::scalar(), cost),
+                }
+            }
+            [] => Code::Number(integer(1)),
+        }
+    }
+
+    /// tr(AB) = ⟨Aᵀ, B⟩, A the first letter.
+    fn trace(&mut self, word: &[Expr<'_>]) -> Code {
+        let n = word[0].shape().rows;
+        match word {
+            [only] => {
+                let only = self.value(*only);
+                self.operation(Operation::Trace, vec![only], Shape::scalar(), Cost { additions: n, ..Cost::default() })
+            }
+            [first, rest @ ..] => {
+                let (a, b) = (self.value(first.transpose()), self.product(rest));
+                let entries = first.shape().len();
+                let cost = Cost { additions: entries, multiplications: entries, ..Cost::default() };
+                self.operation(Operation::Pairing, vec![a, b], Shape::scalar(), cost)
+            }
+            [] => Code::Number(integer(0)),
+        }
+    }
+
+    /// The product of some letters, in the order that takes the fewest multiplications.
+    fn product(&mut self, word: &[Expr<'_>]) -> Code {
+        if let [only] = word {
+            return self.value(*only);
+        }
+        let cut = cheapest_cut(word);
+        let (left, right) = word.split_at(cut);
+        let shape = Shape::new(left[0].shape().rows, right[right.len() - 1].shape().columns);
+        let inner = right[0].shape().rows;
+        if let ([letter], 1) = (left, shape.columns)
+            && let View::Wedge(algebra, x) = letter.view()
+            && is_rotations(letter.graph(), algebra)
+        {
+            let operands = vec![self.value(x), self.product(right)];
+            let cost = Cost { additions: inner * inner, multiplications: inner * (inner - 1), ..Cost::default() };
+            return self.operation(Operation::SkewTimes, operands, shape, cost);
+        }
+        if let ([letter], 1) = (left, shape.columns)
+            && letter.as_symbol().is_some_and(|symbol| symbol.role == Role::Auxiliary(usize::MAX))
+        {
+            let vector = self.product(right);
+            let cost = product_cost(inner, inner, 1);
+            return self.operation(Operation::InertiaTimes, vec![vector], shape, cost);
+        }
+        if let ([letter], 1) = (left, shape.columns)
+            && let View::Literal(numbers) = letter.view()
+        {
+            let vector = self.product(right);
+            return self.combinations(&numbers, &vector, shape);
+        }
+        let operands = vec![self.product(left), self.product(right)];
+        self.operation(Operation::Product, operands, shape, product_cost(shape.rows, inner, shape.columns))
+    }
+
+    /// A matrix of numbers times a vector, without its zeros.
+    fn combinations(&mut self, numbers: &[Rational], vector: &Code, shape: Shape) -> Code {
+        let columns = numbers.len() / shape.rows;
+        let row = |row: &[Rational]| {
+            let terms = row.iter().enumerate().filter(|(_, number)| **number != integer(0));
+            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), self.entry(vector, j, 0))).collect();
+            linear(integer(0), terms)
+        };
+        let entries: Vec<Code> = numbers.chunks(columns).map(row).collect();
+        self.entries(shape, entries)
+    }
+
+    /// A sum of terms: components in one basis are taken of the sum.
+    fn sum(&mut self, graph: &Graph, shape: Shape, terms: Vec<WordTerm<'_>>) -> Code {
+        let mut under: Table<Algebra, Vec<WordTerm<'_>>> = Table::default();
+        let mut rest = Vec::new();
+        for term in terms {
+            match term.word.as_slice() {
+                [letter] => match letter.view() {
+                    View::Components(algebra, inner) if !self.is_outer(graph, algebra, inner) => {
+                        under.entry(algebra).extend(term.over(inner));
+                    }
+                    _ => rest.push(term),
+                },
+                _ => rest.push(term),
+            }
+        }
+        let mut parts = Vec::new();
+        for (algebra, inner) in under.iter() {
+            let matrix = algebra.matrix_shape();
+            let inner = inner.iter().map(|term| self.weighted(term)).collect();
+            let sum = self.gathered(matrix, inner);
+            parts.push((integer(1), self.components(graph, *algebra, sum)));
+        }
+        if !rest.is_empty() {
+            let rest = rest.iter().map(|term| self.weighted(term)).collect();
+            parts.extend(self.summands(shape, rest));
+        }
+        self.total(shape, parts)
+    }
+
+    fn is_outer(&self, graph: &Graph, algebra: Algebra, inner: Expr<'_>) -> bool {
+        let terms = inner.word_terms();
+        is_rotations(graph, algebra)
+            && matches!(terms.as_slice(), [term] if term.word.iter().skip(1).any(|letter| letter.shape().rows == 1))
+    }
+
+    fn weighted<'g>(&mut self, term: &WordTerm<'g>) -> Weighted<'g> {
+        let mut factors = self.powers(&term.scalars);
+        let scale = match factors.len() {
+            0 => None,
+            1 => factors.pop(),
+            _ => Some(self.shared(Code::Product(factors))),
+        };
+        Weighted { coefficient: term.coefficient.clone(), scale, word: term.word.clone() }
+    }
+
+    /// Σ of words with their weights.
+    fn gathered(&mut self, shape: Shape, terms: Vec<Weighted<'_>>) -> Code {
+        let summands = self.summands(shape, terms);
+        self.total(shape, summands)
+    }
+
+    /// The same as summands: a letter that several words begin or end with is multiplied once, by the sum of what is left of them.
+    fn summands(&mut self, shape: Shape, terms: Vec<Weighted<'_>>) -> Vec<(Rational, Code)> {
+        let mut parts = Vec::new();
+        let mut terms = terms;
+        while let Some((letter, first)) = common_letter(shape, &terms) {
+            let is_shared = |term: &Weighted<'_>| term.outermost(first) == Some(letter);
+            let (shared, rest): (Vec<_>, Vec<_>) = terms.into_iter().partition(is_shared);
+            terms = rest;
+            let left = shared.into_iter().map(|term| term.without(first)).collect();
+            let parts_of = if first {
+                Shape::new(letter.shape().columns, shape.columns)
+            } else {
+                Shape::new(shape.rows, letter.shape().rows)
+            };
+            let sum = self.gathered(parts_of, left);
+            let value = self.value(letter);
+            let operands = if first { vec![value, sum] } else { vec![sum, value] };
+            let inner = if first { parts_of.rows } else { parts_of.columns };
+            let cost = product_cost(shape.rows, inner, shape.columns);
+            parts.push((integer(1), self.operation(Operation::Product, operands, shape, cost)));
+        }
+        let (mut identity, mut scales) = (integer(0), Vec::new());
+        for term in terms {
+            let Weighted { coefficient, scale, word } = term;
+            match (word.is_empty(), scale) {
+                (true, None) => identity += coefficient,
+                (true, Some(scale)) => scales.push((coefficient, scale)),
+                (false, None) => parts.push((coefficient, self.product(&word))),
+                (false, Some(scale)) => {
+                    let product = self.product(&word);
+                    let cost = Cost { multiplications: shape.len(), ..Cost::default() };
+                    let weight = linear(integer(0), vec![(coefficient, scale)]);
+                    let weight = self.shared(weight);
+                    parts.push((integer(1), self.operation(Operation::Scaled, vec![product, weight], shape, cost)));
+                }
+            }
+        }
+        if identity != integer(0) || !scales.is_empty() {
+            let multiple = self.shared(linear(identity, scales));
+            let sum = self.total(shape, parts);
+            let cost = Cost { additions: shape.rows, ..Cost::default() };
+            parts = vec![(integer(1), self.operation(Operation::Shifted, vec![sum, multiple], shape, cost))];
+        }
+        parts
+    }
+
+    fn total(&mut self, shape: Shape, parts: Vec<(Rational, Code)>) -> Code {
+        match parts.as_slice() {
+            [(weight, only)] if weight.is_one() => return only.clone(),
+            [] => return self.operation(Operation::Zero, Vec::new(), shape, Cost::default()),
+            _ => {}
+        }
+        let multiplications =
+            parts.iter().filter(|(weight, _)| *weight != integer(1) && *weight != integer(-1)).count();
+        let cost = Cost {
+            additions: (parts.len() - 1) * shape.len(),
+            multiplications: multiplications * shape.len(),
+            ..Cost::default()
+        };
+        let (weights, operands) = parts.into_iter().unzip();
+        self.operation(Operation::Sum(weights), operands, shape, cost)
+    }
+}
+
+impl<'g> Weighted<'g> {
+    /// The first or the last letter of a word of several.
+    fn outermost(&self, first: bool) -> Option<Expr<'g>> {
+        if first { self.word.first().copied() } else { self.word.last().copied() }
+    }
+
+    /// The term without that letter.
+    fn without(mut self, first: bool) -> Weighted<'g> {
+        if first {
+            self.word.remove(0);
+        } else {
+            self.word.pop();
+        }
+        self
+    }
+}
+
+/// A letter that at least two words begin with (`true`) or end with, one of which has others beside it: the most frequent.
+///
+/// Vectors keep the side of the vector, so that it is multiplied first.
+fn common_letter<'g>(shape: Shape, terms: &[Weighted<'g>]) -> Option<(Expr<'g>, bool)> {
+    let mut best: Option<(usize, Expr<'g>, bool)> = None;
+    for first in [false, true] {
+        // a common vector would make a matrix of what is left
+        if (!first && shape.columns == 1) || (first && shape.rows == 1) {
+            continue;
+        }
+        let mut counts: Table<Expr<'g>, (usize, bool)> = Table::default();
+        for term in terms {
+            let Some(letter) = term.outermost(first) else { continue };
+            let inner = if first { letter.shape().columns } else { letter.shape().rows };
+            if inner == 1 {
+                continue;
+            }
+            let count = counts.entry(letter);
+            *count = (count.0 + 1, count.1 || term.word.len() > 1);
+        }
+        for (letter, (count, is_product)) in counts.iter() {
+            if *count > 1 && *is_product && best.as_ref().is_none_or(|(most, ..)| count > most) {
+                best = Some((*count, *letter, first));
+            }
+        }
+    }
+    best.map(|(_, letter, first)| (letter, first))
+}
+
+/// Where a word is cut in two so that its product takes the fewest multiplications (matrix chain order).
+fn cheapest_cut(word: &[Expr<'_>]) -> usize {
+    let sizes: Vec<usize> =
+        word.iter().map(|letter| letter.shape().rows).chain(word.last().map(|letter| letter.shape().columns)).collect();
+    let n = word.len();
+    let mut best = vec![vec![(0_usize, 0_usize); n]; n];
+    for length in 2..=n {
+        for start in 0..=n - length {
+            let end = start + length - 1;
+            let cost =
+                |cut: usize| best[start][cut].0 + best[cut + 1][end].0 + sizes[start] * sizes[cut + 1] * sizes[end + 1];
+            // by construction: there is a cut
+            best[start][end] = (start..end).map(|cut| (cost(cut), cut)).min().unwrap_or((0, start));
+        }
+    }
+    best[0][n - 1].1 + 1
+}
+
+/// Whether a basis is that of so(n) that the runtime has functions for.
+fn is_rotations(graph: &Graph, algebra: Algebra) -> bool {
+    let shape = algebra.matrix_shape();
+    algebra.is_skew() && shape.rows > 3 && algebra == graph.algebra_of(Group::SpecialOrthogonal(shape.rows))
+}
+
+fn product_cost(rows: usize, inner: usize, columns: usize) -> Cost {
+    let all = rows * inner * columns;
+    Cost { additions: all - rows * columns, multiplications: all, ..Cost::default() }
+}
+
+/// constant + Σ coefficient · code.
+fn linear(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
+    match terms.len() {
+        0 => Code::Number(constant),
+        1 if constant == integer(0) && terms[0].0.is_one() => terms.remove(0).1,
+        _ => Code::Sum(constant, terms),
+    }
+}
+
+fn argument(symbol: &Symbol) -> Code {
+    let input = input(symbol, 0, 0);
+    match symbol.shape.is_scalar() {
+        true => Code::Read(input),
+        false => Code::Whole(Box::new(Whole {
+            operation: Operation::Argument(input),
+            operands: Vec::new(),
+            shape: symbol.shape,
+            cost: Cost::default(),
+        })),
+    }
+}
+
+fn input(symbol: &Symbol, row: usize, column: usize) -> Input {
+    Input {
+        role: symbol.role,
+        name: symbol.name.clone(),
+        row,
+        column,
+        is_vector: symbol.shape.is_column(),
+        is_scalar: symbol.shape.is_scalar(),
+    }
+}

@@ -1,0 +1,233 @@
+//! The benchmark of large systems: `cargo bench -p clebsch-tests --bench large`.
+//!
+//! Nanoseconds of a step of rigid bodies in n dimensions and of points on spheres, in code that is written out and in code that keeps
+//! matrices, beside the same by hand in nalgebra, in turn in the same run. What the compiler chooses by itself is marked.
+
+#[path = "../steps/timing.rs"]
+mod timing;
+
+use clebsch::Clebsch;
+use nalgebra::{SMatrix, SVector};
+use std::hint::black_box;
+use timing::{Run, interleaved};
+
+/// The step size: h|ω| is about 0.1.
+const H: f64 = 0.02;
+
+/// A rigid body in n dimensions, in one form of code.
+macro_rules! body {
+    ($name:ident, $n:tt $(, code = $code:ident)?) => {
+        #[derive(Clebsch, Clone)]
+        #[clebsch(
+            action = |F: SO<$n>, R: SO<$n>| R * F,
+            cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+            $(code = $code,)?
+        )]
+        struct $name {
+            #[clebsch(symmetric)]
+            j_d: SMatrix<f64, $n, $n>,
+        }
+    };
+}
+
+/// A point on the unit sphere of n dimensions in a quadratic potential, in one form of code.
+macro_rules! neumann {
+    ($name:ident, $n:tt $(, code = $code:ident)?) => {
+        #[derive(Clebsch, Clone)]
+        #[clebsch(
+            action    = |F: SO<$n>, q: Unit<SVector<$n>>| F * q,
+            cost      = |h, F| (F - I).norm_squared() / (4 * h),
+            potential = |q| self.stiffness.dot(&q.component_mul(&q)) / 2,
+            $(code = $code,)?
+        )]
+        struct $name {
+            stiffness: SVector<f64, $n>,
+        }
+    };
+}
+
+body!(Unrolled4, 4, code = unrolled);
+body!(Matrices4, 4, code = matrices);
+body!(Unrolled5, 5, code = unrolled);
+body!(Matrices5, 5, code = matrices);
+body!(Unrolled6, 6, code = unrolled);
+body!(Matrices6, 6, code = matrices);
+body!(Matrices8, 8, code = matrices);
+body!(Matrices10, 10, code = matrices);
+neumann!(UnrolledOn4, 4, code = unrolled);
+neumann!(MatricesOn4, 4, code = matrices);
+neumann!(UnrolledOn8, 8, code = unrolled);
+neumann!(MatricesOn8, 8, code = matrices);
+neumann!(UnrolledOn11, 11, code = unrolled);
+neumann!(MatricesOn11, 11, code = matrices);
+neumann!(MatricesOn21, 21, code = matrices);
+neumann!(MatricesOn101, 101, code = matrices);
+
+/// Principal values of ½∫ρρᵀdm between ½ and 3/2.
+fn principal<const N: usize>() -> SVector<f64, N> {
+    SVector::from_fn(|i, _| 0.5 + (i as f64 + 0.3) / N as f64)
+}
+
+/// The body by hand, in its principal axes: hM = FJ − JFᵀ with F = (I − Z)⁻¹(I + Z) is 2(JZ + ZJ) = h(I − Z)M(I + Z), solved by the fixed
+/// point Z ← L⁻¹(h/2(M + MZ − ZM − ZMZ)), whose L is a division entry by entry.
+struct ByHand<const N: usize> {
+    j: SVector<f64, N>,
+    r: SMatrix<f64, N, N>,
+    m: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> ByHand<N> {
+    fn step(&mut self) {
+        let identity = SMatrix::<f64, N, N>::identity();
+        let divided = |right: &SMatrix<f64, N, N>| {
+            SMatrix::<f64, N, N>::from_fn(|a, b| 0.5 * H * right[(a, b)] / (self.j[a] + self.j[b]))
+        };
+        let mut z = divided(&self.m);
+        let mut last = f64::INFINITY;
+        for _ in 0..60 {
+            let mz = self.m * z;
+            let next = divided(&(self.m + mz - mz.transpose() - z * mz));
+            let change = (next - z).amax();
+            z = next;
+            if change <= f64::EPSILON / 4.0 * z.amax() || change >= last {
+                break;
+            }
+            last = change;
+        }
+        let f = (identity - z).try_inverse().expect("a rotation") * (identity + z);
+        self.r *= f;
+        self.m = f.transpose() * self.m * f;
+    }
+}
+
+/// The point on the sphere by hand: (q, w) with the projection.
+struct PointByHand<const N: usize> {
+    stiffness: SVector<f64, N>,
+    q: SVector<f64, N>,
+    w: SVector<f64, N>,
+}
+
+impl<const N: usize> PointByHand<N> {
+    fn step(&mut self) {
+        self.w -= 0.5 * H * self.stiffness.component_mul(&self.q);
+        self.w -= self.q * self.q.dot(&self.w);
+        let square = self.w.norm_squared();
+        assert!(H * H * square < 1.0, "the step is too long");
+        let cosine = (1.0 - H * H * square).sqrt();
+        let next = self.q * cosine + self.w * H;
+        self.w = self.w * cosine - self.q * (H * square);
+        self.q = next;
+        self.w -= 0.5 * H * self.stiffness.component_mul(&self.q);
+        self.w -= self.q * self.q.dot(&self.w);
+        let off = self.q.norm_squared() - 1.0;
+        if off.abs() > 8.0 * f64::EPSILON {
+            self.q *= 1.0 - 0.5 * off;
+        }
+    }
+}
+
+/// Steps of a declaration, one by one or all at once.
+fn stepped<S: Clebsch<Scalar = f64> + Clone>(
+    system: &S,
+    q: S::Configuration,
+    mu: S::Momentum,
+    at_once: bool,
+    steps: u64,
+) {
+    let stepper = system.stepper(H).expect("a regular system");
+    let mut state = stepper.state(q, mu).expect("a state");
+    match at_once {
+        true => state = stepper.advance(&state, steps as usize).expect("steps"),
+        false => {
+            for _ in 0..steps {
+                state = stepper.step(&state).expect("a step");
+            }
+        }
+    }
+    black_box(state);
+}
+
+fn report(n: usize, names: &[&str], contestants: &[Run<'_>]) -> Vec<f64> {
+    let times = interleaved(contestants);
+    for (name, time) in names.iter().zip(&times) {
+        println!("{n:>5} {name:24} {:10.1} {:10.1} {:6.2}", time.least, time.median, time.least / times[0].least);
+    }
+    times.iter().map(|time| time.least).collect()
+}
+
+/// Bodies of one dimension.
+macro_rules! bodies {
+    ($n:literal, $m:literal $(, $name:literal: $system:ident)*) => {{
+        let momentum = SVector::<f64, $m>::from_fn(|k, _| 2.0 * (1.7 * k as f64 + 0.4).sin());
+        let j = principal::<$n>();
+        let by_hand = |steps: u64| {
+            // components are those of E_ji − E_ij: M = ½ Σ μ_k E_k
+            let mut m = SMatrix::<f64, $n, $n>::zeros();
+            let mut k = 0;
+            for a in 0..$n {
+                for b in a + 1..$n {
+                    (m[(b, a)], m[(a, b)]) = (0.5 * momentum[k], -0.5 * momentum[k]);
+                    k += 1;
+                }
+            }
+            let mut body = ByHand { j, r: SMatrix::identity(), m };
+            (0..steps).for_each(|_| body.step());
+            black_box(body.r);
+        };
+        let mut names = vec!["by hand"];
+        let mut contestants: Vec<Run<'_>> = vec![Box::new(by_hand)];
+        $(
+            names.push($name);
+            let system = $system { j_d: SMatrix::from_diagonal(&j) };
+            contestants.push(Box::new(move |steps| stepped(&system, SMatrix::identity(), momentum, false, steps)));
+        )*
+        report($n, &names, &contestants)
+    }};
+}
+
+/// Points on the sphere of one dimension.
+macro_rules! points {
+    ($n:literal, $m:literal $(, $name:literal: $system:ident)*) => {{
+        let stiffness = principal::<$n>();
+        let q = SVector::<f64, $n>::from_fn(|i, _| (1.3 * i as f64 + 0.2).cos()).normalize();
+        let w = SVector::<f64, $n>::from_fn(|i, _| (0.7 * i as f64).sin()).normalize();
+        let w = w - q * q.dot(&w);
+        let by_hand = |steps: u64| {
+            let mut point = PointByHand { stiffness, q, w };
+            (0..steps).for_each(|_| point.step());
+            black_box(point.q);
+        };
+        let mut names = vec!["by hand, (q, w)"];
+        let mut contestants: Vec<Run<'_>> = vec![Box::new(by_hand)];
+        $(
+            let system = $system { stiffness };
+            let mu = system.momentum_map(&q, &w);
+            let other = system.clone();
+            names.push($name);
+            contestants.push(Box::new(move |steps| stepped(&system, q, mu, false, steps)));
+            names.push(concat!($name, ", advance"));
+            contestants.push(Box::new(move |steps| stepped(&other, q, mu, true, steps)));
+        )*
+        report($n, &names, &contestants)
+    }};
+}
+
+fn main() {
+    println!("Time of a step of a rigid body in n dimensions, ns; ratio to by hand\n");
+    println!("{:>5} {:24} {:>10} {:>10} {:>6}", "n", "", "least", "median", "ratio");
+    bodies!(4, 6, "unrolled": Unrolled4, "matrices": Matrices4);
+    bodies!(5, 10, "unrolled": Unrolled5, "matrices": Matrices5);
+    bodies!(6, 15, "unrolled": Unrolled6, "matrices": Matrices6);
+    let eight = bodies!(8, 28, "matrices": Matrices8);
+    let ten = bodies!(10, 45, "matrices": Matrices10);
+    println!("\ntime of a step ∝ n^{:.2} from 8 to 10\n", (ten[1] / eight[1]).ln() / (10.0_f64 / 8.0).ln());
+    println!("Time of a step on the unit sphere of n dimensions, ns; ratio to by hand\n");
+    println!("{:>5} {:24} {:>10} {:>10} {:>6}", "n", "", "least", "median", "ratio");
+    points!(4, 6, "unrolled": UnrolledOn4, "matrices": MatricesOn4);
+    points!(8, 28, "unrolled": UnrolledOn8, "matrices": MatricesOn8);
+    points!(11, 55, "unrolled": UnrolledOn11, "matrices": MatricesOn11);
+    let small = points!(21, 210, "matrices": MatricesOn21);
+    let large = points!(101, 5050, "matrices": MatricesOn101);
+    let growth = |k: usize| (large[k] / small[k]).ln() / (101.0_f64 / 21.0).ln();
+    println!("\ntime ∝ n^{:.2} of a step, n^{:.2} of one of many, from 21 to 101", growth(1), growth(2));
+}

@@ -1,0 +1,95 @@
+//! What holds of the two forms of code of a declaration.
+
+use clebsch::{Clebsch, Conserved, Conserves, Space};
+use clebsch_tests::oracle::flat::{Flat, far};
+use clebsch_tests::oracle::random::Random;
+use nalgebra::SVector;
+
+const H: f64 = 0.03;
+
+/// Every derived function is the same in both forms, and so are 20 steps of random motions from `rest`.
+pub fn agree<U, W, const M: usize>(unrolled: &U, matrices: &W, rest: U::Configuration, seed: u64)
+where
+    U: Clebsch<Scalar = f64, Momentum = SVector<f64, M>, Input = ()> + Clone,
+    W: Clebsch<
+            Scalar = f64,
+            Configuration = U::Configuration,
+            Element = U::Element,
+            Momentum = SVector<f64, M>,
+            MomentumMatrix = U::MomentumMatrix,
+            Input = (),
+            Time = U::Time,
+        > + Clone,
+    U::Configuration: Flat,
+    U::Element: Flat,
+    U::MomentumMatrix: Flat,
+{
+    let mut random = Random::new(seed);
+    let near = |distance: f64, what: &str| {
+        assert!(distance < 2e-11, "{what}: {distance:.1e} apart for {}", U::NAME);
+    };
+    for _ in 0..5 {
+        let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
+        let (before, after) = (unrolled.constants(H).expect("constants"), matrices.constants(H).expect("constants"));
+        let some = random.vector::<M>();
+        let moved = unrolled.project_momentum(&rest, &some) * 4.0;
+        let turn = unrolled.inverse_legendre(&before, 0.3, &rest, &moved).expect("a motion");
+        let q = unrolled.act(&turn, &rest);
+        near(far(&q, &matrices.act(&turn, &rest)), "the action");
+        near(far(&unrolled.project_momentum(&q, &some), &matrices.project_momentum(&q, &some)), "the projection");
+        let defect = |a: f64, b: f64| (a - b).abs();
+        near(defect(unrolled.isotropy_defect(&q, &some), matrices.isotropy_defect(&q, &some)), "the defect of μ");
+        let off = q.zip_map(&q, |x, _| x * 1.01);
+        let (on, other) = (unrolled.orbit_defect(&off), matrices.orbit_defect(&off));
+        near(defect(on, other), "the defect of q");
+        let mu = unrolled.project_momentum(&q, &some);
+        let p = q.zip_map(&q, |x, _| 0.3 * x * x + 0.1);
+        near(far(&unrolled.momentum_map(&q, &p), &matrices.momentum_map(&q, &p)), "J");
+        let f = unrolled.inverse_legendre(&before, 0.3, &q, &mu).expect("a solution");
+        let g = matrices.inverse_legendre(&after, 0.3, &q, &mu).expect("a solution");
+        near(far(&f, &g), "F");
+        near(far(&unrolled.coadjoint(&f, &mu), &matrices.coadjoint(&f, &mu)), "Ad*");
+        near(far(&unrolled.legendre(H, 0.3, &q, &f), &matrices.legendre(H, 0.3, &q, &f)), "F⁻ℓd");
+        near(far(&matrices.legendre(H, 0.3, &q, &f), &mu), "F⁻ℓd inverted");
+        near(far(&unrolled.legendre_next(H, 0.3, &q, &f), &matrices.legendre_next(H, 0.3, &q, &f)), "F⁺ℓd");
+        near(far(&unrolled.stagger(H, 0.3, &q), &matrices.stagger(H, 0.3, &q)), "what the momentum is ahead by");
+        near(far(&U::momentum_matrix(&mu), &W::momentum_matrix(&mu)), "M");
+        near(far(&W::momentum_components(&W::momentum_matrix(&mu)), &mu), "the components of M");
+        near(defect(unrolled.potential(0.3, &q), matrices.potential(0.3, &q)), "V");
+        let mut x = a.state(q, mu).expect("a state");
+        let mut y = b.state(q, mu).expect("a state");
+        near(defect(a.kinetic_energy(&x), b.kinetic_energy(&y)), "T");
+        let mut upstairs = a.cotangent_state(q, p).expect("a state on T*Q");
+        let mut written = b.cotangent_state(q, p).expect("a state on T*Q");
+        for _ in 0..20 {
+            x = a.step(&x).expect("a step");
+            y = b.step(&y).expect("a step");
+            upstairs = a.step_symmetric(&upstairs).expect("a step on T*Q");
+            written = b.step_symmetric(&written).expect("a step on T*Q");
+        }
+        assert!(far(x.configuration(), &q) > 1e-3, "it moves");
+        near(far(x.configuration(), y.configuration()).max(far(x.momentum(), y.momentum())), "20 steps");
+        let there =
+            far(upstairs.configuration(), written.configuration()).max(far(upstairs.covector(), written.covector()));
+        near(there, "20 steps on T*Q");
+        let together = b.advance(&b.state(q, mu).expect("a state"), 20).expect("20 steps");
+        near(far(together.configuration(), y.configuration()).max(far(together.momentum(), y.momentum())), "at once");
+    }
+}
+
+/// What is conserved has the same names and values.
+pub fn conserve_alike<U, W, const M: usize, const K: usize>(unrolled: &U, matrices: &W, q: &U::Configuration)
+where
+    U: Conserves<Scalar = f64, Momentum = SVector<f64, M>, Conserved = Conserved<f64, K>>,
+    W: Conserves<
+            Scalar = f64,
+            Configuration = U::Configuration,
+            Momentum = SVector<f64, M>,
+            Conserved = Conserved<f64, K>,
+        >,
+{
+    let mu = Random::new(7).vector::<M>();
+    let (a, b) = (unrolled.conserved(q, &mu), matrices.conserved(q, &mu));
+    assert_eq!(a.names(), b.names());
+    assert!(K > 0 && a.values().iter().zip(b.values()).all(|(a, b)| (a - b).abs() < 1e-13), "{a:?} {b:?}");
+}

@@ -1,0 +1,241 @@
+//! Code that is written out entry by entry and code that keeps whole matrices are of one truth: on systems of sizes at which both are
+//! there, all that is derived agrees to round-off.
+
+mod checks;
+
+use checks::agree;
+use clebsch::Clebsch;
+use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+
+/// A declaration in both forms, and a test that they agree on motions that start at `$rest`.
+macro_rules! both {
+    ($test:ident, $rest:expr, $value:expr, $(#[$attribute:meta])* struct $name:ident { $($field:tt)* }) => {
+        mod $test {
+            use super::*;
+
+            pub mod unrolled {
+                use super::*;
+                #[derive(Clebsch, Clone)]
+                $(#[$attribute])*
+                #[clebsch(code = unrolled)]
+                pub struct $name { $($field)* }
+
+                pub fn system() -> $name {
+                    $value
+                }
+            }
+
+            pub mod matrices {
+                use super::*;
+                #[derive(Clebsch, Clone)]
+                $(#[$attribute])*
+                #[clebsch(code = matrices)]
+                pub struct $name { $($field)* }
+
+                pub fn system() -> $name {
+                    $value
+                }
+            }
+
+            #[test]
+            fn both_forms_agree() {
+                agree(&unrolled::system(), &matrices::system(), $rest, 11);
+            }
+        }
+    };
+}
+
+/// A symmetric matrix with eigenvalues between about 0.5 and 1.5.
+fn mass<const N: usize>() -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| if i == j { 0.7 + 0.6 * i as f64 / N as f64 } else { 0.05 / (1 + i + j) as f64 })
+}
+
+fn pole<const N: usize>() -> SVector<f64, N> {
+    SVector::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 })
+}
+
+both!(
+    free_body_4,
+    Matrix4::identity(),
+    Body { j_d: mass() },
+    #[clebsch(
+        action = |F: SO<4>, R: SO<4>| R * F,
+        cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub j_d: Matrix4<f64>,
+    }
+);
+
+both!(
+    body_5,
+    SMatrix::identity(),
+    Body { j_d: mass(), weight: 0.4, center: SVector::from_fn(|i, _| 0.3 - 0.1 * i as f64) },
+    #[clebsch(
+        action    = |F: SO<5>, R: SO<5>| R * F,
+        cost      = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+        potential = |R| self.weight * (R * self.center)[4],
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub j_d: SMatrix<f64, 5, 5>,
+        pub weight: f64,
+        pub center: SVector<f64, 5>,
+    }
+);
+
+both!(
+    neumann_3,
+    pole(),
+    Neumann { stiffness: mass() },
+    #[clebsch(
+        action    = |F: SO<4>, q: Unit<Vector4>| F * q,
+        cost      = |h, F| (F - I).norm_squared() / (4 * h),
+        potential = |q| q.dot(&(self.stiffness * q)) / 2,
+    )]
+    struct Neumann {
+        #[clebsch(symmetric)]
+        pub stiffness: Matrix4<f64>,
+    }
+);
+
+both!(
+    neumann_5_first_order,
+    pole(),
+    Neumann { stiffness: mass() },
+    #[clebsch(
+        action    = |F: SO<6>, q: Unit<SVector<6>>| F * q,
+        cost      = |h, F| (F - I).norm_squared() / (4 * h),
+        potential = |q| q.dot(&(self.stiffness * q)) / 2,
+        order     = 1,
+    )]
+    struct Neumann {
+        #[clebsch(symmetric)]
+        pub stiffness: SMatrix<f64, 6, 6>,
+    }
+);
+
+both!(
+    spatial_body,
+    Matrix4::identity(),
+    Body { mass_matrix: mass(), gravity: 0.8 },
+    #[clebsch(
+        action    = |F: SE<3>, q: SE<3>| q * F,
+        cost      = |h, F| ((F - I) * self.mass_matrix * (F - I).transpose()).trace() / (2 * h),
+        potential = |q| self.gravity * (q * self.mass_matrix)[(2, 3)],
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub mass_matrix: Matrix4<f64>,
+        pub gravity: f64,
+    }
+);
+
+both!(
+    fluid_ellipsoid,
+    Matrix3::identity(),
+    Fluid { mass: 1.3 },
+    #[clebsch(action = |F: SL<3>, q: SL<3>| q * F, cost = |h, F| self.mass * (F - I).norm_squared() / (2 * h))]
+    struct Fluid {
+        pub mass: f64,
+    }
+);
+
+both!(
+    linear_optics,
+    Matrix4::identity(),
+    Optics { scale: 0.9 },
+    #[clebsch(action = |F: Sp<4>, q: Sp<4>| q * F, cost = |h, F| self.scale * (F - I).norm_squared() / (2 * h))]
+    struct Optics {
+        pub scale: f64,
+    }
+);
+
+both!(
+    two_factors,
+    (Matrix4::identity(), pole()),
+    Pair { j_d: mass(), pull: 0.3 },
+    #[clebsch(
+        action    = |(F, W): (SO<4>, SO<4>), (R, q): (SO<4>, Unit<Vector4>)| (R * F, W * q),
+        cost      = |h, (F, W)| (self.j_d * (F - I) * (F - I).transpose()).trace() / h + (W - I).norm_squared() / (4 * h),
+        potential = |(R, q)| self.pull * (R * q)[2],
+    )]
+    struct Pair {
+        #[clebsch(symmetric)]
+        pub j_d: Matrix4<f64>,
+        pub pull: f64,
+    }
+);
+
+both!(
+    lorentz_frame,
+    Matrix4::identity(),
+    Frame { inertia: 1.1, field: Vector4::new(0.1, 0.2, -0.1, 0.3), spin: Vector4::new(0.2, 0.1, 0.4, 0.1) },
+    #[clebsch(
+        group Lorentz = |F: Matrix4| {
+            let eta = Matrix4::from_diagonal(&vector![1, -1, -1, -1]);
+            F.transpose() * eta * F == eta
+        },
+        action    = |F: Lorentz, q: Lorentz| q * F,
+        cost      = |h, F| self.inertia * (4 - F.trace()) / (2 * h),
+        potential = |q| self.field.dot(&(q * self.spin)),
+    )]
+    struct Frame {
+        pub inertia: f64,
+        pub field: Vector4<f64>,
+        pub spin: Vector4<f64>,
+    }
+);
+
+both!(
+    matrices_with_weights,
+    Matrix3::identity(),
+    Flow { weight: Matrix3::new(1.0, 0.9, 1.1, 1.2, 0.8, 1.0, 0.7, 1.1, 1.3) },
+    #[clebsch(
+        action = |F: GL<3>, q: GL<3>| F * q,
+        cost   = |h, F| (F - I).dot(&self.weight.component_mul(&(F - I))) / (2 * h),
+    )]
+    struct Flow {
+        pub weight: Matrix3<f64>,
+    }
+);
+
+both!(
+    by_the_exponential,
+    SMatrix::identity(),
+    Body { inertia: mass() },
+    #[clebsch(
+        action         = |F: SO<4>, R: SO<4>| R * F,
+        lagrangian     = |xi| xi.dot(&(self.inertia * xi)) / 2,
+        discretization = exponential,
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub inertia: SMatrix<f64, 6, 6>,
+    }
+);
+
+both!(
+    driven_body_of_fourth_order,
+    Matrix3::identity(),
+    Body { mass_matrix: mass(), weight: 0.8, center: Vector3::new(0.1, 0.2, 0.3) },
+    #[clebsch(
+        action    = |F: SO<3>, R: SO<3>| F * R,
+        cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
+        potential = |t, R| self.weight * t.cos() * (R * self.center).z,
+        order     = 4,
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub mass_matrix: Matrix3<f64>,
+        pub weight: f64,
+        pub center: Vector3<f64>,
+    }
+);
+
+#[test]
+fn what_is_conserved_is_the_same() {
+    let q = Matrix4::identity();
+    checks::conserve_alike(&free_body_4::unrolled::system(), &free_body_4::matrices::system(), &q);
+}
