@@ -85,9 +85,9 @@ fn bodies() -> [(&'static str, Matrix4<f64>); 6] {
 fn motions_are_those_of_small_steps() {
     for (what, mass) in bodies() {
         let (inertia, mu) = (form(&mass), Vector6::from(START));
-        let (time, followed_steps) = if cfg!(miri) { (0.01, 20) } else { (4.0, 8000) };
+        let (time, followed_steps) = if cfg!(miri) { (0.01, 10) } else { (4.0, 8000) };
         let wanted = followed(&inertia, &mu, time, followed_steps);
-        for steps in [1, 2, 4, if cfg!(miri) { 5 } else { 40 }] {
+        for steps in [2, 1, 4, 40].into_iter().take(if cfg!(miri) { 1 } else { 4 }) {
             let found = stepped(&inertia, &mu, time / f64::from(steps), steps);
             let error = ((found.0 - wanted.0).amax()).max((found.1 - wanted.1).amax());
             assert!(error < 3e-13, "{what}, {steps}: {error:e}");
@@ -95,22 +95,26 @@ fn motions_are_those_of_small_steps() {
     }
 }
 
-/// Nine radians are too much for one series: they are made of halves, and of halves of those.
+/// Nine radians, or four under Miri, are too much for one series: they are made of halves, and of halves of those.
 #[test]
 fn long_motions_are_series_after_series() {
     let mass = Matrix4::from_diagonal(&[2.0, 3.0, 4.0, 5.0].into());
     let (inertia, mu) = (form(&mass), Vector6::from(START));
-    let free = FreeRotation4::new(&inertia, 30.0).expect("regular");
+    let time = if cfg!(miri) { 12.0 } else { 30.0 };
+    let free = FreeRotation4::new(&inertia, time).expect("regular");
     let m = free.in_principal_axes(&mu);
     assert!(flow(|m| free.velocity(m), &m).is_none());
     let (increment, end) = free.series(&m).expect("parts that end");
     let (increment, end) = free.in_coordinates(&increment, &end);
     // what is interpreted is compared with short steps of its own, which are those of Runge and Kutta elsewhere
     let (wanted, last) =
-        if cfg!(miri) { stepped(&inertia, &mu, 1.0, 30) } else { followed(&inertia, &mu, 30.0, 30_000) };
+        if cfg!(miri) { stepped(&inertia, &mu, time / 12.0, 12) } else { followed(&inertia, &mu, time, 30_000) };
     let error = (increment + Matrix4::identity() - wanted).amax().max((end - last).amax());
     assert!(error < 1e-11, "{error:e}");
-    assert!(free.series(&m.map(|entry| entry * 1e4)).is_err());
+    // eleven series that do not end, each half as long as the one before, take Miri too long
+    if !cfg!(miri) {
+        assert!(free.series(&m.map(|entry| entry * 1e4)).is_err());
+    }
 }
 
 /// Constants are found: a step of a radian is one part, and no Taylor series.

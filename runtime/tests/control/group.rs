@@ -41,9 +41,13 @@ fn constant(matrix: &Matrix3<f64>) -> JetMatrix {
     core::array::from_fn(|i| core::array::from_fn(|j| Jet::constant(matrix[(i, j)])))
 }
 
+/// Zeros, of which such matrices are full, take no work.
 fn product(a: &JetMatrix, b: &JetMatrix) -> JetMatrix {
     core::array::from_fn(|i| {
-        core::array::from_fn(|j| (0..3).fold(Jet::constant(0.0), |sum, k| sum + a[i][k] * b[k][j]))
+        core::array::from_fn(|j| {
+            let factors = (0..3).map(|k| (&a[i][k], &b[k][j])).filter(|(a, b)| !a.is_zero() && !b.is_zero());
+            factors.fold(Jet::constant(0.0), |sum, (a, b)| sum + *a * *b)
+        })
     })
 }
 
@@ -60,6 +64,9 @@ impl<const U: usize> Group<U> {
         let (xi, mut power, mut total) = (self.algebra(xi), Matrix3::identity(), Matrix3::identity());
         for n in 1..40 {
             power = power * xi / f64::from(n);
+            if power == Matrix3::zeros() {
+                break;
+            }
             total += power;
         }
         total
@@ -82,6 +89,10 @@ impl<const U: usize> Group<U> {
         let mut power = total;
         for n in 1..30 {
             power = product(&power, &xi);
+            // a nilpotent one, as δ at 0 is in any group, has a finite series
+            if power.iter().flatten().all(Jet::is_zero) {
+                break;
+            }
             power.iter_mut().flatten().for_each(|entry| *entry = *entry * (1.0 / f64::from(n)));
             total = sum(&total, &power, 1.0);
         }

@@ -20,6 +20,10 @@ impl Jet {
         Self { slope: Vector6::ith(index, 1.0), ..Self::constant(value) }
     }
 
+    pub fn is_zero(&self) -> bool {
+        self.value == 0.0 && [self.slope.as_slice(), self.curvature.as_slice()].into_iter().flatten().all(|x| *x == 0.0)
+    }
+
     /// F(f) from F, F′ and F″ at f.
     fn chain(self, value: f64, first: f64, second: f64) -> Self {
         let curvature = self.curvature * first + self.slope * self.slope.transpose() * second;
