@@ -32,7 +32,8 @@ pub use crate::orbit::{
 };
 pub use crate::parameters::{
     InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric,
-    check_unit, distance, invert, invert_uniform, orientation_of_inertia, orientation_of_uniform,
+    check_unit, distance_of_projection, invert, invert_uniform, orientation_of_inertia, orientation_of_uniform,
+    projection,
 };
 pub use crate::power::{Power, PowerConstants, wrapped};
 pub use crate::sphere::{great_circle, on_sphere, pushed, tangent};

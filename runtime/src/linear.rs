@@ -207,7 +207,7 @@ fn eliminated_at_last<T: Scalar, const M: usize>(
 }
 
 /// 2¹⁶ᵏ, times which `size` is between 2⁻¹⁶ and 2¹⁶; where it is zero or not finite any power.
-fn power_of_two_near<T: Scalar>(size: T) -> T {
+pub(crate) fn power_of_two_near<T: Scalar>(size: T) -> T {
     /// For the range of `f64` in steps of 2¹⁶.
     const STEPS: usize = 64;
     let (large, small) = (T::from_ratio(1 << 16, 1), T::from_ratio(1, 1 << 16));

@@ -1,6 +1,6 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
-use crate::linear::{Orientation, eliminate, multiple_of_identity, rows};
+use crate::linear::{Orientation, eliminate, multiple_of_identity, power_of_two_near, rows};
 use crate::matrices::{diagonal, pairing, product};
 use crate::space::{check_lanes, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar, Space};
@@ -149,10 +149,24 @@ pub fn orientation_of_uniform<T: Scalar>(kappa: T, n: usize) -> Result<Orientati
     Orientation::of([[kappa]]).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
 }
 
-/// The Euclidean distance of two vectors.
-pub fn distance<T: Scalar, const M: usize>(a: &SVector<T, M>, b: &SVector<T, M>) -> T {
-    let difference = a - b;
-    T::from_lanes(|lane| length(&lane_of(&difference, lane).into()))
+/// A linear projection of μ, made in units in which the largest component is of ordinary size.
+pub fn projection<T: Scalar, const M: usize>(
+    mu: &SVector<T, M>,
+    project: impl Fn(&SVector<T, M>) -> SVector<T, M>,
+) -> SVector<T, M> {
+    let unit = power_of_two_near(mu.max_abs());
+    project(&mu.map(|entry| entry * unit)).map(|entry| entry / unit)
+}
+
+/// The Euclidean distance of μ from its projection.
+pub fn distance_of_projection<T: Scalar, const M: usize>(
+    mu: &SVector<T, M>,
+    project: impl Fn(&SVector<T, M>) -> SVector<T, M>,
+) -> T {
+    let unit = power_of_two_near(mu.max_abs());
+    let scaled = mu.map(|entry| entry * unit);
+    let difference = scaled - project(&scaled);
+    T::from_lanes(|lane| length(&lane_of(&difference, lane).into())) / unit
 }
 
 fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {

@@ -342,7 +342,9 @@ pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &
         if violation <= tolerance {
             return Ok(());
         }
-        Err(Error::OutsideMomentumSpace { violation: violation.to_f64(), tolerance: tolerance.to_f64() })
+        // the length of many of the largest numbers is beyond them
+        let violation = violation.to_f64().min(f64::MAX);
+        Err(Error::OutsideMomentumSpace { violation, tolerance: tolerance.to_f64() })
     })
 }
 

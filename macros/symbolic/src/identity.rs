@@ -208,6 +208,15 @@ fn stereographic(shape: Shape, random: impl Fn(usize, usize) -> Residue) -> Matr
     Matrix::new(shape, (0..=last).map(|k| numerator(k).multiply(scale)).collect())
 }
 
+/// At how many points something is looked at: one decides but for a chance of about 10⁻¹⁴, and takes long for large matrices.
+fn points(expressions: &[Expr<'_>]) -> u64 {
+    let sizes = |expr: &Expr<'_>| expr.symbols().into_iter().map(|symbol| symbol.shape().rows).max().unwrap_or(0);
+    if expressions.iter().map(sizes).max().unwrap_or(0) > LARGE { 1 } else { POINTS }
+}
+
+/// Symbols with more rows are large.
+const LARGE: usize = 256;
+
 /// Whether the expressions are equal, pair by pair, for all values of their symbols that the properties allow.
 pub fn equal<'g>(left: &[Expr<'g>], right: &[Expr<'g>]) -> bool {
     let differs = |point: &mut Point<'g>, a: Expr<'g>, b: Expr<'g>| a != b && point.evaluate(a) != point.evaluate(b);
@@ -215,7 +224,7 @@ pub fn equal<'g>(left: &[Expr<'g>], right: &[Expr<'g>]) -> bool {
         let mut point = Point::new(seed);
         !left.iter().zip(right).any(|(&a, &b)| differs(&mut point, a, b))
     };
-    left.len() == right.len() && (0..POINTS).all(agrees)
+    left.len() == right.len() && (0..points(left)).all(agrees)
 }
 
 /// Whether the expression is zero for all values of its symbols that the properties allow, some of them fixed by `prepare`.

@@ -75,6 +75,10 @@ fn four() -> Matrix4<f64> {
     Matrix4::from_diagonal(&Vector4::new(1.0, 1.5, 0.8, 1.2))
 }
 
+fn many<const N: usize>() -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| if i == j { 1.0 + 0.1 * i as f64 } else { 0.0 })
+}
+
 fn turned() -> Matrix3<f64> {
     Matrix3::new(0.0, -1.0, 0.0, 0.6, 0.0, -0.8, 0.8, 0.0, 0.6)
 }
@@ -122,6 +126,7 @@ scenes! {
         Matrix4::identity(), 0.05;
     a_midpoint_top: midpoint_top::MidpointTop { mass_matrix: inertia(), weight: 1.3, stiffness: 0.7, center: center() }, turned(), 0.05;
     neumanns_motion: neumann::Neumann { stiffness: four() }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.05;
+    neumanns_motion_in_many_dimensions: neumann20::Neumann20 { stiffness: many() }, SVector::from_fn(|i, _| if i == 4 { 1.0 } else { 0.0 }), 0.05;
     a_paper_pendulum: paper_pendulum::PaperPendulum { gravity: 9.81 }, unit(), 0.05;
     a_planar_pendulum: planar_pendulum::PlanarPendulum { 0: 1.2, 1: 0.8 }, Vector2::new(0.6, -0.8), 0.05;
     a_principal_body: principal_body::PrincipalBody { moments: principal() }, turned(), 0.1;
@@ -130,6 +135,7 @@ scenes! {
     a_quaternion_top: quaternion_top::QuaternionTop { inertia: inertia(), moment: center() }, quaternion(), 0.05;
     a_relativistic_particle: relativistic_particle::RelativisticParticle { mass: 1.2, force: center() }, center(), 0.05;
     a_body_in_four_dimensions: rigid_body4::RigidBody4 { j_d: four() }, Matrix4::identity(), 0.1;
+    a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
     a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
     a_top_of_sixth_order: sixth_order_top::SixthOrderTop { inertia: inertia(), weight: 1.3, center: center() }, turned(), 0.05;
     a_spatial_body: spatial_body::SpatialBody { mass_matrix: four(), gravity: 9.81 }, placed(), 0.05;

@@ -160,6 +160,7 @@ pub struct Substep<'g> {
 /// # Errors
 /// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
+    check_size(&model)?;
     symbols::check_chart(&model)?;
     variation::check(&model)?;
     let mut symbols = Symbols::new(&model);
@@ -269,6 +270,24 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     };
     summation::check(&formulas)?;
     Ok(formulas)
+}
+
+/// The most dimensions of a group whose elements are found by an equation, for formulas are looked at in all of them.
+const DIMENSIONS: usize = 128;
+
+/// A group with more has to be one of rotations of unit vectors, whose steps are found without an equation.
+fn check_size(model: &Model<'_>) -> Result<(), Diagnostics> {
+    let turns_vectors = model.configurations.iter().all(|leaf| leaf.space == Space::Unit);
+    let Some(factor) = model.factors.iter().find(|factor| !turns_vectors && factor.group.dimension() > DIMENSIONS)
+    else {
+        return Ok(());
+    };
+    let (name, dimension) = (factor.group.name(model.graph), factor.group.dimension());
+    let message = format!("`{name}` has {dimension} dimensions, more than {DIMENSIONS}");
+    Err(Diagnostic::new(factor.span, message)
+        .help("use a smaller group, or a product of several")
+        .note("only rotations of a unit vector may have more: the others are found by an equation in all of them")
+        .into())
 }
 
 /// What is left without mechanics: the action, and what the choice of inputs needs.

@@ -434,7 +434,10 @@ impl Emitter<'_, '_> {
             None => (quote!(<#scalar as #private::Zero>::zero()), quote!(*mu)),
             Some(kernel) if self.program.form.keeps_matrices() => {
                 let projection = code::body(&scope, kernel, None);
-                (quote!(#private::distance(mu, &{ #projection })), projection)
+                (
+                    quote!(#private::distance_of_projection(mu, |mu| { #projection })),
+                    quote!(#private::projection(mu, |mu| { #projection })),
+                )
             }
             Some(kernel) => {
                 let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);

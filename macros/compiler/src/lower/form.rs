@@ -53,7 +53,10 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             return Err(error.help("leave out `code`, or write `code = unrolled`").into());
         }
         (CodeForm::Unrolled, ..) if dimension > MOST_UNKNOWNS => {
-            return Err(too_large(formulas, format!("{dimension} unknowns")));
+            return Err(too_large(
+                formulas,
+                format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most that is written out"),
+            ));
         }
         _ => {}
     }
@@ -73,7 +76,7 @@ fn largest_system(formulas: &Formulas<'_>) -> usize {
 }
 
 /// What of a system has no code with whole matrices.
-fn without_matrices(formulas: &Formulas<'_>) -> Option<&'static str> {
+pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<&'static str> {
     let model = &formulas.model;
     let is_quaternion = model.configurations.iter().any(|leaf| leaf.is_quaternion)
         || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions);

@@ -188,7 +188,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         if operations > most {
             return Err(too_large(
                 &program.formulas,
-                format!("{operations} scalar operations{of}, {most} is the most"),
+                format!("{operations} scalar operations{of} when it is written out, {most} is the most"),
             ));
         }
     }
@@ -204,17 +204,21 @@ fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     formulas.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&moved)).collect()
 }
 
+/// The error for a system that has no form of code, with what is too large of it.
 fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
     let groups: Vec<String> =
         formulas.model.factors.iter().map(|factor| factor.group.name(formulas.model.graph)).collect();
-    Diagnostic::new(
+    let error = Diagnostic::new(
         formulas.model.spans.action.place,
-        format!("`{}` is too large to unroll: {size}", groups.join(" × ")),
+        format!("`{}` is too large: {size}", groups.join(" × ")),
     )
     .help(
         "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
-    )
-    .note("code that keeps its matrix operations for large systems comes with a later version of clebsch")
+    );
+    match form::without_matrices(formulas) {
+        Some(what) => error.note(format!("{what} has no code with whole matrices yet, which grows less with the size")),
+        None => error,
+    }
     .into()
 }
 

@@ -428,6 +428,9 @@ fn whole_predictor<'g>(
     substep: &Substep<'g>,
     equation: &Equation<'g>,
 ) -> Option<Vec<Expr<'g>>> {
+    if formulas.inertia_moves() {
+        return None;
+    }
     let (symbols, h) = (&formulas.symbols, formulas.model.step_size);
     let velocity = match formulas.uniform_inertia {
         Some(kappa) => matrices::stacked(&symbols.momenta)? / kappa,

@@ -2,6 +2,7 @@
 //! there, all that is derived agrees to round-off.
 
 mod checks;
+mod large;
 
 use checks::agree;
 use clebsch::Clebsch;
