@@ -6,6 +6,9 @@ mod euler;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/geodesic.rs"]
 mod geodesic;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../rigid_body_n/manakov.rs"]
+mod manakov;
 #[allow(dead_code, reason = "what the next one needs")]
 #[path = "../unicycle/place.rs"]
 mod place;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Name, and the columns of the CSV file.
-const SCENES: [(&str, &str); 18] = [
+const SCENES: [(&str, &str); 19] = [
     ("toutatis", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3"),
     ("spherical_pendulum", "step,time,q1,q2,q3,N1,N2,N3"),
     ("sphere_molecules", "step,time,L1,L2,L3,kinetic,potential"),
@@ -21,6 +21,12 @@ const SCENES: [(&str, &str); 18] = [
         "rigid_body_5d",
         "step,time,R11,R12,R13,R14,R15,R21,R22,R23,R24,R25,R31,R32,R33,R34,R35,R41,R42,R43,R44,R45,R51,R52,R53,R54,R55,\
          M12,M13,M14,M15,M23,M24,M25,M34,M35,M45",
+    ),
+    (
+        "rigid_body_n",
+        "step,time,R11,R12,R13,R14,R15,R16,R21,R22,R23,R24,R25,R26,R31,R32,R33,R34,R35,R36,\
+         R41,R42,R43,R44,R45,R46,R51,R52,R53,R54,R55,R56,R61,R62,R63,R64,R65,R66,\
+         M12,M13,M14,M15,M16,M23,M24,M25,M26,M34,M35,M36,M45,M46,M56",
     ),
     ("underwater_vehicle", "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,Pi1,Pi2,Pi3,P1,P2,P3"),
     ("fluid_ellipsoid", "step,time,q11,q12,q13,q21,q22,q23,q31,q32,q33,N1,N2,N3,N4,N5,N6,N7,N8"),
@@ -130,6 +136,15 @@ fn other_flags_hold_all_their_claims() {
         ("spin_chain", &["--sites", "8", "--field", "0"]),
         ("spin_chain", &["--sites", "100000", "--steps", "3"]),
         ("spin_chain", &["--tilt", "0", "--turns", "0", "--steps", "10"]),
+        ("sphere_geodesics", &["--sphere", "20", "--steps", "20000"]),
+        ("sphere_geodesics", &["--sphere", "100", "--steps", "2000"]),
+        ("rigid_body_n", &["--dimension", "5", "--order", "1"]),
+        ("rigid_body_n", &["--dimension", "7", "--j-d", "5,0,0.1,2,3,4,1", "--step-size", "0.02", "--steps", "1000"]),
+        ("rigid_body_n", &["--dimension", "8", "--rate", "3", "--seed", "7", "--step-size", "0.03", "--steps", "1000"]),
+        ("rigid_body_n", &["--dimension", "9", "--steps", "1000"]),
+        ("rigid_body_n", &["--dimension", "10", "--steps", "1000"]),
+        ("rigid_body_n", &["--momentum", "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0", "--steps", "10"]),
+        ("rigid_body_n", &["--j-d", "1,1,1,1,1,1", "--steps", "100"]),
         ("rigid_body_5d", &["--j-d", "5,0,0.1,2,3", "--step-size", "0.01"]),
         ("rigid_body_5d", &["--momentum", "0,0,0,0,0,0,0,0,0,0", "--steps", "10"]),
         ("relativistic_spin", &["--electric", "10,200,-30", "--momentum", "0.1,0.2,0.3", "--spin", "0,1,2"]),
@@ -188,6 +203,27 @@ fn short_runs_of_both_orders_write_the_promised_columns() {
     }
 }
 
+/// The largest systems of scenes, both orders: name, flags, and the number of columns of the CSV file.
+#[test]
+fn short_runs_of_large_systems_write_all_columns() {
+    for (scene, arguments, columns) in [
+        ("rigid_body_n", ["--dimension", "10"], 2 + 100 + 45),
+        ("sphere_geodesics", ["--sphere", "20"], 2 + 2 * 21),
+        ("sphere_geodesics", ["--sphere", "100"], 2 + 2 * 101),
+    ] {
+        for order in ["1", "2"] {
+            let (csv, figure) =
+                (file(&format!("{scene}-large-{order}.csv")), file(&format!("{scene}-large-{order}.svg")));
+            let run_flags = ["--steps", "10", "--order", order, "--csv", text(&csv), "--figure", text(&figure)];
+            let output = run(scene, &[&arguments[..], &run_flags].concat());
+            assert!(output.status.success(), "{scene}: {}", String::from_utf8_lossy(&output.stderr));
+            let written = std::fs::read_to_string(csv).expect("the trajectory");
+            assert!(written.lines().all(|line| line.split(',').count() == columns), "{scene} {arguments:?}");
+            assert_eq!(written.lines().count(), 12, "{scene} {arguments:?}");
+        }
+    }
+}
+
 #[test]
 fn mistakes_are_explained() {
     for (scene, arguments, expected) in [
@@ -209,6 +245,13 @@ fn mistakes_are_explained() {
         ("rigid_body_5d", &["--j-d", "3,2,-2,3,4"], "entries 2 and 3 have the sum 0"),
         ("rigid_body_5d", &["--momentum", "1,2,3"], "10 numbers separated by commas are needed, 3 were given"),
         ("rigid_body_5d", &["--step-size", "3"], "step 1 was not reached"),
+        ("rigid_body_n", &["--dimension", "4"], "`4` is not a whole number from 5 to 10"),
+        ("rigid_body_n", &["--j-d", "3,-3,2,3,4,5"], "entries 1 and 2 have the sum 0"),
+        ("rigid_body_n", &["--dimension", "5", "--j-d", "1,2,3"], "in 5 dimensions 5 numbers"),
+        ("rigid_body_n", &["--momentum", "1,2,3"], "15 numbers separated by commas are needed, 3 were given"),
+        ("rigid_body_n", &["--momentum", "1,2,3", "--rate", "2"], "cannot be used with"),
+        ("rigid_body_n", &["--rate", "0"], "`0` is not above zero"),
+        ("rigid_body_n", &["--dimension", "10", "--step-size", "5"], "step 1 was not reached"),
         ("relativistic_spin", &["--spin", "0,0,0"], "has no direction"),
         ("relativistic_spin", &["--anomaly", "-1"], "the inertia against rotations would be infinite"),
         ("relativistic_spin", &["--mass", "0"], "`0` is not above zero"),
@@ -238,10 +281,12 @@ fn mistakes_are_explained() {
         ("plate_ball", &["--turn", "1,0,0,0"], "another place or another attitude is needed"),
         ("plate_ball", &["--radius", "-1"], "`-1` is not above zero"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
-        ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7"),
+        ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
         ("sphere_geodesics", &["--sphere", "3", "--position", "1,1,0,0"], "normalise"),
         ("sphere_geodesics", &["--sphere", "3", "--velocity", "1,x,0,0"], "`x` is not a number"),
+        ("sphere_geodesics", &["--sphere", "100", "--position", "1,0"], "a point of S100 has 101 coordinates, 2 were"),
+        ("sphere_geodesics", &["--sphere", "20", "--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--discretization", "exponential"], "add --sphere 3"),
         ("underwater_vehicle", &["--semi-axes", "1,0,2"], "`0` is not above zero"),
         ("underwater_vehicle", &["--offset", "5"], "its inertia is not positive"),
