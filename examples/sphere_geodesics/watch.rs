@@ -124,12 +124,7 @@ impl<const D: usize> Watch<D> {
         let (constant, explicit) = ("all momenta are constant", "the step is explicit");
         match discretization {
             Discretization::Chord => {
-                // code that keeps whole matrices turns q and w, and makes the momentum from them anew
-                if derivation.contains("keeps whole matrices") {
-                    claims.round_off(constant, self.momentum_defect, steps, momentum);
-                } else {
-                    claims.at_most(constant, self.momentum_defect, 0.0, "to the last bit: they are copied");
-                }
+                claims.at_most(constant, self.momentum_defect, 0.0, "to the last bit: they are copied");
                 let closed = derivation.contains("closed form") && !derivation.contains("Newton");
                 claims.holds(explicit, closed, "its derivation: closed form, no Newton iteration");
             }

@@ -36,7 +36,7 @@ pub use crate::parameters::{
     projection,
 };
 pub use crate::power::{Power, PowerConstants, wrapped};
-pub use crate::sphere::{great_circle, on_sphere, pushed, tangent};
+pub use crate::sphere::{great_circle, on_sphere, perpendicular, pushed, tangent};
 pub use crate::splitting::{GRADIENT_4, GRADIENT_6, PLAIN_4, PLAIN_6, split};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,

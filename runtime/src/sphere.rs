@@ -7,10 +7,11 @@ use crate::matrices::{pairing, scaled, skew_times};
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
-/// w = Mq of the momentum with the components μ, without what rounding leaves of it along q.
+/// w = Mq/|q|² of the momentum with the components μ, without what rounding leaves of it along q; |q|² is off one by rounding alone.
 #[inline]
 pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu: &SVector<T, M>) -> SVector<T, N> {
-    perpendicular(q, skew_times(mu, q))
+    let missing = T::one() - pairing(q, q);
+    scaled(&perpendicular(q, &skew_times(mu, q)), T::one() + missing)
 }
 
 /// w + g without what of it is along q.
@@ -20,22 +21,28 @@ pub fn pushed<T: Scalar, const N: usize>(
     w: &SVector<T, N>,
     gradient: &SVector<T, N>,
 ) -> SVector<T, N> {
-    perpendicular(q, w + gradient)
+    perpendicular(q, &(w + gradient))
 }
 
+/// w without what of it is along q.
 #[inline]
-fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, w: SVector<T, N>) -> SVector<T, N> {
-    let along = pairing(q, &w);
+pub fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &SVector<T, N>) -> SVector<T, N> {
+    let along = pairing(q, w);
     w.zip_map(q, |w, q| w - q * along)
 }
 
-/// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), its square summed in eight parts.
+/// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), and w longer by as much as q is shorter: the momentum
+/// wqᵀ − qwᵀ stays.
 #[inline]
-pub fn on_sphere<T: Scalar, const N: usize>(q: SVector<T, N>) -> SVector<T, N> {
+#[allow(clippy::type_complexity, reason = "the point and its w")]
+pub fn on_sphere<T: Scalar, const N: usize>(q: SVector<T, N>, w: SVector<T, N>) -> (SVector<T, N>, SVector<T, N>) {
     let missing = T::one() - pairing(&q, &q);
     let is_off = (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs());
-    let half = T::from_ratio(1, 2);
-    if is_off.any() { q.map(|x| T::select(is_off, x + x * (half * missing), x)) } else { q }
+    if !is_off.any() {
+        return (q, w);
+    }
+    let half = missing * T::from_ratio(1, 2);
+    (q.map(|x| T::select(is_off, x + x * half, x)), w.map(|x| T::select(is_off, x - x * half, x)))
 }
 
 /// q⁺ = cq + aw and w⁺ = cw − a|w|²q with c = √(1 − a²|w|²), along a great circle by the angle with the sine a|w|; a is h/κ, κ the inertia.

@@ -191,12 +191,12 @@ impl Scope<'_, '_> {
     fn part(&self, vector: &str, held: &[usize], first: usize, shape: Shape) -> Place {
         let private = &self.paths.private;
         let name = format_ident!("{vector}");
+        if held.iter().copied().eq(first..first + shape.rows) {
+            return Place::Reference(quote!(#name));
+        }
         // by construction: kernels read what their vectors hold
         let of = |component: usize| held.iter().position(|&other| other == component).unwrap_or(0);
         let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
-        if positions.iter().copied().eq(0..held.len()) {
-            return Place::Reference(quote!(#name));
-        }
         let start = positions.first().copied().unwrap_or(0);
         if positions.iter().copied().eq(start..start + shape.rows) {
             let (start, part) = (Literal::usize_unsuffixed(start), self.paths.matrix(shape.rows, 1));

@@ -357,13 +357,19 @@ impl Emitter<'_, '_> {
                     w = #private::pushed(&q, &w, &gradient);
                 }),
             ),
+            (None, None) => (None, None, Some(quote!(w = #private::perpendicular(&q, &w);))),
             (start, end) => (None, start.map(pushed), end.map(pushed)),
+        };
+        // where nothing kicks, the momentum is that of the start to the bit
+        let momentum_after = match step.start_gradient.is_none() && step.end_gradient.is_none() {
+            true => quote!(*mu),
+            false => quote!(#krate::Clebsch::momentum_map(self.system, &q, &w)),
         };
         quote! {
             /// (q, N) ↦ (q⁺, N⁺), as many times as there are steps.
             ///
             /// Between the first and the last N is wqᵀ − qwᵀ: w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁;
-            /// what is not perpendicular to q is taken off w each time, which rounding makes necessary.
+            /// what is not perpendicular to q is taken off w in each step, which rounding makes necessary.
             fn euler_poincare_steps(
                 &self,
                 steps: ::core::primitive::usize,
@@ -378,9 +384,9 @@ impl Emitter<'_, '_> {
                     #start
                     (q, w) = #private::great_circle(a, &q, &w)?;
                     #end
-                    q = #private::on_sphere(q);
+                    (q, w) = #private::on_sphere(q, w);
                 }
-                ::core::result::Result::Ok((q, #krate::Clebsch::momentum_map(self.system, &q, &w), ()))
+                ::core::result::Result::Ok((q, #momentum_after, ()))
             }
             #symmetric
         }
