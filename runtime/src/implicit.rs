@@ -258,7 +258,9 @@ fn is_round_off<T: Scalar, const M: usize>(
     jacobian: &SMatrix<T, M, M>,
     xi: &SVector<T, M>,
 ) -> T::Mask {
-    let terms = (0..M).fold(T::zero(), |sum, j| sum + size(&jacobian.column(j).into_owned()) * xi[j].abs());
+    let length = |column: &[T; M]| column.iter().fold(T::zero(), |sum, entry| sum + entry.abs());
+    let columns = jacobian.data.0.iter().zip(xi.iter());
+    let terms = columns.fold(T::zero(), |sum, (column, x)| sum + length(column) * x.abs());
     size(residual).at_most(T::from_f64(8.0) * T::EPSILON * terms)
 }
 
