@@ -69,9 +69,10 @@ fn principal<const N: usize>() -> SVector<f64, N> {
 }
 
 /// The body by hand, in its principal axes: hM = FJ − JFᵀ with F = (I − Z)⁻¹(I + Z) is 2(JZ + ZJ) = h(I − Z)M(I + Z), solved by the fixed
-/// point Z ← L⁻¹(h/2(M + MZ − ZM − ZMZ)), whose L is a division entry by entry.
+/// point Z ← L⁻¹(h/2(M + MZ − ZM − ZMZ)), whose L is made once, entry by entry.
 struct ByHand<const N: usize> {
-    j: SVector<f64, N>,
+    /// h/2 over the sums of two principal values.
+    factor: SMatrix<f64, N, N>,
     r: SMatrix<f64, N, N>,
     m: SMatrix<f64, N, N>,
 }
@@ -79,9 +80,7 @@ struct ByHand<const N: usize> {
 impl<const N: usize> ByHand<N> {
     fn step(&mut self) {
         let identity = SMatrix::<f64, N, N>::identity();
-        let divided = |right: &SMatrix<f64, N, N>| {
-            SMatrix::<f64, N, N>::from_fn(|a, b| 0.5 * H * right[(a, b)] / (self.j[a] + self.j[b]))
-        };
+        let divided = |right: &SMatrix<f64, N, N>| right.component_mul(&self.factor);
         let mut z = divided(&self.m);
         let mut last = f64::INFINITY;
         for _ in 0..60 {
@@ -180,7 +179,8 @@ macro_rules! bodies {
                     k += 1;
                 }
             }
-            let mut body = ByHand { j, r: SMatrix::identity(), m };
+            let factor = SMatrix::from_fn(|a, b| 0.5 * H / (j[a] + j[b]));
+            let mut body = ByHand { factor, r: SMatrix::identity(), m };
             (0..steps).for_each(|_| body.step());
             body.r
         };

@@ -22,6 +22,10 @@ fn jacobians_of_all_implicit_equations() {
     for file in files {
         let graph = Graph::new();
         let program = program(&graph, &std::fs::read_to_string(&file).expect("a readable file"));
+        // these kernels return whole matrices; by Newton's method too they are those that are written out (`clebsch-laws --test forms`)
+        if program.form.keeps_matrices() {
+            continue;
+        }
         let symbols = &program.formulas.symbols;
         for (substep, kernels) in program.formulas.substeps.iter().zip(&program.steps) {
             for (equation, solve) in substep.equations.iter().zip(&kernels.solves) {

@@ -126,9 +126,12 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 entry("x", &self.coordinates, self.model.offset(k) + input.row)
             }
-            Role::Auxiliary(_) if self.keeps_matrices => {
+            Role::Auxiliary(usize::MAX) if self.keeps_matrices => {
                 let constants = &self.constants;
                 quote!(#constants.inertia_inverse.matrix() #index)
+            }
+            Role::Auxiliary(block) if self.keeps_matrices => {
+                entry("delta", &self.coordinates, self.blocks[block] + input.row)
             }
             Role::Auxiliary(_) => match &self.constants {
                 Some(constants) => quote!(#constants.inertia_inverse #index),

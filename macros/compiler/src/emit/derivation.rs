@@ -43,11 +43,18 @@ fn form(program: &Program<'_>) -> String {
     };
     let why = match (is_asked, code) {
         (true, _) => "as the declaration asks".to_string(),
+        (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => "of few unknowns".to_string(),
         (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
         (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
     };
+    let in_plane = match program.form.keeps_matrices() && program.formulas.follows_great_circles() {
+        true => {
+            "Steps are made in q and w ⊥ q, with the momentum M = wqᵀ − qwᵀ: q⁺ = cq + aw, w⁺ = cw − a|w|²q, a = h/κ, c² = 1 − a²|w|².\n"
+        }
+        false => "",
+    };
     format!(
-        "{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}.\n"
+        "{in_plane}{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}.\n"
     )
 }
 

@@ -12,6 +12,9 @@ use crate::model::{CodeForm, Isotropy};
 /// Steps of systems on either side of it were measured in both forms (`cargo bench -p clebsch-tests --bench large`).
 pub const LARGEST_UNROLLED: usize = 10_000;
 
+/// Systems with fewer unknowns are written out, however long their formulas are: the loops over so few of them gain nothing.
+const FEWEST_UNKNOWNS: usize = 15;
+
 /// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
 const MOST_UNKNOWNS: usize = 64;
 
@@ -41,7 +44,8 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     let estimate = estimate(formulas);
     let asked = formulas.model.code.as_ref();
     let dimension = formulas.inertia.shape().rows;
-    let is_large = estimate > LARGEST_UNROLLED || dimension > MOST_UNKNOWNS;
+    let is_long = estimate > LARGEST_UNROLLED && dimension >= FEWEST_UNKNOWNS;
+    let is_large = is_long || dimension > MOST_UNKNOWNS;
     let code = match asked {
         Some(asked) => asked.value,
         None if is_large && without_matrices(formulas).is_none() => CodeForm::Matrices,

@@ -1,6 +1,6 @@
 //! Systems that have one form alone, for they are too large to be written out: their steps keep what theory says that they keep.
 
-use clebsch::{Clebsch, Conserves};
+use clebsch::{Clebsch, Conserves, F64x4, Space};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{SMatrix, SVector};
 
@@ -84,6 +84,67 @@ fn momentum_and_circulation_of_an_ellipsoid_stay() {
 fn the_spatial_momentum_of_a_body_stays() {
     let j_d = SMatrix::from_fn(|i, j| if i == j { 0.5 + 0.1 * i as f64 } else { 0.02 });
     conserves(Body { j_d }, 2.0);
+}
+
+/// A body in five dimensions, of any numbers.
+#[derive(Clebsch, Clone)]
+#[clebsch(
+    action = |F: SO<5>, R: SO<5>| R * F,
+    cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+    code   = matrices,
+)]
+struct WideBody<T> {
+    #[clebsch(symmetric)]
+    j_d: SMatrix<T, 5, 5>,
+}
+
+/// A point on S⁵ in a field along an axis, of any numbers.
+#[derive(Clebsch, Clone)]
+#[clebsch(
+    action    = |F: SO<6>, q: Unit<SVector<6>>| F * q,
+    cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    potential = |q| self.gravity * q[5],
+    code      = matrices,
+)]
+struct WidePendulum<T> {
+    gravity: T,
+}
+
+/// Lanes have the bits of single numbers, and single precision is near double precision.
+#[test]
+fn all_kinds_of_numbers_are_stepped() {
+    let mut random = Random::new(5);
+    let j_d = SMatrix::<f64, 5, 5>::from_fn(|i, j| if i == j { 0.5 + 0.1 * i as f64 } else { 0.02 });
+    let momenta: [SVector<f64, 10>; 4] = std::array::from_fn(|_| random.vector());
+    let alone = WideBody { j_d }.into_stepper(H).expect("a body");
+    let lanes = WideBody { j_d: j_d.map(F64x4::splat) }.into_stepper(F64x4::splat(H)).expect("bodies");
+    let single = WideBody { j_d: j_d.cast::<f32>() }.into_stepper(H as f32).expect("a body");
+    let mu = SVector::<F64x4, 10>::side_by_side(|lane| momenta[lane]);
+    let mut wide = lanes.state(SMatrix::from_diagonal_element(F64x4::splat(1.0)), mu).expect("states");
+    (0..20).for_each(|_| wide = lanes.step(&wide).expect("steps"));
+    for (lane, mu) in momenta.iter().enumerate() {
+        let mut state = alone.state(SMatrix::identity(), *mu).expect("a state");
+        let mut rough = single.state(SMatrix::identity(), mu.cast()).expect("a state");
+        for _ in 0..20 {
+            state = alone.step(&state).expect("a step");
+            rough = single.step(&rough).expect("a step");
+        }
+        assert_eq!(wide.lane(lane), (*state.configuration(), *state.momentum()));
+        assert!((rough.configuration().cast::<f64>() - state.configuration()).amax() < 1e-5);
+    }
+
+    let start = |k: usize| SVector::<f64, 6>::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
+    let alone = WidePendulum { gravity: 2.0 }.into_stepper(H).expect("a pendulum");
+    let lanes = WidePendulum { gravity: F64x4::splat(2.0) }.into_stepper(F64x4::splat(H)).expect("pendulums");
+    let momentum = |lane: usize| alone.system().momentum_map(&start(lane), &(start(5) * 0.3 + start(4) * 0.7));
+    let q = SVector::<F64x4, 6>::side_by_side(start);
+    let mu = SVector::<F64x4, 15>::side_by_side(momentum);
+    let wide = lanes.advance(&lanes.state(q, mu).expect("states"), 20).expect("steps");
+    for lane in 0..4 {
+        let state = alone.state(start(lane), momentum(lane)).expect("a state");
+        let state = alone.advance(&state, 20).expect("steps");
+        assert_eq!(wide.lane(lane), (*state.configuration(), *state.momentum()));
+    }
 }
 
 /// With a field along one axis the motion stays in the plane of the start: that of the pendulum in three dimensions, from the same

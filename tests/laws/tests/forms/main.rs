@@ -134,6 +134,52 @@ both!(
 );
 
 both!(
+    free_body_by_newton,
+    SMatrix::identity(),
+    Body { j_d: mass() },
+    #[clebsch(
+        action = |F: SO<5>, R: SO<5>| R * F,
+        cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+        solver = newton,
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub j_d: SMatrix<f64, 5, 5>,
+    }
+);
+
+both!(
+    spatial_body_by_newton,
+    Matrix4::identity(),
+    Body { mass_matrix: mass(), gravity: 0.8 },
+    #[clebsch(
+        action    = |F: SE<3>, q: SE<3>| q * F,
+        cost      = |h, F| ((F - I) * self.mass_matrix * (F - I).transpose()).trace() / (2 * h),
+        potential = |q| self.gravity * (q * self.mass_matrix)[(2, 3)],
+        solver    = newton,
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub mass_matrix: Matrix4<f64>,
+        pub gravity: f64,
+    }
+);
+
+both!(
+    similarity,
+    Matrix4::identity(),
+    Shape { inertia: mass() },
+    #[clebsch(
+        action         = |F: Sim<3>, q: Sim<3>| q * F,
+        lagrangian     = |xi| xi.dot(&(self.inertia * xi)) / 2,
+    )]
+    struct Shape {
+        #[clebsch(symmetric)]
+        pub inertia: SMatrix<f64, 7, 7>,
+    }
+);
+
+both!(
     fluid_ellipsoid,
     Matrix3::identity(),
     Fluid { mass: 1.3 },

@@ -19,6 +19,7 @@ mod rotations;
 mod scalars;
 mod steps;
 mod table;
+mod whole;
 
 use mentions::File;
 use std::collections::BTreeSet;

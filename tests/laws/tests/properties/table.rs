@@ -153,4 +153,11 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("tests/tests/saved/main.rs", &[
         ("saved_states_resume_bit_for_bit", &["Stepper::resume"]),
     ]),
+    ("tests/laws/tests/properties/whole.rs", &[
+        ("operations_are_those_of_matrices", &["product", "scaled", "shifted", "pairing", "trace", "determinant", "diagonal", "diagonal_matrix", "block", "embedded", "matrix_of", "largest_entry"]),
+        ("skew_matrices_have_components",    &["skew", "skew_components", "skew_times", "skew_outer"]),
+        ("inertias_are_inverted",            &["InertiaInverse::new", "InertiaInverse::matrix", "InertiaInverse::times", "InertiaInverse::energy", "invert_uniform", "kinetic_energy_uniform", "orientation_of_inertia", "orientation_of_uniform"]),
+        ("points_follow_great_circles",      &["tangent", "pushed", "perpendicular", "great_circle", "on_sphere"]),
+        ("units_of_projections_do_not_matter", &["projection", "distance_of_projection"]),
+    ]),
 ];

@@ -1,0 +1,112 @@
+//! Operations on whole matrices, and points on spheres in (q, w): what code of large systems is made of.
+
+use crate::arbitrary::{cases, matrix, vector};
+use clebsch::__private::{
+    InertiaInverse, Orientation, block, determinant, diagonal, diagonal_matrix, distance_of_projection, embedded,
+    great_circle, invert_uniform, kinetic_energy_uniform, largest_entry, matrix_of, on_sphere, orientation_of_inertia,
+    orientation_of_uniform, pairing, perpendicular, product, projection, pushed, scaled, shifted, skew,
+    skew_components, skew_outer, skew_times, tangent, trace,
+};
+use clebsch::Error;
+use nalgebra::{SMatrix, SVector};
+use proptest::prelude::*;
+
+type Square = SMatrix<f64, 5, 5>;
+
+fn square() -> BoxedStrategy<Square> {
+    matrix(1.0)
+}
+
+/// Two numbers that differ by rounding.
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-13 * (1.0 + a.abs().max(b.abs()))
+}
+
+proptest! {
+    #![proptest_config(cases(64))]
+
+    /// Those of nalgebra.
+    #[test]
+    fn operations_are_those_of_matrices(a in square(), b in square(), v in vector::<5>(1.0), s in -2.0_f64..2.0) {
+        prop_assert!((product(&a, &b) - a * b).amax() < 1e-13 && (product(&a, &v) - a * v).amax() < 1e-13);
+        prop_assert_eq!(scaled(&a, s), a * s);
+        prop_assert_eq!(shifted(&a, s), a + Square::identity() * s);
+        prop_assert!(near(pairing(&a, &b), a.dot(&b)) && near(trace(&a), a.trace()));
+        prop_assert!(near(determinant(&a), a.determinant()));
+        prop_assert_eq!(diagonal(&a), a.diagonal());
+        prop_assert_eq!(diagonal_matrix(&v), Square::from_diagonal(&v));
+        let part: SMatrix<f64, 2, 3> = block(&a, 1, 2);
+        prop_assert_eq!(part, a.fixed_view::<2, 3>(1, 2).into_owned());
+        let whole: Square = embedded(&part, 1, 2);
+        prop_assert_eq!(block::<f64, 5, 5, 2, 3>(&whole, 1, 2), part);
+        prop_assert!(near(whole.norm(), part.norm()), "zero elsewhere");
+        prop_assert!((matrix_of(|x: &SVector<f64, 5>| a * x) - a).amax() == 0.0);
+        prop_assert_eq!(largest_entry(&a), a.amax());
+    }
+
+    /// x ↦ Σ x_k E_k with E = E_ji − E_ij, A ↦ ⟨A, E⟩ its transpose, and what they do to vectors.
+    #[test]
+    fn skew_matrices_have_components(x in vector::<10>(1.0), a in square(), v in vector::<5>(1.0), w in vector::<5>(1.0)) {
+        let z: Square = skew(&x);
+        prop_assert_eq!(z.transpose(), -z);
+        prop_assert_eq!((z[(1, 0)], z[(2, 0)], z[(4, 3)]), (x[0], x[1], x[9]), "the order (12) (13) … (45)");
+        let components: SVector<f64, 10> = skew_components(&a);
+        prop_assert!(near(components.dot(&x), a.dot(&z)));
+        prop_assert!((skew_times(&x, &v) - z * v).amax() < 1e-14);
+        let outer: SVector<f64, 10> = skew_outer(&v, &w);
+        prop_assert!((outer - skew_components::<f64, 5, 10>(&(v * w.transpose()))).amax() < 1e-15);
+    }
+
+    /// Σ⁻¹μ and the energy by any inertia, by a diagonal one and by κI.
+    #[test]
+    fn inertias_are_inverted(a in square(), mu in vector::<5>(1.0), kappa in 0.1_f64..3.0, h in 0.01_f64..1.0) {
+        let inertia = a * a.transpose() + Square::identity();
+        let inverse = InertiaInverse::new(&inertia)?;
+        prop_assert!((inverse.matrix() * inertia - Square::identity()).amax() < 1e-12);
+        prop_assert!((inertia * inverse.times(&mu) - mu).amax() < 1e-12);
+        prop_assert!(near(inverse.energy(&mu), mu.dot(&inverse.times(&mu)) / 2.0));
+        let principal = inertia.diagonal();
+        let inverse = InertiaInverse::new(&Square::from_diagonal(&principal))?;
+        prop_assert!((inverse.times(&mu) - mu.component_div(&principal)).amax() < 1e-15);
+        let inverse = invert_uniform(&kappa)?;
+        prop_assert!(near(kinetic_energy_uniform(&inverse, &mu), mu.norm_squared() / (2.0 * kappa)));
+        prop_assert_eq!(orientation_of_inertia(&inertia, h)?, Orientation::POSITIVE);
+        prop_assert_eq!(orientation_of_inertia(&inertia, -h)?, Orientation::NEGATIVE, "an odd number of signs");
+        prop_assert_eq!(orientation_of_uniform(-kappa, 5)?, Orientation::NEGATIVE);
+        prop_assert_eq!(orientation_of_uniform(-kappa, 4)?, Orientation::POSITIVE);
+        let singular = matches!(invert_uniform(&0.0), Err(Error::SingularKineticEnergy { .. }));
+        prop_assert!(singular && InertiaInverse::new(&(a - a)).is_err() && orientation_of_uniform(0.0, 3).is_err());
+    }
+
+    /// The momentum wqᵀ − qwᵀ has (q, w) back, is carried along the great circle, and stays where lengths are mended.
+    #[test]
+    fn points_follow_great_circles(q in vector::<5>(1.0), w in vector::<5>(0.8), g in vector::<5>(1.0), a in 0.01_f64..0.5) {
+        prop_assume!(q.norm() > 0.1 && w.norm() > 0.1);
+        let q = q.normalize();
+        let w = perpendicular(&q, &w);
+        prop_assert!(q.dot(&w).abs() < 1e-15);
+        let momentum = |q: &SVector<f64, 5>, w: &SVector<f64, 5>| skew_outer::<f64, 5, 10>(w, q);
+        prop_assert!((tangent(&q, &momentum(&q, &w)) - w).amax() < 1e-14);
+        prop_assert!((pushed(&q, &w, &g) - (w + g - q * q.dot(&g))).amax() < 1e-14);
+        let (next, turned) = great_circle(a, &q, &w)?;
+        prop_assert!(near(next.norm(), 1.0) && next.dot(&turned).abs() < 1e-14);
+        prop_assert!((momentum(&next, &turned) - momentum(&q, &w)).amax() < 1e-14);
+        prop_assert!(near((next - q * next.dot(&q)).norm(), a * w.norm()), "by the angle with that sine");
+        let (long, short) = (next * (1.0 + 1e-10), turned);
+        let (mended, longer) = on_sphere(long, short);
+        prop_assert!((mended.norm() - 1.0).abs() < 1e-15 * 4.0);
+        prop_assert!((momentum(&mended, &longer) - momentum(&long, &short)).amax() < 1e-14);
+        prop_assert!(matches!(great_circle(2.0 / w.norm(), &q, &w), Err(Error::Unsolvable { .. })), "too far");
+    }
+
+    /// A projection in other units is the same, and so is the distance from it.
+    #[test]
+    fn units_of_projections_do_not_matter(mu in vector::<5>(1.0), q in vector::<5>(1.0), power in -900_i32..900) {
+        prop_assume!(q.norm() > 0.1);
+        let q = q.normalize();
+        let along = |mu: &SVector<f64, 5>| q * q.dot(mu);
+        let unit = 2.0_f64.powi(power);
+        prop_assert!((projection(&(mu * unit), along) / unit - along(&mu)).amax() < 1e-15);
+        prop_assert!(near(distance_of_projection(&(mu * unit), along) / unit, (mu - along(&mu)).norm()));
+    }
+}
