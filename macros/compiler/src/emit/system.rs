@@ -1,6 +1,6 @@
 //! The implementation of the trait `Clebsch` for the user's struct.
 
-use clebsch_symbolic::{Group, Property};
+use clebsch_symbolic::{Group, Property, Role};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -8,7 +8,7 @@ use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Solution};
-use crate::lower::{Kernel, Solve};
+use crate::lower::{Code, Kernel, Solve};
 use crate::model::Space;
 
 impl Emitter<'_, '_> {
@@ -63,7 +63,18 @@ impl Emitter<'_, '_> {
         let count = Literal::usize_unsuffixed(self.program.formulas.symmetries.conserved.len());
         let scope = self.scope_of_system();
         let (locals, entries) = (code::locals(&scope, kernel), &kernel.outputs[0].1);
-        let entries = entries.iter().map(|entry| scope.code(entry, false));
+        // all components of a long momentum are that momentum
+        let is_component = |(k, entry): (usize, &Code)| matches!(entry, Code::Read(input) if input.role == Role::Momentum(0) && input.row == k);
+        let is_whole = self.program.form.keeps_matrices()
+            && entries.len() == self.dimension()
+            && entries.iter().enumerate().all(is_component);
+        let values = match is_whole {
+            true => quote!((*mu).into()),
+            false => {
+                let entries = entries.iter().map(|entry| scope.code(entry, false));
+                quote!([#(#entries),*])
+            }
+        };
         let formulas = self.program.formulas.formulas_of_conserved();
         let documentation = docs::formulas("The momenta that no step changes.", &formulas, Some(kernel));
         quote! {
@@ -74,7 +85,7 @@ impl Emitter<'_, '_> {
                 #documentation
                 fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved {
                     #locals
-                    #private::Conserved::new([#(#names),*], [#(#entries),*])
+                    #private::Conserved::new([#(#names),*], #values)
                 }
             }
         }
