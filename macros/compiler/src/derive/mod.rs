@@ -47,7 +47,7 @@ pub use energy::Energy;
 pub(crate) use equation::chart_slope;
 pub use equation::{Equation, Solution};
 pub use exact::Splitting;
-pub(crate) use exact::{by_inertia, inertia_inverse};
+pub(crate) use exact::{INERTIA_INVERSE, by_inertia, inertia_inverse};
 pub use force::EdgeForce;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
 pub use power::Link;
@@ -70,7 +70,7 @@ pub struct Formulas<'g> {
     pub generator: Vec<Expr<'g>>,
     /// Whether only the identity fixes a general configuration.
     pub is_free: bool,
-    /// J(q, μ_Q(q)) for each factor, where that is the orthogonal projection of μ to 𝔤_q^⊥, as on spheres.
+    /// J(q, μ_Q(q))/c for each factor, where some motions fix q and that is the orthogonal projection of μ to 𝔤_q^⊥, as on spheres.
     pub projection: Option<Vec<Expr<'g>>>,
     /// J(q, p), for each factor.
     pub momentum_map: Vec<Expr<'g>>,
@@ -160,7 +160,6 @@ pub struct Substep<'g> {
 /// # Errors
 /// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
-    check_size(&model)?;
     symbols::check_chart(&model)?;
     variation::check(&model)?;
     let mut symbols = Symbols::new(&model);
@@ -245,7 +244,10 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         legendre_next,
         legendre_kick,
         listing: OnceCell::new(),
-        projection: action::projection(&model, &symbols, &generator, &momentum_map),
+        projection: match is_free {
+            true => None,
+            false => action::projection(&model, &symbols, &generator, &momentum_map),
+        },
         is_free,
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
@@ -270,24 +272,6 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     };
     summation::check(&formulas)?;
     Ok(formulas)
-}
-
-/// The most dimensions of a group whose elements are found by an equation, for formulas are looked at in all of them.
-const DIMENSIONS: usize = 128;
-
-/// A group with more has to be one of rotations of unit vectors, whose steps are found without an equation.
-fn check_size(model: &Model<'_>) -> Result<(), Diagnostics> {
-    let turns_vectors = model.configurations.iter().all(|leaf| leaf.space == Space::Unit);
-    let Some(factor) = model.factors.iter().find(|factor| !turns_vectors && factor.group.dimension() > DIMENSIONS)
-    else {
-        return Ok(());
-    };
-    let (name, dimension) = (factor.group.name(model.graph), factor.group.dimension());
-    let message = format!("`{name}` has {dimension} dimensions, more than {DIMENSIONS}");
-    Err(Diagnostic::new(factor.span, message)
-        .help("use a smaller group, or a product of several")
-        .note("only rotations of a unit vector may have more: the others are found by an equation in all of them")
-        .into())
 }
 
 /// What is left without mechanics: the action, and what the choice of inputs needs.

@@ -6,8 +6,9 @@ use syn::{GenericArgument, Generics, PathSegment, Type};
 use super::declared::DeclaredGroups;
 use super::sizes::{LARGEST, size_argument};
 use super::vectors::{arguments, last_segment, named_shape};
+use super::{Configuration, Factor, Space};
 use crate::diagnostic::{Diagnostic, Place, nearest};
-use crate::parse::spell_type;
+use crate::parse::{Declaration, spell_type};
 
 /// What the names in types refer to.
 #[derive(Copy, Clone)]
@@ -43,11 +44,8 @@ const GROUPS: [(&str, Maker); 11] = [
     ("Sim",         Maker::One(2, Group::Similarity)),
 ];
 
-/// The largest dimension of one group: its components are the unknowns of an equation.
-const DIMENSION: usize = 128;
-
-/// The same of rotations, for the spheres that they move: their components need no equation.
-const ROTATIONS: usize = 8128;
+/// The largest dimension of a group whose elements are found by an equation: formulas are looked at in all of its directions.
+pub const DIMENSION: usize = 128;
 
 /// SU(2) is made of quaternions, the others of real matrices.
 fn special_unitary(n: usize) -> Group {
@@ -116,12 +114,38 @@ fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
         let message = format!("the matrices of `{text}` have {rows} rows, more than {LARGEST}");
         return Err(Diagnostic::new(Place::of(ty), message).note(note));
     }
-    let most = if matches!(group, Group::SpecialOrthogonal(_)) { ROTATIONS } else { DIMENSION };
-    if group.dimension() > most {
-        let message = format!("`{text}` has {} dimensions, more than {most}", group.dimension());
+    // spheres need no equation, and it is only known later whether rotations move one
+    if group.dimension() > DIMENSION && !matches!(group, Group::SpecialOrthogonal(_)) {
+        let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", group.dimension());
         return Err(Diagnostic::new(Place::of(ty), message).note(note));
     }
     Ok(group)
+}
+
+/// Refuses a large group that is not one of rotations of unit vectors, whose steps are found without an equation, and what is not
+/// looked at for those.
+pub(super) fn check_large(
+    declaration: &Declaration,
+    factors: &[Factor<'_>],
+    configurations: &[Configuration<'_>],
+) -> Result<(), Diagnostic> {
+    let Some(factor) = factors.iter().find(|factor| factor.group.dimension() > DIMENSION) else { return Ok(()) };
+    let text = factor.group.name(factor.symbol.graph());
+    if !configurations.iter().all(|leaf| leaf.space == Space::Unit) {
+        let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", factor.group.dimension());
+        return Err(Diagnostic::new(factor.span, message).help("use a smaller group, or a product of several").note(
+            "only rotations of a unit vector may have more: the others are found by an equation in all of them",
+        ));
+    }
+    match declaration.symmetries.first() {
+        Some(symmetry) => Err(Diagnostic::new(
+            Place::of(&symmetry.body),
+            format!("a symmetry is offered, but `{text}` has more than {DIMENSION} dimensions"),
+        )
+        .help("leave out `symmetry`: which components of the momentum are conserved is found without it")
+        .note("in larger groups single components are looked at, not what combines them")),
+        None => Ok(()),
+    }
 }
 
 /// The error for a type that is no group, where a group is expected.

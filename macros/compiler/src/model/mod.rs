@@ -36,6 +36,7 @@ mod velocity;
 pub use crate::parse::{
     ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
+pub use groups::DIMENSION;
 pub use outline::{Outline, outline};
 pub use power::{Place, Power, Term};
 pub use structure::Structure;
@@ -84,6 +85,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let fields = fields::read(graph, declaration, &scalars, sites, &mut diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
     let typed = Typed::new(graph, types, groups, spaces, &mut diagnostics);
+    // before the laws of the action are looked at in all directions
+    if let Some((factors, configurations)) = typed.factors.as_deref().zip(typed.configurations.as_deref())
+        && let Err(error) = groups::check_large(declaration, factors, configurations)
+    {
+        diagnostics.push(error);
+        return Err(diagnostics);
+    }
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
     let mut arguments = typed.arguments(types, input(declaration), (step_size, time));

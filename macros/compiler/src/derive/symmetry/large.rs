@@ -1,7 +1,8 @@
 //! Conserved momenta of groups that are too large for a null space: those of single basis elements.
 //!
 //! The variation of the discrete Lagrangian along ξ is linear in ξ. Its slope is one vector, and where a component of it vanishes at
-//! random points the momentum of that basis element is conserved. Combinations of basis elements are not looked for.
+//! random points the momentum of that basis element is conserved. Combinations of basis elements are not looked for. Systems with forces
+//! or offered symmetries do not come here: `model` and `lower` refuse them.
 
 use clebsch_symbolic::identity::{Point, Residue};
 use clebsch_symbolic::{Expr, Number, integer};
@@ -10,9 +11,6 @@ use super::directions::{generated, in_factor};
 use super::{ConservedMomentum, Symmetries};
 use crate::derive::{DiscreteLagrangian, Symbols, naming};
 use crate::model::{Model, Side};
-
-/// Groups of more dimensions are large.
-pub(super) const LARGE: usize = 128;
 
 /// As many points decide whether a component vanishes: one does but for a chance of about 10⁻¹⁴.
 const POINTS: u64 = 1;
