@@ -241,7 +241,10 @@ pub(crate) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'
     (0..mu.len()).map(row).collect()
 }
 
+/// What Σ⁻¹ is among the symbols of the derivation.
+pub(crate) const INERTIA_INVERSE: Role = Role::Auxiliary(usize::MAX);
+
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
 pub(crate) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
-    graph.symbol("inertia_inverse", shape, Role::Auxiliary(usize::MAX), Property::Symmetric)
+    graph.symbol("inertia_inverse", shape, INERTIA_INVERSE, Property::Symmetric)
 }

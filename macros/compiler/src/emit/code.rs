@@ -7,6 +7,7 @@ use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, 
 use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
+use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Code, Input, Kernel};
 use crate::model::{Model, ScalarType, Structure};
 
@@ -126,7 +127,7 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 entry("x", &self.coordinates, self.model.offset(k) + input.row)
             }
-            Role::Auxiliary(usize::MAX) if self.keeps_matrices => {
+            INERTIA_INVERSE if self.keeps_matrices => {
                 let constants = &self.constants;
                 quote!(#constants.inertia_inverse.matrix() #index)
             }

@@ -120,14 +120,18 @@ impl Emitter<'_, '_> {
     /// The sign of det Σ/h for some components, Dρ at the identity but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
         let (private, krate) = (&self.paths.private, &self.paths.krate);
-        if self.program.form.keeps_matrices() && components.len() == self.dimension() {
-            return match self.has_uniform_inertia() {
-                true => {
-                    let dimension = Literal::usize_unsuffixed(self.dimension());
-                    quote!(#private::orientation_of_uniform(inertia / h, #dimension)?)
-                }
-                false => quote!(#private::orientation_of_inertia(&inertia, h)?),
-            };
+        let count = components.len();
+        if self.has_uniform_inertia() {
+            let count = Literal::usize_unsuffixed(count);
+            return quote!(#private::orientation_of_uniform(inertia / h, #count)?);
+        }
+        let first = components.first().copied().unwrap_or(0);
+        if self.program.form.keeps_matrices() && components.iter().copied().eq(first..first + count) {
+            let (first, part) = (Literal::usize_unsuffixed(first), self.paths.matrix(count, count));
+            return quote!({
+                let part: #part = #private::block(&inertia, #first, #first);
+                #private::orientation_of_inertia(&part, h)?
+            });
         }
         let rows = components.iter().map(|&i| {
             let row = components.iter().map(|&j| {

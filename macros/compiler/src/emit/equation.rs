@@ -1,13 +1,13 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
-use clebsch_symbolic::{Role, Shape};
+use clebsch_symbolic::Shape;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs, matrices};
 use crate::derive::{Equation, Formula, Solution};
-use crate::lower::Solve;
+use crate::lower::{Solve, is_direction};
 
 impl<'g> Emitter<'_, 'g> {
     /// The types of the equations.
@@ -142,7 +142,6 @@ impl<'g> Emitter<'_, 'g> {
         let [vector, matrix] = [0, 1].map(|k| &solve.linearize.outputs[k]);
         let value = code::grid(scope, vector.0, &vector.1, false);
         if self.program.form.keeps_matrices() {
-            let is_direction = |role: Role| matches!(role, Role::Auxiliary(block) if block != usize::MAX);
             let (locals, jacobian) = matrices::matrix_of(scope, &solve.linearize, 1, "delta", is_direction);
             return (locals, value, jacobian);
         }

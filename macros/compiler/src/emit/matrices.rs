@@ -5,7 +5,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::code::{self, Scope, accessor, nested};
-use crate::lower::{Callee, Code, Kernel, Operation, Whole};
+use crate::derive::INERTIA_INVERSE;
+use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
 
 impl Scope<'_, '_> {
     /// An operation on whole matrices.
@@ -23,53 +24,53 @@ impl Scope<'_, '_> {
             quote!(#private::#name(#matrix, #i, #j))
         };
         match operation {
-            Operation::Argument(input) => self.argument(input.role, *shape),
-            Operation::Zero => {
+            MatrixOperation::Argument(input) => self.argument(input.role, *shape),
+            MatrixOperation::Zero => {
                 let (scalar, matrix) = (&self.paths.scalar, self.paths.matrix(shape.rows, shape.columns));
                 quote!(<#matrix as #private::Space<#scalar>>::origin())
             }
-            Operation::Entries => code::grid(self, *shape, operands, false),
-            Operation::Sum(weights) => self.weighted_sum(weights, operands),
-            Operation::Scaled => {
-                let (matrix, number) = (self.by_reference(&operands[0]), self.code(&operands[1], false));
-                quote!(#private::scaled(#matrix, #number))
+            MatrixOperation::Entries => code::grid(self, *shape, operands, false),
+            MatrixOperation::Sum(weights) => self.weighted_sum(weights, operands),
+            MatrixOperation::Scaled => {
+                let (matrix, number) = (self.code(&operands[0], true), self.code(&operands[1], true));
+                quote!(#matrix * #number)
             }
-            Operation::Shifted => {
+            MatrixOperation::Shifted => {
                 let (matrix, number) = (self.by_reference(&operands[0]), self.code(&operands[1], false));
                 quote!(#private::shifted(#matrix, #number))
             }
-            Operation::Product => call("product"),
-            Operation::InertiaTimes => {
+            MatrixOperation::Product => call("product"),
+            MatrixOperation::InertiaTimes => {
                 let (constants, vector) = (&self.constants, self.by_reference(&operands[0]));
                 quote!(#constants.inertia_inverse.times(#vector))
             }
-            Operation::Transpose => {
+            MatrixOperation::Transpose => {
                 let matrix = self.code(&operands[0], true);
                 quote!(#matrix.transpose())
             }
-            Operation::Inverse => call("inverse"),
-            Operation::Analytic(Analytic::Exponential) => call("exponential"),
-            Operation::Analytic(Analytic::Phi) => call("phi"),
-            Operation::Analytic(Analytic::Logarithm) => call("logarithm"),
-            Operation::Value => self.opaque(&Callee::Value(String::new()), operands),
-            Operation::Gradient(leaf) => self.opaque_gradient(*leaf, operands),
-            Operation::Block(i, j) => placed("block", *i, *j),
-            Operation::Embedded(i, j) => placed("embedded", *i, *j),
-            Operation::Hadamard => {
+            MatrixOperation::Inverse => call("inverse"),
+            MatrixOperation::Analytic(Analytic::Exponential) => call("exponential"),
+            MatrixOperation::Analytic(Analytic::Phi) => call("phi"),
+            MatrixOperation::Analytic(Analytic::Logarithm) => call("logarithm"),
+            MatrixOperation::Value => self.opaque(&Callee::Value(String::new()), operands),
+            MatrixOperation::Gradient(leaf) => self.opaque_gradient(*leaf, operands),
+            MatrixOperation::Block(i, j) => placed("block", *i, *j),
+            MatrixOperation::Embedded(i, j) => placed("embedded", *i, *j),
+            MatrixOperation::Hadamard => {
                 let (a, b) = (self.code(&operands[0], true), self.by_reference(&operands[1]));
                 quote!(#a.component_mul(#b))
             }
-            Operation::DiagonalMatrix => call("diagonal_matrix"),
-            Operation::Diagonal => call("diagonal"),
-            Operation::Skew => call("skew"),
-            Operation::SkewComponents => call("skew_components"),
-            Operation::SkewTimes => call("skew_times"),
-            Operation::SkewOuter => call("skew_outer"),
-            Operation::Pairing => call("pairing"),
-            Operation::Trace => call("trace"),
-            Operation::Determinant => call("determinant"),
-            Operation::Largest => call("largest_entry"),
-            Operation::Entry(i, j) => {
+            MatrixOperation::DiagonalMatrix => call("diagonal_matrix"),
+            MatrixOperation::Diagonal => call("diagonal"),
+            MatrixOperation::Skew => call("skew"),
+            MatrixOperation::SkewComponents => call("skew_components"),
+            MatrixOperation::SkewTimes => call("skew_times"),
+            MatrixOperation::SkewOuter => call("skew_outer"),
+            MatrixOperation::Pairing => call("pairing"),
+            MatrixOperation::Trace => call("trace"),
+            MatrixOperation::Determinant => call("determinant"),
+            MatrixOperation::Largest => call("largest_entry"),
+            MatrixOperation::Entry(i, j) => {
                 let matrix = self.code(&operands[0], true);
                 let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
                 quote!(#matrix[(#i, #j)])
@@ -82,11 +83,11 @@ impl Scope<'_, '_> {
         let Code::Whole(whole) = code else { return None };
         let is_open = matches!(
             whole.operation,
-            Operation::Block(..)
-                | Operation::Embedded(..)
-                | Operation::Skew
-                | Operation::SkewComponents
-                | Operation::SkewOuter
+            MatrixOperation::Block(..)
+                | MatrixOperation::Embedded(..)
+                | MatrixOperation::Skew
+                | MatrixOperation::SkewComponents
+                | MatrixOperation::SkewOuter
         );
         let matrix = self.paths.matrix(whole.shape.rows, whole.shape.columns);
         is_open.then(|| quote!(: #matrix))
@@ -96,7 +97,7 @@ impl Scope<'_, '_> {
     fn by_reference(&self, operand: &Code) -> TokenStream {
         match operand {
             Code::Whole(whole) => match &whole.operation {
-                Operation::Argument(input) => self.argument_by_reference(input.role, whole.shape),
+                MatrixOperation::Argument(input) => self.argument_by_reference(input.role, whole.shape),
                 _ => {
                     let value = self.code(operand, false);
                     quote!(&#value)
@@ -177,7 +178,7 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 self.part("x", &self.coordinates, self.model.offset(k), shape)
             }
-            Role::Auxiliary(usize::MAX) => {
+            INERTIA_INVERSE => {
                 let constants = &self.constants;
                 Place::Reference(quote!(#constants.inertia_inverse.matrix()))
             }

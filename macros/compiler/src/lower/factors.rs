@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Rational, Table, Zero, integer, work};
 
-use super::kernel::{Id, Operations, Step};
+use super::kernel::{Id, Operation, Operations};
 
 #[derive(Default)]
 struct Factored {
@@ -52,7 +52,7 @@ impl Factored {
         if self.uses[id] > 1 {
             return;
         }
-        if matches!(operations.value(id), Step::Sum(_, terms) if terms.len() > 1) {
+        if matches!(operations.value(id), Operation::Sum(_, terms) if terms.len() > 1) {
             self.waiting.push(id);
         }
         self.operands(operations, id).into_iter().for_each(|operand| self.take(operations, operand));
@@ -88,7 +88,7 @@ impl Factored {
 
     fn terms(&self, operations: &Operations, sum: Id) -> Option<Vec<(Rational, Id)>> {
         match operations.value(sum) {
-            Step::Sum(_, terms) => Some(self.sums.get(&sum).unwrap_or(terms).clone()),
+            Operation::Sum(_, terms) => Some(self.sums.get(&sum).unwrap_or(terms).clone()),
             _ => None,
         }
     }
@@ -96,7 +96,7 @@ impl Factored {
     fn choose(&self, operations: &Operations, terms: &[(Rational, Id)]) -> Option<Choice> {
         let mut positions: Table<Id, Vec<usize>> = Table::default();
         for (position, (_, term)) in terms.iter().enumerate() {
-            let Step::Product(factors) = operations.value(*term) else { continue };
+            let Operation::Product(factors) = operations.value(*term) else { continue };
             for (i, factor) in factors.iter().enumerate() {
                 // the product without it is looked for
                 work::spend(1 + factors.len() / 2);
@@ -118,11 +118,11 @@ impl Factored {
 
     /// The multiplications that a product of which a factor is taken out needs no more.
     fn saved(&self, operations: &Operations, product: Id, factor: Id) -> isize {
-        let Step::Product(factors) = operations.value(product) else { return 0 };
+        let Operation::Product(factors) = operations.value(product) else { return 0 };
         let rest = without(factors, factor);
         let is_at_hand = match rest.as_slice() {
             [_] => true,
-            _ => operations.position(&Step::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
+            _ => operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
         };
         let before = if self.uses[product] > 1 { 0 } else { factors.len() as isize - 1 };
         let after = if is_at_hand { 0 } else { rest.len() as isize - 1 };
@@ -159,7 +159,7 @@ impl Factored {
             // what is left of them cancels
             [] => return rest.into_iter().map(|(_, term)| term).collect(),
             [(coefficient, only)] if *coefficient == integer(1) => *only,
-            _ => self.made(operations, Step::Sum(integer(0), inner)),
+            _ => self.made(operations, Operation::Sum(integer(0), inner)),
         };
         let (weight, term) = match &choice.factor {
             Factor::Of(factor) => (sign, self.product(operations, *factor, sum)),
@@ -173,19 +173,19 @@ impl Factored {
 
     fn product(&mut self, operations: &mut Operations, factor: Id, other: Id) -> Id {
         let mut factors = match operations.value(other) {
-            Step::Product(factors) => factors.clone(),
+            Operation::Product(factors) => factors.clone(),
             _ => vec![other],
         };
         factors.push(factor);
         factors.sort_unstable();
-        self.made(operations, Step::Product(factors))
+        self.made(operations, Operation::Product(factors))
     }
 
     /// A product without one of its factors.
     fn divided(&mut self, operations: &mut Operations, product: Id, factor: Id) -> Id {
         match without(&operations.value(product).operands(), factor).as_slice() {
             [only] => *only,
-            rest => self.made(operations, Step::Product(rest.to_vec())),
+            rest => self.made(operations, Operation::Product(rest.to_vec())),
         }
     }
 
@@ -193,7 +193,7 @@ impl Factored {
     fn append(&self, operations: &Operations, sum: &mut Vec<(Rational, Id)>, (coefficient, term): (Rational, Id)) {
         let is_unit = coefficient == integer(1) || coefficient == integer(-1);
         match operations.value(term) {
-            Step::Sum(constant, inner) if constant.is_zero() && is_unit && self.uses[term] == 0 => {
+            Operation::Sum(constant, inner) if constant.is_zero() && is_unit && self.uses[term] == 0 => {
                 let inner = self.sums.get(&term).unwrap_or(inner);
                 inner.iter().for_each(|(weight, term)| add(sum, weight * &coefficient, *term));
             }
@@ -201,7 +201,7 @@ impl Factored {
         }
     }
 
-    fn made(&mut self, operations: &mut Operations, operation: Step) -> Id {
+    fn made(&mut self, operations: &mut Operations, operation: Operation) -> Id {
         let (id, _) = operations.intern(operation);
         self.uses.resize(operations.len(), 0);
         id

@@ -59,6 +59,7 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
         (CodeForm::Unrolled, ..) if dimension > MOST_UNKNOWNS => {
             return Err(too_large(
                 formulas,
+                code,
                 format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most that is written out"),
             ));
         }
@@ -66,7 +67,11 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     }
     let largest = largest_system(formulas);
     if code == CodeForm::Matrices && largest > MOST_UNKNOWNS {
-        return Err(too_large(formulas, format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most")));
+        return Err(too_large(
+            formulas,
+            code,
+            format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
+        ));
     }
     Ok(Form { code, estimate, is_asked: asked.is_some() })
 }

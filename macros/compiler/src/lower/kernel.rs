@@ -2,286 +2,13 @@
 
 mod shorten;
 
-use clebsch_symbolic::{Analytic, Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
-use super::{Cost, Input, Node, Rate, Scalar, Scalars};
+use super::{Code, Kernel, Node, Rate, Scalar, Scalars};
 use shorten::delay_of_term;
-
-/// Straight-line code of one output entry or shared term.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Code {
-    /// An entry of an argument.
-    Read(Input),
-    /// π.
-    Pi,
-    /// A number.
-    Number(Rational),
-    /// A value that is computed once per stepper, by its index.
-    Constant(usize),
-    /// A value that is computed once per solve, by its index.
-    Term(usize),
-    /// A shared term of this kernel, by its index.
-    Local(usize),
-    /// constant + Σ coefficient · code.
-    Sum(Rational, Vec<(Rational, Code)>),
-    /// A product.
-    Product(Vec<Code>),
-    /// 1/x.
-    Reciprocal(Box<Code>),
-    /// x^(numerator/denominator).
-    Root(Box<Code>, (i64, i64)),
-    /// 1/(1 + √(1 − t)), which is 1/(1 + cos θ) with t = sin²θ.
-    PerOnePlusCosine(Box<Code>),
-    /// An elementary function.
-    Function(Function, Box<Code>),
-    /// A call of a function of matrices: always a shared term.
-    Call(Callee, Vec<(Shape, Vec<Code>)>),
-    /// An entry of a call, by the index of that term.
-    Output(usize, Callee, Output),
-    /// An operation on whole matrices: a shared term, or an entry of one.
-    Whole(Box<Whole>),
-}
-
-/// An operation on whole matrices, for code that keeps them.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Whole {
-    /// What is done.
-    pub operation: Operation,
-    /// What it is done with.
-    pub operands: Vec<Code>,
-    /// The shape of the result.
-    pub shape: Shape,
-    /// Its scalar operations.
-    pub cost: Cost,
-}
-
-/// What is done with whole matrices.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Operation {
-    /// An argument, by its first entry.
-    Argument(Input),
-    /// The zero matrix.
-    Zero,
-    /// The matrix with these entries, row by row.
-    Entries,
-    /// Σ c_i A_i, by the coefficients.
-    Sum(Vec<Rational>),
-    /// s A, of A and s.
-    Scaled,
-    /// A + s I, of A and s.
-    Shifted,
-    /// Σ⁻¹ v.
-    InertiaTimes,
-    /// A B.
-    Product,
-    /// Aᵀ.
-    Transpose,
-    /// A⁻¹.
-    Inverse,
-    /// A power series of A.
-    Analytic(Analytic),
-    /// The value of an opaque potential.
-    Value,
-    /// A leaf of its gradient, by the number of the argument.
-    Gradient(usize),
-    /// The block from (i, j) on.
-    Block(usize, usize),
-    /// A in a zero matrix from (i, j) on.
-    Embedded(usize, usize),
-    /// The product entry by entry.
-    Hadamard,
-    /// The diagonal matrix of a vector.
-    DiagonalMatrix,
-    /// The diagonal of a matrix.
-    Diagonal,
-    /// Σ x_k E_k in the basis of so(n).
-    Skew,
-    /// ⟨A, E_k⟩ in that basis.
-    SkewComponents,
-    /// Σ x_k E_k v.
-    SkewTimes,
-    /// ⟨abᵀ, E_k⟩.
-    SkewOuter,
-    /// ⟨A, B⟩ = Σ A_ij B_ij.
-    Pairing,
-    /// tr A.
-    Trace,
-    /// det A.
-    Determinant,
-    /// The largest |A_ij|.
-    Largest,
-    /// The entry (i, j).
-    Entry(usize, usize),
-}
-
-/// Straight-line code.
-#[derive(Clone, Debug)]
-pub struct Kernel {
-    /// Shared terms, each in terms of those before it.
-    pub locals: Vec<Code>,
-    /// The outputs, one grid for each value returned.
-    pub outputs: Vec<(Shape, Vec<Code>)>,
-}
-
-impl Kernel {
-    /// The entries of arguments that it reads, as often as they stand in it.
-    pub fn inputs(&self) -> Vec<&Input> {
-        let mut inputs = Vec::new();
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).for_each(|code| code.read(&mut inputs));
-        inputs
-    }
-
-    /// Which of its terms depend on an argument of a role that is wanted.
-    pub fn depends_on(&self, wanted: impl Fn(Role) -> bool) -> Vec<bool> {
-        let mut depends: Vec<bool> = Vec::new();
-        for code in &self.locals {
-            let found = code.any(&mut |part| match part {
-                Code::Local(index) => depends.get(*index).copied().unwrap_or(false),
-                Code::Read(input) => wanted(input.role),
-                Code::Whole(whole) => matches!(&whole.operation, Operation::Argument(input) if wanted(input.role)),
-                _ => false,
-            });
-            depends.push(found);
-        }
-        depends
-    }
-
-    /// The arguments that it takes as a whole, with their shapes.
-    pub(super) fn arguments(&self) -> Vec<(&Input, Shape)> {
-        let mut arguments = Vec::new();
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).for_each(|code| code.take(&mut arguments));
-        arguments
-    }
-}
-
-impl Code {
-    /// A product as a quotient: the factors above and those below, where one of them is a reciprocal that is used here alone.
-    pub(crate) fn quotient(factors: &[Code]) -> Option<(Vec<&Code>, Vec<&Code>)> {
-        let below: Vec<&Code> = factors.iter().filter_map(Code::divisor).collect();
-        let above = factors.iter().filter(|factor| factor.divisor().is_none()).collect();
-        (!below.is_empty()).then_some((above, below))
-    }
-
-    /// 1/x
-    pub(super) fn reciprocal(x: Code) -> Code {
-        match x.sine_squared() {
-            Some(sine_squared) => Code::PerOnePlusCosine(Box::new(sine_squared)),
-            None => Code::Reciprocal(Box::new(x)),
-        }
-    }
-
-    /// The t of 1 + √(1 − t).
-    fn sine_squared(&self) -> Option<Code> {
-        let one = integer(1);
-        let one_and = |code: &Code| {
-            let Code::Sum(constant, terms) = code else { return None };
-            let (constant, terms) = Code::summands(constant, terms);
-            (constant == one).then_some(terms)
-        };
-        let [(coefficient, Code::Root(square, (1, 2)))] = &one_and(self)?[..] else { return None };
-        let mut terms = one_and(square).filter(|_| *coefficient == one)?;
-        terms.iter_mut().for_each(|(coefficient, _)| *coefficient = -coefficient.clone());
-        match &terms[..] {
-            [(coefficient, term)] if *coefficient == one => Some(term.clone()),
-            _ => Some(Code::Sum(integer(0), terms)),
-        }
-    }
-
-    /// The constant and the terms of a sum, of sums within it too.
-    pub(super) fn summands(constant: &Rational, terms: &[(Rational, Code)]) -> (Rational, Vec<(Rational, Code)>) {
-        let (mut total, mut all) = (constant.clone(), Vec::new());
-        for (coefficient, term) in terms {
-            match term {
-                Code::Sum(constant, terms) if *coefficient == integer(1) || *coefficient == integer(-1) => {
-                    let (constant, terms) = Code::summands(constant, terms);
-                    total += constant * coefficient;
-                    all.extend(terms.into_iter().map(|(weight, term)| (weight * coefficient, term)));
-                }
-                _ => all.push((coefficient.clone(), term.clone())),
-            }
-        }
-        (total, all)
-    }
-
-    fn divisor(&self) -> Option<&Code> {
-        match self {
-            Code::Reciprocal(x) => Some(x),
-            _ => None,
-        }
-    }
-
-    fn read<'a>(&'a self, inputs: &mut Vec<&'a Input>) {
-        match self {
-            Code::Read(input) => inputs.push(input),
-            Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.read(inputs)),
-            Code::Product(factors) => factors.iter().for_each(|factor| factor.read(inputs)),
-            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => x.read(inputs),
-            Code::Call(_, arguments) => {
-                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| entry.read(inputs));
-            }
-            Code::Whole(whole) => {
-                if let Operation::Argument(input) = &whole.operation {
-                    inputs.push(input);
-                }
-                whole.operands.iter().for_each(|operand| operand.read(inputs));
-            }
-            Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => {}
-        }
-    }
-
-    fn take<'a>(&'a self, arguments: &mut Vec<(&'a Input, Shape)>) {
-        if let Code::Whole(whole) = self
-            && let Operation::Argument(input) = &whole.operation
-        {
-            arguments.push((input, whole.shape));
-        }
-        self.parts().into_iter().for_each(|part| part.take(arguments));
-    }
-
-    /// The codes that it is made of.
-    pub(super) fn parts(&self) -> Vec<&Code> {
-        match self {
-            Code::Sum(_, terms) => terms.iter().map(|(_, term)| term).collect(),
-            Code::Product(factors) => factors.iter().collect(),
-            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => vec![x],
-            Code::Call(_, arguments) => arguments.iter().flat_map(|(_, entries)| entries).collect(),
-            Code::Whole(whole) => whole.operands.iter().collect(),
-            Code::Read(_) | Code::Pi | Code::Number(_) => Vec::new(),
-            Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => Vec::new(),
-        }
-    }
-
-    /// The same with other codes for its shared terms.
-    pub(super) fn with_locals(&self, other: &impl Fn(usize) -> Code) -> Code {
-        let inner = |code: &Code| code.with_locals(other);
-        match self {
-            Code::Local(index) => other(*index),
-            Code::Sum(constant, terms) => {
-                Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
-            }
-            Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
-            Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
-            Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
-            Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
-            Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
-            Code::Whole(whole) => {
-                let operands = whole.operands.iter().map(inner).collect();
-                Code::Whole(Box::new(Whole { operands, ..(**whole).clone() }))
-            }
-            other => other.clone(),
-        }
-    }
-
-    /// Whether a test holds for it or for one of its parts.
-    pub(super) fn any(&self, test: &mut impl FnMut(&Code) -> bool) -> bool {
-        test(self) || self.parts().into_iter().any(|part| part.any(test))
-    }
-}
 
 /// Values that are computed less often than the kernels that use them.
 #[derive(Clone, Default, Debug)]
@@ -340,11 +67,11 @@ const LONGEST_SUM: usize = 96;
 pub(super) type Id = usize;
 
 /// The operations of a kernel, each of them once.
-pub(super) type Operations = Interner<Step>;
+pub(super) type Operations = Interner<Operation>;
 
-/// A step of a kernel on its own steps.
+/// An operation of a kernel on its own operations.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub(super) enum Step {
+pub(super) enum Operation {
     /// A scalar that is read or has been taken out.
     Leaf(Scalar),
     Sum(Rational, Vec<(Rational, Id)>),
@@ -356,16 +83,18 @@ pub(super) enum Step {
     Output(Id, Callee, Output),
 }
 
-impl Step {
+impl Operation {
     /// The operations that it is made of.
     pub(super) fn operands(&self) -> Vec<Id> {
         match self {
-            Step::Leaf(_) => Vec::new(),
-            Step::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
-            Step::Product(factors) => factors.clone(),
-            Step::Reciprocal(x) | Step::Root(x, _) | Step::Function(_, x) => vec![*x],
-            Step::Call(_, arguments) => arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect(),
-            Step::Output(call, ..) => vec![*call],
+            Operation::Leaf(_) => Vec::new(),
+            Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Operation::Product(factors) => factors.clone(),
+            Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
+            Operation::Call(_, arguments) => {
+                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
+            }
+            Operation::Output(call, ..) => vec![*call],
         }
     }
 }
@@ -406,7 +135,7 @@ impl Builder<'_, '_> {
         !self.is_entry(scalar) && self.slow_rates().contains(&self.scalars.rate(scalar))
     }
 
-    fn intern(&mut self, operation: Step) -> Id {
+    fn intern(&mut self, operation: Operation) -> Id {
         work::spend(2 + operation.operands().len());
         self.operations.intern(operation).0
     }
@@ -418,7 +147,7 @@ impl Builder<'_, '_> {
         }
         let node = self.scalars.node(scalar).clone();
         let id = match node {
-            _ if self.is_hoisted(scalar) || self.is_entry(scalar) => self.intern(Step::Leaf(scalar)),
+            _ if self.is_hoisted(scalar) || self.is_entry(scalar) => self.intern(Operation::Leaf(scalar)),
             Node::Sum(constant, terms) => self.convert_sum(constant, terms),
             Node::Product(factors) => {
                 let (coefficient, product) = self.convert_product(integer(1), &factors);
@@ -426,21 +155,21 @@ impl Builder<'_, '_> {
             }
             Node::Reciprocal(x) => {
                 let x = self.convert(x);
-                self.intern(Step::Reciprocal(x))
+                self.intern(Operation::Reciprocal(x))
             }
             Node::Root(x, exponent) => {
                 let x = self.convert(x);
-                self.intern(Step::Root(x, exponent))
+                self.intern(Operation::Root(x, exponent))
             }
             Node::Function(function, x) => {
                 let x = self.convert(x);
-                self.intern(Step::Function(function, x))
+                self.intern(Operation::Function(function, x))
             }
             Node::Output(call, output) => {
                 let (id, callee) = self.convert_call(call);
-                self.intern(Step::Output(id, callee, output))
+                self.intern(Operation::Output(id, callee, output))
             }
-            Node::Input(_) | Node::Pi => self.intern(Step::Leaf(scalar)),
+            Node::Input(_) | Node::Pi => self.intern(Operation::Leaf(scalar)),
         };
         self.known.insert(scalar, id);
         id
@@ -453,11 +182,11 @@ impl Builder<'_, '_> {
             .into_iter()
             .map(|(shape, entries)| (shape, entries.into_iter().map(|entry| self.convert(entry)).collect()));
         let arguments = arguments.collect();
-        (self.intern(Step::Call(call.callee.clone(), arguments)), call.callee)
+        (self.intern(Operation::Call(call.callee.clone(), arguments)), call.callee)
     }
 
     fn scaled(&mut self, coefficient: Rational, id: Id) -> Id {
-        if coefficient == integer(1) { id } else { self.intern(Step::Sum(integer(0), vec![(coefficient, id)])) }
+        if coefficient == integer(1) { id } else { self.intern(Operation::Sum(integer(0), vec![(coefficient, id)])) }
     }
 
     fn convert_sum(&mut self, mut constant: Rational, mut terms: Vec<(Scalar, Rational)>) -> Id {
@@ -487,12 +216,12 @@ impl Builder<'_, '_> {
         }
         while parts.len() > LONGEST_SUM {
             let tail = parts.split_off(parts.len() - LONGEST_SUM);
-            let tail = self.intern(Step::Sum(integer(0), tail));
+            let tail = self.intern(Operation::Sum(integer(0), tail));
             parts.push((integer(1), tail));
         }
         match parts.as_slice() {
             [(coefficient, only)] if constant == integer(0) && *coefficient == integer(1) => *only,
-            _ => self.intern(Step::Sum(constant, parts)),
+            _ => self.intern(Operation::Sum(constant, parts)),
         }
     }
 
@@ -567,7 +296,7 @@ impl Builder<'_, '_> {
         parts.sort_unstable();
         match parts.as_slice() {
             [only] => (coefficient, *only),
-            _ => (coefficient, self.intern(Step::Product(parts))),
+            _ => (coefficient, self.intern(Operation::Product(parts))),
         }
     }
 
@@ -575,12 +304,12 @@ impl Builder<'_, '_> {
     fn share_pairs(&mut self, outputs: &[(Shape, Vec<Id>)]) {
         let used = self.used(outputs);
         let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
-            Step::Product(factors) => Some((id, factors.clone())),
+            Operation::Product(factors) => Some((id, factors.clone())),
             _ => None,
         });
         self.products = Pairs::new(products);
         while let Some((a, b)) = self.products.most_common() {
-            let (product, _) = self.operations.intern(Step::Product(vec![a, b]));
+            let (product, _) = self.operations.intern(Operation::Product(vec![a, b]));
             if self.products.get(product).is_none() {
                 self.products.insert(product, vec![a, b]);
             }
@@ -607,8 +336,8 @@ impl Builder<'_, '_> {
 
     fn operands(&self, id: Id) -> Vec<Id> {
         match self.operations.value(id) {
-            Step::Sum(_, terms) => self.terms(id, terms).iter().map(|(_, term)| *term).collect(),
-            Step::Product(factors) => self.products.get(id).unwrap_or(factors).to_vec(),
+            Operation::Sum(_, terms) => self.terms(id, terms).iter().map(|(_, term)| *term).collect(),
+            Operation::Product(factors) => self.products.get(id).unwrap_or(factors).to_vec(),
             operation => operation.operands(),
         }
     }
@@ -633,7 +362,8 @@ impl Builder<'_, '_> {
             sizes[id] = 1 + inner().map(|&operand| sizes[operand]).sum::<usize>();
             depths[id] = 1 + inner().map(|&operand| depths[operand]).max().unwrap_or(0);
             let long = sizes[id] > LONGEST_EXPRESSION || depths[id] > DEEPEST_EXPRESSION;
-            if matches!(self.operations.value(id), Step::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id) {
+            if matches!(self.operations.value(id), Operation::Call(..)) || (uses[id] > 1 || long) && self.is_shared(id)
+            {
                 let code = self.operation(id, &names);
                 locals.push(code);
                 names.insert(id, locals.len() - 1);
@@ -664,8 +394,8 @@ impl Builder<'_, '_> {
     /// Whether a value is worth a name of its own when it is used more than once: a read or a change of sign is not.
     fn is_shared(&self, id: Id) -> bool {
         match self.operations.value(id) {
-            Step::Leaf(_) | Step::Output(..) => false,
-            Step::Sum(constant, terms) => {
+            Operation::Leaf(_) | Operation::Output(..) => false,
+            Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);
                 !(terms.is_empty()
                     || constant.is_zero() && terms.len() == 1 && [integer(1), integer(-1)].contains(&terms[0].0))
@@ -683,8 +413,8 @@ impl Builder<'_, '_> {
 
     fn operation(&mut self, id: Id, names: &Table<Id, usize>) -> Code {
         match self.operations.value(id).clone() {
-            Step::Leaf(scalar) => self.leaf(scalar),
-            Step::Sum(constant, terms) => {
+            Operation::Leaf(scalar) => self.leaf(scalar),
+            Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, &terms).to_vec();
                 if terms.is_empty() {
                     return Code::Number(constant);
@@ -700,21 +430,23 @@ impl Builder<'_, '_> {
                     false => balance::balanced(constant, terms.into_iter().zip(delays)),
                 }
             }
-            Step::Product(_) => {
+            Operation::Product(_) => {
                 let factors = self.operands(id);
                 Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
             }
-            Step::Reciprocal(x) => Code::reciprocal(self.reference(x, names)),
-            Step::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
-            Step::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
-            Step::Call(callee, arguments) => {
+            Operation::Reciprocal(x) => Code::reciprocal(self.reference(x, names)),
+            Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
+            Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
+            Operation::Call(callee, arguments) => {
                 let argument = |(shape, entries): (Shape, Vec<Id>)| {
                     (shape, entries.into_iter().map(|entry| self.reference(entry, names)).collect())
                 };
                 Code::Call(callee, arguments.into_iter().map(argument).collect())
             }
             // by construction: calls are always shared terms, and come before their entries
-            Step::Output(call, callee, output) => Code::Output(names.get(&call).copied().unwrap_or(0), callee, output),
+            Operation::Output(call, callee, output) => {
+                Code::Output(names.get(&call).copied().unwrap_or(0), callee, output)
+            }
         }
     }
 

@@ -4,12 +4,18 @@
 //! decides: the order in which products are made, letters that sums of products have in common, and products that never need
 //! their matrix, such as Zv and ⟨abᵀ, E⟩ for rotations.
 
+mod hoisting;
+mod words;
+
 use clebsch_symbolic::{
-    Algebra, Expr, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
+    Algebra, Expr, Graph, Group, One, Rational, Shape, Symbol, Table, View, WordTerm, integer, work,
 };
 
-use super::kernel::{Operation, Whole};
-use super::{Code, Cost, Input, Kernel};
+use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
+use crate::derive::INERTIA_INVERSE;
+pub(super) use hoisting::hoisted;
+pub(crate) use hoisting::is_direction;
+use words::{Weighted, cheapest_cut, common_letter};
 
 /// One output for each expression.
 pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
@@ -37,83 +43,11 @@ pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
         let value = lowering.value(expr);
         match expr.shape().is_scalar() {
             true => value,
-            false => lowering.operation(Operation::Largest, vec![value], Shape::scalar(), Cost::default()),
+            false => lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar(), Cost::default()),
         }
     };
     let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
     Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] }
-}
-
-/// A kernel of an iteration, and the one that makes what does not change during it: terms that do not depend on the coordinates or on a
-/// direction of them.
-pub(super) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
-    let depends = kernel.depends_on(|role| match role {
-        Role::Chart(_) => true,
-        Role::Auxiliary(index) => index != usize::MAX,
-        _ => false,
-    });
-    let uses = |code: &Code| {
-        let mut used = Vec::new();
-        code.any(&mut |part| {
-            used.extend(local(part));
-            false
-        });
-        used
-    };
-    let outputs = kernel.outputs.iter().flat_map(|(_, entries)| entries);
-    let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
-    let mut terms: Vec<usize> = moving.chain(outputs).flat_map(uses).filter(|&index| !depends[index]).collect();
-    terms.sort_unstable();
-    terms.dedup();
-    // each kind of local has its own numbers
-    let mut counts = [0, 0];
-    let numbers: Vec<usize> = depends
-        .iter()
-        .map(|&depends| {
-            let count = &mut counts[usize::from(depends)];
-            *count += 1;
-            *count - 1
-        })
-        .collect();
-    let renamed = |within: bool| {
-        let (depends, terms, numbers) = (&depends, &terms, &numbers);
-        move |index: usize| match terms.iter().position(|&term| term == index) {
-            Some(term) if within && !depends[index] => Code::Term(term),
-            _ => Code::Local(numbers[index]),
-        }
-    };
-    let (before, after) = (renamed(false), renamed(true));
-    let mut prepare = Kernel { locals: Vec::new(), outputs: Vec::new() };
-    let mut rest = Kernel { locals: Vec::new(), outputs: Vec::new() };
-    for (code, depends) in kernel.locals.iter().zip(&depends) {
-        match depends {
-            true => rest.locals.push(code.with_locals(&after)),
-            false => prepare.locals.push(code.with_locals(&before)),
-        }
-    }
-    prepare.outputs = terms.iter().map(|&index| (shape(&kernel.locals[index]), vec![before(index)])).collect();
-    rest.outputs = kernel
-        .outputs
-        .iter()
-        .map(|(shape, entries)| (*shape, entries.iter().map(|entry| entry.with_locals(&after)).collect()))
-        .collect();
-    (prepare, rest)
-}
-
-/// The index of a shared term.
-fn local(code: &Code) -> Option<usize> {
-    match code {
-        Code::Local(index) => Some(*index),
-        _ => None,
-    }
-}
-
-/// The shape of a shared term.
-fn shape(code: &Code) -> Shape {
-    match code {
-        Code::Whole(whole) => whole.shape,
-        _ => Shape::scalar(),
-    }
 }
 
 /// Vectors, one after the other.
@@ -129,14 +63,6 @@ pub(super) fn stacked<'g>(expressions: &[Expr<'g>]) -> Option<Expr<'g>> {
         row += part.shape().rows;
         sum + placed
     }))
-}
-
-/// A term: its coefficient, its scalar factors and its word.
-struct Weighted<'g> {
-    coefficient: Rational,
-    /// The product of the scalar factors; `None` if there are none.
-    scale: Option<Code>,
-    word: Vec<Expr<'g>>,
 }
 
 /// What is lowered of one kernel.
@@ -163,7 +89,7 @@ impl Matrices {
         work::spend(2 + self.locals.len() / 16);
         let is_read = match &code {
             Code::Read(_) | Code::Number(_) | Code::Pi | Code::Local(_) => true,
-            Code::Whole(whole) => matches!(whole.operation, Operation::Argument(_)),
+            Code::Whole(whole) => matches!(whole.operation, MatrixOperation::Argument(_)),
             _ => false,
         };
         if is_read {
@@ -176,7 +102,7 @@ impl Matrices {
         Code::Local(index)
     }
 
-    fn operation(&mut self, operation: Operation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
+    fn operation(&mut self, operation: MatrixOperation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
         self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
     }
 
@@ -201,51 +127,52 @@ impl Matrices {
             View::Inverse(a) => {
                 let (n, a) = (shape.rows, self.value(a));
                 let cost = Cost { additions: n * n * n, multiplications: n * n * n, divisions: n, ..Cost::default() };
-                self.operation(Operation::Inverse, vec![a], shape, cost)
+                self.operation(MatrixOperation::Inverse, vec![a], shape, cost)
             }
             View::Analytic(function, a) => {
                 let (n, a) = (shape.rows, self.value(a));
                 // squarings and a rational approximation
                 let cost = product_cost(n, n, n).times(12);
-                self.operation(Operation::Analytic(function), vec![a], shape, Cost { calls: 1, ..cost })
+                self.operation(MatrixOperation::Analytic(function), vec![a], shape, Cost { calls: 1, ..cost })
             }
             View::Opaque(_, output, arguments) => {
                 let arguments: Vec<Code> = arguments.into_iter().map(|argument| self.value(argument)).collect();
-                let operation = if output == 0 { Operation::Value } else { Operation::Gradient(output - 1) };
+                let operation =
+                    if output == 0 { MatrixOperation::Value } else { MatrixOperation::Gradient(output - 1) };
                 self.operation(operation, arguments, shape, Cost { calls: 1, ..Cost::default() })
             }
             View::Determinant(a) => {
                 let (n, a) = (a.shape().rows, self.value(a));
                 let third = n * n * n / 3;
                 let cost = Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() };
-                self.operation(Operation::Determinant, vec![a], shape, cost)
+                self.operation(MatrixOperation::Determinant, vec![a], shape, cost)
             }
             View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
             View::Block(a, row, column) => self.block(a, row, column, shape),
             View::Embed(a, row, column) => {
                 let a = self.value(a);
-                self.operation(Operation::Embedded(row, column), vec![a], shape, Cost::default())
+                self.operation(MatrixOperation::Embedded(row, column), vec![a], shape, Cost::default())
             }
             View::Hadamard(a, b) => {
                 let operands = vec![self.value(a), self.value(b)];
                 let cost = Cost { multiplications: shape.len(), ..Cost::default() };
                 match shape.is_scalar() {
                     true => Code::Product(operands),
-                    false => self.operation(Operation::Hadamard, operands, shape, cost),
+                    false => self.operation(MatrixOperation::Hadamard, operands, shape, cost),
                 }
             }
             View::DiagonalMatrix(a) => {
                 let a = self.value(a);
-                self.operation(Operation::DiagonalMatrix, vec![a], shape, Cost::default())
+                self.operation(MatrixOperation::DiagonalMatrix, vec![a], shape, Cost::default())
             }
             View::Diagonal(a) => {
                 let a = self.value(a);
-                self.operation(Operation::Diagonal, vec![a], shape, Cost::default())
+                self.operation(MatrixOperation::Diagonal, vec![a], shape, Cost::default())
             }
             View::Wedge(algebra, x) => {
                 let x = self.value(x);
                 match is_rotations(graph, algebra) {
-                    true => self.operation(Operation::Skew, vec![x], shape, Cost::default()),
+                    true => self.operation(MatrixOperation::Skew, vec![x], shape, Cost::default()),
                     false => self.wedge(graph, algebra, &x),
                 }
             }
@@ -260,22 +187,11 @@ impl Matrices {
     }
 
     fn entries(&mut self, shape: Shape, entries: Vec<Code>) -> Code {
-        self.operation(Operation::Entries, entries, shape, Cost::default())
-    }
-
-    /// Entry (i, j) of a matrix.
-    fn entry(&mut self, a: &Code, i: usize, j: usize) -> Code {
-        let whole = Whole {
-            operation: Operation::Entry(i, j),
-            operands: vec![a.clone()],
-            shape: Shape::scalar(),
-            cost: Cost::default(),
-        };
-        Code::Whole(Box::new(whole))
+        self.operation(MatrixOperation::Entries, entries, shape, Cost::default())
     }
 
     fn transposed(&mut self, a: Code, shape: Shape) -> Code {
-        self.operation(Operation::Transpose, vec![a], shape, Cost::default())
+        self.operation(MatrixOperation::Transpose, vec![a], shape, Cost::default())
     }
 
     fn block(&mut self, a: Expr<'_>, row: usize, column: usize, shape: Shape) -> Code {
@@ -287,8 +203,8 @@ impl Matrices {
         }
         let value = self.value(a);
         match shape.is_scalar() {
-            true => self.entry(&value, row, column),
-            false => self.operation(Operation::Block(row, column), vec![value], shape, Cost::default()),
+            true => entry(&value, row, column),
+            false => self.operation(MatrixOperation::Block(row, column), vec![value], shape, Cost::default()),
         }
     }
 
@@ -298,7 +214,7 @@ impl Matrices {
         let mut entries = vec![Vec::new(); shape.len()];
         for (k, element) in basis.elements.iter().enumerate() {
             for (i, j, value) in element {
-                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(x, k, 0) };
+                let x = if algebra.dimension() == 1 { x.clone() } else { entry(x, k, 0) };
                 entries[i * shape.columns + j].push((value.clone(), x));
             }
         }
@@ -310,11 +226,11 @@ impl Matrices {
         let shape = Shape::vector(algebra.dimension());
         if is_rotations(graph, algebra) {
             let cost = Cost { additions: shape.rows, ..Cost::default() };
-            return self.operation(Operation::SkewComponents, vec![a], shape, cost);
+            return self.operation(MatrixOperation::SkewComponents, vec![a], shape, cost);
         }
         let basis = graph.basis(algebra);
         let component = |element: &clebsch_symbolic::Sparse| {
-            let terms = element.iter().map(|(i, j, value)| (value.clone(), self.entry(&a, *i, *j))).collect();
+            let terms = element.iter().map(|(i, j, value)| (value.clone(), entry(&a, *i, *j))).collect();
             linear(integer(0), terms)
         };
         let components: Vec<Code> = basis.elements.iter().map(component).collect();
@@ -326,19 +242,12 @@ impl Matrices {
 
     /// ⟨abᵀ, E⟩ of rotations, without the matrix.
     fn outer(&mut self, graph: &Graph, algebra: Algebra, a: Expr<'_>) -> Option<Code> {
-        let terms = a.word_terms();
-        let [term] = terms.as_slice() else { return None };
-        let cut = term.word.iter().position(|letter| letter.shape().rows == 1)?;
-        let plain = term.coefficient.is_one() && term.scalars.is_empty() && cut > 0;
-        if !plain || !is_rotations(graph, algebra) {
-            return None;
-        }
-        let column = self.product(&term.word[..cut]);
-        let row = term.word[cut..].iter().rev().map(|letter| letter.transpose()).collect::<Vec<_>>();
-        let row = self.product(&row);
+        let (word, cut) = outer_product(graph, algebra, a)?;
+        let row: Vec<Expr<'_>> = word[cut..].iter().rev().map(|letter| letter.transpose()).collect();
+        let operands = vec![self.product(&word[..cut]), self.product(&row)];
         let m = algebra.dimension();
         let cost = Cost { additions: m, multiplications: 2 * m, ..Cost::default() };
-        Some(self.operation(Operation::SkewOuter, vec![column, row], Shape::vector(m), cost))
+        Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(m), cost))
     }
 
     fn scalar_sum(&mut self, terms: Vec<WordTerm<'_>>) -> Code {
@@ -362,7 +271,7 @@ impl Matrices {
             let base = self.value(*base);
             let root = match denominator {
                 1 => base,
-                _ => Code::Root(Box::new(base), (if *numerator < 0 { -1 } else { 1 } * numerator, *denominator)),
+                _ => Code::Root(Box::new(base), (numerator.abs(), *denominator)),
             };
             let count = if *denominator == 1 { numerator.unsigned_abs() as usize } else { 1 };
             let root = if count > 1 { self.shared(root) } else { root };
@@ -381,12 +290,12 @@ impl Matrices {
         match word {
             [only] => self.value(*only),
             [first, rest @ ..] => {
-                let (a, b) = (self.product(&[first.transpose()]), self.product(rest));
+                let (a, b) = (self.value(first.transpose()), self.product(rest));
                 let n = first.shape().columns;
                 let cost = Cost { additions: n, multiplications: n, ..Cost::default() };
                 match n {
                     1 => Code::Product(vec![a, b]),
-                    _ => self.operation(Operation::Pairing, vec![a, b], Shape::scalar(), cost),
+                    _ => self.operation(MatrixOperation::Pairing, vec![a, b], Shape::scalar(), cost),
                 }
             }
             [] => Code::Number(integer(1)),
@@ -399,13 +308,18 @@ impl Matrices {
         match word {
             [only] => {
                 let only = self.value(*only);
-                self.operation(Operation::Trace, vec![only], Shape::scalar(), Cost { additions: n, ..Cost::default() })
+                self.operation(
+                    MatrixOperation::Trace,
+                    vec![only],
+                    Shape::scalar(),
+                    Cost { additions: n, ..Cost::default() },
+                )
             }
             [first, rest @ ..] => {
                 let (a, b) = (self.value(first.transpose()), self.product(rest));
                 let entries = first.shape().len();
                 let cost = Cost { additions: entries, multiplications: entries, ..Cost::default() };
-                self.operation(Operation::Pairing, vec![a, b], Shape::scalar(), cost)
+                self.operation(MatrixOperation::Pairing, vec![a, b], Shape::scalar(), cost)
             }
             [] => Code::Number(integer(0)),
         }
@@ -426,14 +340,14 @@ impl Matrices {
         {
             let operands = vec![self.value(x), self.product(right)];
             let cost = Cost { additions: inner * inner, multiplications: inner * (inner - 1), ..Cost::default() };
-            return self.operation(Operation::SkewTimes, operands, shape, cost);
+            return self.operation(MatrixOperation::SkewTimes, operands, shape, cost);
         }
         if let ([letter], 1) = (left, shape.columns)
-            && letter.as_symbol().is_some_and(|symbol| symbol.role == Role::Auxiliary(usize::MAX))
+            && letter.as_symbol().is_some_and(|symbol| symbol.role == INERTIA_INVERSE)
         {
             let vector = self.product(right);
             let cost = product_cost(inner, inner, 1);
-            return self.operation(Operation::InertiaTimes, vec![vector], shape, cost);
+            return self.operation(MatrixOperation::InertiaTimes, vec![vector], shape, cost);
         }
         if let ([letter], 1) = (left, shape.columns)
             && let View::Literal(numbers) = letter.view()
@@ -442,7 +356,7 @@ impl Matrices {
             return self.combinations(&numbers, &vector, shape);
         }
         let operands = vec![self.product(left), self.product(right)];
-        self.operation(Operation::Product, operands, shape, product_cost(shape.rows, inner, shape.columns))
+        self.operation(MatrixOperation::Product, operands, shape, product_cost(shape.rows, inner, shape.columns))
     }
 
     /// A matrix of numbers times a vector, without its zeros.
@@ -450,7 +364,7 @@ impl Matrices {
         let columns = numbers.len() / shape.rows;
         let row = |row: &[Rational]| {
             let terms = row.iter().enumerate().filter(|(_, number)| **number != integer(0));
-            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), self.entry(vector, j, 0))).collect();
+            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), entry(vector, j, 0))).collect();
             linear(integer(0), terms)
         };
         let entries: Vec<Code> = numbers.chunks(columns).map(row).collect();
@@ -464,7 +378,7 @@ impl Matrices {
         for term in terms {
             match term.word.as_slice() {
                 [letter] => match letter.view() {
-                    View::Components(algebra, inner) if !self.is_outer(graph, algebra, inner) => {
+                    View::Components(algebra, inner) if outer_product(graph, algebra, inner).is_none() => {
                         under.entry(algebra).extend(term.over(inner));
                     }
                     _ => rest.push(term),
@@ -484,12 +398,6 @@ impl Matrices {
             parts.extend(self.summands(shape, rest));
         }
         self.total(shape, parts)
-    }
-
-    fn is_outer(&self, graph: &Graph, algebra: Algebra, inner: Expr<'_>) -> bool {
-        let terms = inner.word_terms();
-        is_rotations(graph, algebra)
-            && matches!(terms.as_slice(), [term] if term.word.iter().skip(1).any(|letter| letter.shape().rows == 1))
     }
 
     fn weighted<'g>(&mut self, term: &WordTerm<'g>) -> Weighted<'g> {
@@ -527,7 +435,7 @@ impl Matrices {
             let operands = if first { vec![value, sum] } else { vec![sum, value] };
             let inner = if first { parts_of.rows } else { parts_of.columns };
             let cost = product_cost(shape.rows, inner, shape.columns);
-            parts.push((integer(1), self.operation(Operation::Product, operands, shape, cost)));
+            parts.push((integer(1), self.operation(MatrixOperation::Product, operands, shape, cost)));
         }
         let (mut identity, mut scales) = (integer(0), Vec::new());
         for term in terms {
@@ -541,7 +449,10 @@ impl Matrices {
                     let cost = Cost { multiplications: shape.len(), ..Cost::default() };
                     let weight = linear(integer(0), vec![(coefficient, scale)]);
                     let weight = self.shared(weight);
-                    parts.push((integer(1), self.operation(Operation::Scaled, vec![product, weight], shape, cost)));
+                    parts.push((
+                        integer(1),
+                        self.operation(MatrixOperation::Scaled, vec![product, weight], shape, cost),
+                    ));
                 }
             }
         }
@@ -549,7 +460,7 @@ impl Matrices {
             let multiple = self.shared(linear(identity, scales));
             let sum = self.total(shape, parts);
             let cost = Cost { additions: shape.rows, ..Cost::default() };
-            parts = vec![(integer(1), self.operation(Operation::Shifted, vec![sum, multiple], shape, cost))];
+            parts = vec![(integer(1), self.operation(MatrixOperation::Shifted, vec![sum, multiple], shape, cost))];
         }
         parts
     }
@@ -557,7 +468,7 @@ impl Matrices {
     fn total(&mut self, shape: Shape, parts: Vec<(Rational, Code)>) -> Code {
         match parts.as_slice() {
             [(weight, only)] if weight.is_one() => return only.clone(),
-            [] => return self.operation(Operation::Zero, Vec::new(), shape, Cost::default()),
+            [] => return self.operation(MatrixOperation::Zero, Vec::new(), shape, Cost::default()),
             _ => {}
         }
         let multiplications =
@@ -568,78 +479,28 @@ impl Matrices {
             ..Cost::default()
         };
         let (weights, operands) = parts.into_iter().unzip();
-        self.operation(Operation::Sum(weights), operands, shape, cost)
+        self.operation(MatrixOperation::Sum(weights), operands, shape, cost)
     }
-}
-
-impl<'g> Weighted<'g> {
-    /// The first or the last letter of a word of several.
-    fn outermost(&self, first: bool) -> Option<Expr<'g>> {
-        if first { self.word.first().copied() } else { self.word.last().copied() }
-    }
-
-    /// The term without that letter.
-    fn without(mut self, first: bool) -> Weighted<'g> {
-        if first {
-            self.word.remove(0);
-        } else {
-            self.word.pop();
-        }
-        self
-    }
-}
-
-/// A letter that at least two words begin with (`true`) or end with, one of which has others beside it: the most frequent.
-///
-/// Vectors keep the side of the vector, so that it is multiplied first.
-fn common_letter<'g>(shape: Shape, terms: &[Weighted<'g>]) -> Option<(Expr<'g>, bool)> {
-    let mut best: Option<(usize, Expr<'g>, bool)> = None;
-    for first in [false, true] {
-        // a common vector would make a matrix of what is left
-        if (!first && shape.columns == 1) || (first && shape.rows == 1) {
-            continue;
-        }
-        let mut counts: Table<Expr<'g>, (usize, bool)> = Table::default();
-        for term in terms {
-            let Some(letter) = term.outermost(first) else { continue };
-            let inner = if first { letter.shape().columns } else { letter.shape().rows };
-            if inner == 1 {
-                continue;
-            }
-            let count = counts.entry(letter);
-            *count = (count.0 + 1, count.1 || term.word.len() > 1);
-        }
-        for (letter, (count, is_product)) in counts.iter() {
-            if *count > 1 && *is_product && best.as_ref().is_none_or(|(most, ..)| count > most) {
-                best = Some((*count, *letter, first));
-            }
-        }
-    }
-    best.map(|(_, letter, first)| (letter, first))
-}
-
-/// Where a word is cut in two so that its product takes the fewest multiplications (matrix chain order).
-fn cheapest_cut(word: &[Expr<'_>]) -> usize {
-    let sizes: Vec<usize> =
-        word.iter().map(|letter| letter.shape().rows).chain(word.last().map(|letter| letter.shape().columns)).collect();
-    let n = word.len();
-    let mut best = vec![vec![(0_usize, 0_usize); n]; n];
-    for length in 2..=n {
-        for start in 0..=n - length {
-            let end = start + length - 1;
-            let cost =
-                |cut: usize| best[start][cut].0 + best[cut + 1][end].0 + sizes[start] * sizes[cut + 1] * sizes[end + 1];
-            // by construction: there is a cut
-            best[start][end] = (start..end).map(|cut| (cost(cut), cut)).min().unwrap_or((0, start));
-        }
-    }
-    best[0][n - 1].1 + 1
 }
 
 /// Whether a basis is that of so(n) that the runtime has functions for.
 fn is_rotations(graph: &Graph, algebra: Algebra) -> bool {
     let shape = algebra.matrix_shape();
     algebra.is_skew() && shape.rows > 3 && algebra == graph.algebra_of(Group::SpecialOrthogonal(shape.rows))
+}
+
+/// The word of a column times a row, and where the row begins, where ⟨·, E⟩ of it is taken for rotations.
+fn outer_product<'g>(graph: &Graph, algebra: Algebra, a: Expr<'g>) -> Option<(Vec<Expr<'g>>, usize)> {
+    let mut terms = a.word_terms();
+    let term = terms.pop().filter(|term| terms.is_empty() && term.coefficient.is_one() && term.scalars.is_empty())?;
+    let cut = term.word.iter().position(|letter| letter.shape().rows == 1)?;
+    (cut > 0 && is_rotations(graph, algebra)).then_some((term.word, cut))
+}
+
+/// Entry (i, j) of a matrix.
+fn entry(a: &Code, i: usize, j: usize) -> Code {
+    let (operation, operands) = (MatrixOperation::Entry(i, j), vec![a.clone()]);
+    Code::Whole(Box::new(Whole { operation, operands, shape: Shape::scalar(), cost: Cost::default() }))
 }
 
 fn product_cost(rows: usize, inner: usize, columns: usize) -> Cost {
@@ -661,7 +522,7 @@ fn argument(symbol: &Symbol) -> Code {
     match symbol.shape.is_scalar() {
         true => Code::Read(input),
         false => Code::Whole(Box::new(Whole {
-            operation: Operation::Argument(input),
+            operation: MatrixOperation::Argument(input),
             operands: Vec::new(),
             shape: symbol.shape,
             cost: Cost::default(),

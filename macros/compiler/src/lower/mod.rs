@@ -4,6 +4,7 @@
 //! constants), once per solve (the terms), or where it is used.
 
 mod balance;
+mod code;
 mod control;
 mod cost;
 mod displacement;
@@ -25,13 +26,15 @@ use clebsch_symbolic::{Expr, Property, Shape, identity};
 
 use crate::derive::{Formulas, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Factor, Isotropy, Space};
+use crate::model::{CodeForm, Factor, Isotropy, Space};
 
+pub use code::{Code, Kernel, MatrixOperation, Whole};
 pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
 pub use form::{Form, LARGEST_UNROLLED};
 pub use grid::{Grid, Lowering};
-pub use kernel::{Code, Hoisted, Hoisting, Kernel, Operation, Whole};
+pub use kernel::{Hoisted, Hoisting};
+pub(crate) use matrices::is_direction;
 pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
 pub use stepping::{CollocationKernels, Solve, SplittingKernels, StepKernels};
 pub use variation::{EdgeKernels, VariationKernels};
@@ -188,6 +191,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         if operations > most {
             return Err(too_large(
                 &program.formulas,
+                program.form.code,
                 format!("{operations} scalar operations{of} when it is written out, {most} is the most"),
             ));
         }
@@ -204,8 +208,8 @@ fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     formulas.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&moved)).collect()
 }
 
-/// The error for a system that has no form of code, with what is too large of it.
-fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
+/// The error for a system whose code would be too large in a form, with what is too large of it.
+fn too_large(formulas: &Formulas<'_>, code: CodeForm, size: String) -> Diagnostics {
     let groups: Vec<String> =
         formulas.model.factors.iter().map(|factor| factor.group.name(formulas.model.graph)).collect();
     let error = Diagnostic::new(
@@ -215,9 +219,12 @@ fn too_large(formulas: &Formulas<'_>, size: String) -> Diagnostics {
     .help(
         "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
     );
-    match form::without_matrices(formulas) {
-        Some(what) => error.note(format!("{what} has no code with whole matrices yet, which grows less with the size")),
-        None => error,
+    match (code, form::without_matrices(formulas)) {
+        (CodeForm::Matrices, _) => error,
+        (CodeForm::Unrolled, None) => error.help("or write `code = matrices`, whose code grows less with the size"),
+        (CodeForm::Unrolled, Some(what)) => {
+            error.note(format!("{what} has no code with whole matrices yet, which grows less with the size"))
+        }
     }
     .into()
 }

@@ -6,7 +6,7 @@ use clebsch_symbolic::{Analytic, integer};
 
 use crate::derive::Solution;
 
-use super::{Callee, Code, Cost, Input, Kernel, Operation, Program, VariationKernels, Whole};
+use super::{Callee, Code, Cost, Input, Kernel, MatrixOperation, Program, VariationKernels, Whole};
 
 impl Cost {
     /// The sum of two costs.
@@ -278,24 +278,24 @@ impl Program<'_> {
     fn whole(&self, whole: &Whole, place: usize) -> String {
         let operands: Vec<String> = whole.operands.iter().map(|operand| self.text(operand, 1)).collect();
         let (text, is_sum) = match &whole.operation {
-            Operation::Argument(input) => (input.name.clone(), false),
-            Operation::Entries => (format!("[{}]", operands.join(", ")), false),
-            Operation::Sum(weights) => {
+            MatrixOperation::Argument(input) => (input.name.clone(), false),
+            MatrixOperation::Entries => (format!("[{}]", operands.join(", ")), false),
+            MatrixOperation::Sum(weights) => {
                 let weighted = |(weight, operand): (&clebsch_symbolic::Rational, &String)| match weight {
                     one if *one == integer(1) => operand.clone(),
                     _ => format!("{weight}*{operand}"),
                 };
                 (weights.iter().zip(&operands).map(weighted).collect::<Vec<_>>().join(" + "), true)
             }
-            Operation::Scaled | Operation::Product => (operands.join("*"), false),
-            Operation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
-            Operation::Transpose => (format!("{}ᵀ", operands[0]), false),
-            Operation::Skew => (format!("{}^", operands[0]), false),
-            Operation::SkewTimes => (format!("{}^*{}", operands[0], operands[1]), false),
-            Operation::SkewComponents => (format!("⟨{}, E⟩", operands[0]), false),
-            Operation::SkewOuter => (format!("⟨{}*{}ᵀ, E⟩", operands[0], operands[1]), false),
-            Operation::Pairing => (format!("⟨{}, {}⟩", operands[0], operands[1]), false),
-            Operation::Entry(i, j) => (format!("{}[{i},{j}]", operands[0]), false),
+            MatrixOperation::Scaled | MatrixOperation::Product => (operands.join("*"), false),
+            MatrixOperation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
+            MatrixOperation::Transpose => (format!("{}ᵀ", operands[0]), false),
+            MatrixOperation::Skew => (format!("{}^", operands[0]), false),
+            MatrixOperation::SkewTimes => (format!("{}^*{}", operands[0], operands[1]), false),
+            MatrixOperation::SkewComponents => (format!("⟨{}, E⟩", operands[0]), false),
+            MatrixOperation::SkewOuter => (format!("⟨{}*{}ᵀ, E⟩", operands[0], operands[1]), false),
+            MatrixOperation::Pairing => (format!("⟨{}, {}⟩", operands[0], operands[1]), false),
+            MatrixOperation::Entry(i, j) => (format!("{}[{i},{j}]", operands[0]), false),
             other => (format!("{other:?}({})", operands.join(", ")).to_lowercase(), false),
         };
         if is_sum && place > 0 { format!("({text})") } else { text }

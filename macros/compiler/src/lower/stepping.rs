@@ -432,13 +432,18 @@ fn whole_predictor<'g>(
         return None;
     }
     let (symbols, h) = (&formulas.symbols, formulas.model.step_size);
+    let all = matrices::stacked(&symbols.momenta)?;
+    let (first, count) = (*equation.components.first()?, equation.components.len());
+    let is_run = equation.coupled.is_empty() && equation.components.iter().copied().eq(first..first + count);
+    // of the momentum those components are read that the equation is about
+    let (start, momentum) = if is_run { (first, all.block(first, 0, Shape::vector(count))) } else { (0, all) };
     let velocity = match formulas.uniform_inertia {
-        Some(kappa) => matrices::stacked(&symbols.momenta)? / kappa,
-        None => inertia_inverse(formulas) * matrices::stacked(&symbols.momenta)?,
+        Some(kappa) => momentum / kappa,
+        None => inertia_inverse(formulas).block(start, start, Shape::square(momentum.shape().rows)) * momentum,
     };
     let blocks = symbols.blocks_of(&equation.components).into_iter().map(|i| {
         let block = symbols.blocks[i];
-        let part = velocity.block(block.offset, 0, Shape::vector(block.dimension()));
+        let part = velocity.block(block.offset - start, 0, Shape::vector(block.dimension()));
         slope_of_chart(formulas, block.offset, substep.parts) * h * part
     });
     Some(blocks.collect())

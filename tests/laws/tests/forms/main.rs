@@ -134,6 +134,38 @@ both!(
 );
 
 both!(
+    two_bodies,
+    (Matrix4::identity(), SMatrix::identity()),
+    Bodies { first: mass(), second: mass() },
+    #[clebsch(
+        action = |(F, G): (SO<4>, SO<5>), (R, S): (SO<4>, SO<5>)| (R * F, G * S),
+        cost   = |h, (F, G)| (self.first * (F - I) * (F - I).transpose()).trace() / h
+            + (self.second * (G - I) * (G - I).transpose()).trace() / h,
+        potential = |(R, S)| R[(0, 1)] * S[(2, 3)] / 4,
+    )]
+    struct Bodies {
+        #[clebsch(symmetric)]
+        pub first: Matrix4<f64>,
+        #[clebsch(symmetric)]
+        pub second: SMatrix<f64, 5, 5>,
+    }
+);
+
+both!(
+    two_round_bodies,
+    (Matrix4::identity(), Matrix4::identity()),
+    Bodies { inertia: 1.3 },
+    #[clebsch(
+        action = |(F, G): (SO<4>, SO<4>), (R, S): (SO<4>, SO<4>)| (R * F, S * G),
+        cost   = |h, (F, G)| self.inertia * ((F - I).norm_squared() + (G - I).norm_squared()) / h,
+        potential = |(R, S)| R[(0, 1)] * S[(2, 3)] / 4,
+    )]
+    struct Bodies {
+        pub inertia: f64,
+    }
+);
+
+both!(
     free_body_by_newton,
     SMatrix::identity(),
     Body { j_d: mass() },

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Rational, Shape, Table, Zero, integer};
 
-use super::{Builder, Id, Step, entries};
+use super::{Builder, Id, Operation, entries};
 use crate::lower::{balance, factors, sums};
 
 /// The additions and multiplications that a processor begins in a cycle, about.
@@ -48,7 +48,7 @@ impl Builder<'_, '_> {
         entries(outputs).for_each(|entry| uses[entry] += 1);
         let is_used = |id: Id| uses[id] > 0;
         for &id in &used {
-            let Step::Sum(_, terms) = self.operations.value(id) else { continue };
+            let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
             let separated: Vec<_> = terms
                 .iter()
                 .map(|(coefficient, term)| {
@@ -65,15 +65,15 @@ impl Builder<'_, '_> {
 
     /// A product of something that is taken out as a number times the product without the number, where that one is known.
     fn separated(&self, product: Id) -> Option<(Rational, Id)> {
-        let Step::Product(factors) = self.operations.value(product) else { return None };
+        let Operation::Product(factors) = self.operations.value(product) else { return None };
         factors.iter().enumerate().find_map(|(position, &factor)| {
-            let Step::Leaf(scalar) = self.operations.value(factor) else { return None };
+            let Operation::Leaf(scalar) = self.operations.value(factor) else { return None };
             let (number, Some(rest)) = self.scalars.factor(*scalar) else { return None };
-            let plain = self.operations.position(&Step::Leaf(rest)).filter(|_| number != integer(1))?;
+            let plain = self.operations.position(&Operation::Leaf(rest)).filter(|_| number != integer(1))?;
             let mut factors = factors.clone();
             factors[position] = plain;
             factors.sort_unstable();
-            Some((number, self.operations.position(&Step::Product(factors))?))
+            Some((number, self.operations.position(&Operation::Product(factors))?))
         })
     }
 
@@ -96,12 +96,12 @@ impl Builder<'_, '_> {
     fn count_operations(&self, outputs: &[(Shape, Vec<Id>)]) -> usize {
         let is_unit = |weight: &Rational| *weight == integer(1) || *weight == integer(-1);
         let count = |id: Id| match self.operations.value(id) {
-            Step::Sum(constant, terms) => {
+            Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);
                 let scaled = terms.iter().filter(|(weight, _)| !is_unit(weight)).count();
                 (terms.len() + usize::from(!constant.is_zero())).saturating_sub(1) + scaled
             }
-            Step::Product(_) => self.operands(id).len() - 1,
+            Operation::Product(_) => self.operands(id).len() - 1,
             _ => 0,
         };
         self.used(outputs).into_iter().map(count).sum()
@@ -111,7 +111,7 @@ impl Builder<'_, '_> {
     fn share_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
         let used = self.used(outputs);
         let found = used.into_iter().filter_map(|id| match self.operations.value(id) {
-            Step::Sum(constant, terms) if terms.len() > 1 => {
+            Operation::Sum(constant, terms) if terms.len() > 1 => {
                 Some((id, constant.is_zero(), self.terms(id, terms).to_vec()))
             }
             _ => None,
@@ -149,16 +149,16 @@ impl Builder<'_, '_> {
     fn delay(&self, id: Id, delays: &[u32]) -> u32 {
         let latest = || self.operands(id).into_iter().map(|operand| delays[operand]).max().unwrap_or(0);
         match self.operations.value(id) {
-            Step::Leaf(_) => 0,
-            Step::Sum(constant, terms) => {
+            Operation::Leaf(_) => 0,
+            Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms).iter().map(|term| delay_of_term(delays, term));
                 balance::delay(terms.chain((!constant.is_zero()).then_some(0)))
             }
-            Step::Product(_) => latest() + balance::STEP * (self.operands(id).len() as u32 - 1),
-            Step::Reciprocal(_) => latest() + DIVISION,
-            Step::Root(..) => latest() + ROOT,
-            Step::Function(..) | Step::Call(..) => latest() + CALL,
-            Step::Output(..) => latest(),
+            Operation::Product(_) => latest() + balance::STEP * (self.operands(id).len() as u32 - 1),
+            Operation::Reciprocal(_) => latest() + DIVISION,
+            Operation::Root(..) => latest() + ROOT,
+            Operation::Function(..) | Operation::Call(..) => latest() + CALL,
+            Operation::Output(..) => latest(),
         }
     }
 }

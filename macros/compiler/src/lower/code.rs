@@ -1,0 +1,289 @@
+//! Code: what kernels are made of, and what of each other and of their arguments they read.
+
+use clebsch_symbolic::{Analytic, Function, Rational, Role, Shape, integer};
+
+use super::scalar::{Callee, Output};
+use super::{Cost, Input};
+
+/// Straight-line code of one output entry or shared term.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Code {
+    /// An entry of an argument.
+    Read(Input),
+    /// π.
+    Pi,
+    /// A number.
+    Number(Rational),
+    /// A value that is computed once per stepper, by its index.
+    Constant(usize),
+    /// A value that is computed once per solve, by its index.
+    Term(usize),
+    /// A shared term of this kernel, by its index.
+    Local(usize),
+    /// constant + Σ coefficient · code.
+    Sum(Rational, Vec<(Rational, Code)>),
+    /// A product.
+    Product(Vec<Code>),
+    /// 1/x.
+    Reciprocal(Box<Code>),
+    /// x^(numerator/denominator).
+    Root(Box<Code>, (i64, i64)),
+    /// 1/(1 + √(1 − t)), which is 1/(1 + cos θ) with t = sin²θ.
+    PerOnePlusCosine(Box<Code>),
+    /// An elementary function.
+    Function(Function, Box<Code>),
+    /// A call of a function of matrices: always a shared term.
+    Call(Callee, Vec<(Shape, Vec<Code>)>),
+    /// An entry of a call, by the index of that term.
+    Output(usize, Callee, Output),
+    /// An operation on whole matrices: a shared term, or an entry of one.
+    Whole(Box<Whole>),
+}
+
+/// An operation on whole matrices, for code that keeps them.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Whole {
+    /// What is done.
+    pub operation: MatrixOperation,
+    /// What it is done with.
+    pub operands: Vec<Code>,
+    /// The shape of the result.
+    pub shape: Shape,
+    /// Its scalar operations.
+    pub cost: Cost,
+}
+
+/// What is done with whole matrices.
+#[derive(Clone, PartialEq, Debug)]
+pub enum MatrixOperation {
+    /// An argument, by its first entry.
+    Argument(Input),
+    /// The zero matrix.
+    Zero,
+    /// The matrix with these entries, row by row.
+    Entries,
+    /// Σ c_i A_i, by the coefficients.
+    Sum(Vec<Rational>),
+    /// s A, of A and s.
+    Scaled,
+    /// A + s I, of A and s.
+    Shifted,
+    /// Σ⁻¹ v.
+    InertiaTimes,
+    /// A B.
+    Product,
+    /// Aᵀ.
+    Transpose,
+    /// A⁻¹.
+    Inverse,
+    /// A power series of A.
+    Analytic(Analytic),
+    /// The value of an opaque potential.
+    Value,
+    /// A leaf of its gradient, by the number of the argument.
+    Gradient(usize),
+    /// The block from (i, j) on.
+    Block(usize, usize),
+    /// A in a zero matrix from (i, j) on.
+    Embedded(usize, usize),
+    /// The product entry by entry.
+    Hadamard,
+    /// The diagonal matrix of a vector.
+    DiagonalMatrix,
+    /// The diagonal of a matrix.
+    Diagonal,
+    /// Σ x_k E_k in the basis of so(n).
+    Skew,
+    /// ⟨A, E_k⟩ in that basis.
+    SkewComponents,
+    /// Σ x_k E_k v.
+    SkewTimes,
+    /// ⟨abᵀ, E_k⟩.
+    SkewOuter,
+    /// ⟨A, B⟩ = Σ A_ij B_ij.
+    Pairing,
+    /// tr A.
+    Trace,
+    /// det A.
+    Determinant,
+    /// The largest |A_ij|.
+    Largest,
+    /// The entry (i, j).
+    Entry(usize, usize),
+}
+
+/// Straight-line code.
+#[derive(Clone, Default, Debug)]
+pub struct Kernel {
+    /// Shared terms, each in terms of those before it.
+    pub locals: Vec<Code>,
+    /// The outputs, one grid for each value returned.
+    pub outputs: Vec<(Shape, Vec<Code>)>,
+}
+
+impl Kernel {
+    /// The entries of arguments that it reads, as often as they stand in it.
+    pub fn inputs(&self) -> Vec<&Input> {
+        let mut inputs = Vec::new();
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        self.locals.iter().chain(outputs).for_each(|code| code.read(&mut inputs));
+        inputs
+    }
+
+    /// Which of its terms depend on an argument of a role that is wanted.
+    pub fn depends_on(&self, wanted: impl Fn(Role) -> bool) -> Vec<bool> {
+        let mut depends: Vec<bool> = Vec::new();
+        for code in &self.locals {
+            let found = code.any(&mut |part| match part {
+                Code::Local(index) => depends.get(*index).copied().unwrap_or(false),
+                Code::Read(input) => wanted(input.role),
+                Code::Whole(whole) => {
+                    matches!(&whole.operation, MatrixOperation::Argument(input) if wanted(input.role))
+                }
+                _ => false,
+            });
+            depends.push(found);
+        }
+        depends
+    }
+
+    /// The arguments that it takes as a whole, with their shapes.
+    pub(super) fn arguments(&self) -> Vec<(&Input, Shape)> {
+        let mut arguments = Vec::new();
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        self.locals.iter().chain(outputs).for_each(|code| code.take(&mut arguments));
+        arguments
+    }
+}
+
+impl Code {
+    /// A product as a quotient: the factors above and those below, where one of them is a reciprocal that is used here alone.
+    pub(crate) fn quotient(factors: &[Code]) -> Option<(Vec<&Code>, Vec<&Code>)> {
+        let below: Vec<&Code> = factors.iter().filter_map(Code::divisor).collect();
+        let above = factors.iter().filter(|factor| factor.divisor().is_none()).collect();
+        (!below.is_empty()).then_some((above, below))
+    }
+
+    /// 1/x
+    pub(super) fn reciprocal(x: Code) -> Code {
+        match x.sine_squared() {
+            Some(sine_squared) => Code::PerOnePlusCosine(Box::new(sine_squared)),
+            None => Code::Reciprocal(Box::new(x)),
+        }
+    }
+
+    /// The t of 1 + √(1 − t).
+    fn sine_squared(&self) -> Option<Code> {
+        let one = integer(1);
+        let one_and = |code: &Code| {
+            let Code::Sum(constant, terms) = code else { return None };
+            let (constant, terms) = Code::summands(constant, terms);
+            (constant == one).then_some(terms)
+        };
+        let [(coefficient, Code::Root(square, (1, 2)))] = &one_and(self)?[..] else { return None };
+        let mut terms = one_and(square).filter(|_| *coefficient == one)?;
+        terms.iter_mut().for_each(|(coefficient, _)| *coefficient = -coefficient.clone());
+        match &terms[..] {
+            [(coefficient, term)] if *coefficient == one => Some(term.clone()),
+            _ => Some(Code::Sum(integer(0), terms)),
+        }
+    }
+
+    /// The constant and the terms of a sum, of sums within it too.
+    pub(super) fn summands(constant: &Rational, terms: &[(Rational, Code)]) -> (Rational, Vec<(Rational, Code)>) {
+        let (mut total, mut all) = (constant.clone(), Vec::new());
+        for (coefficient, term) in terms {
+            match term {
+                Code::Sum(constant, terms) if *coefficient == integer(1) || *coefficient == integer(-1) => {
+                    let (constant, terms) = Code::summands(constant, terms);
+                    total += constant * coefficient;
+                    all.extend(terms.into_iter().map(|(weight, term)| (weight * coefficient, term)));
+                }
+                _ => all.push((coefficient.clone(), term.clone())),
+            }
+        }
+        (total, all)
+    }
+
+    fn divisor(&self) -> Option<&Code> {
+        match self {
+            Code::Reciprocal(x) => Some(x),
+            _ => None,
+        }
+    }
+
+    fn read<'a>(&'a self, inputs: &mut Vec<&'a Input>) {
+        match self {
+            Code::Read(input) => inputs.push(input),
+            Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.read(inputs)),
+            Code::Product(factors) => factors.iter().for_each(|factor| factor.read(inputs)),
+            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => x.read(inputs),
+            Code::Call(_, arguments) => {
+                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| entry.read(inputs));
+            }
+            Code::Whole(whole) => {
+                if let MatrixOperation::Argument(input) = &whole.operation {
+                    inputs.push(input);
+                }
+                whole.operands.iter().for_each(|operand| operand.read(inputs));
+            }
+            Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => {}
+        }
+    }
+
+    fn take<'a>(&'a self, arguments: &mut Vec<(&'a Input, Shape)>) {
+        if let Code::Whole(whole) = self
+            && let MatrixOperation::Argument(input) = &whole.operation
+        {
+            arguments.push((input, whole.shape));
+        }
+        self.parts().into_iter().for_each(|part| part.take(arguments));
+    }
+
+    /// The codes that it is made of.
+    pub(super) fn parts(&self) -> Vec<&Code> {
+        match self {
+            Code::Sum(_, terms) => terms.iter().map(|(_, term)| term).collect(),
+            Code::Product(factors) => factors.iter().collect(),
+            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => vec![x],
+            Code::Call(_, arguments) => arguments.iter().flat_map(|(_, entries)| entries).collect(),
+            Code::Whole(whole) => whole.operands.iter().collect(),
+            Code::Read(_) | Code::Pi | Code::Number(_) => Vec::new(),
+            Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => Vec::new(),
+        }
+    }
+
+    /// The shared terms that it stands on, by their indices.
+    pub(super) fn locals(&self) -> Vec<usize> {
+        match self {
+            Code::Local(index) => vec![*index],
+            _ => self.parts().into_iter().flat_map(Code::locals).collect(),
+        }
+    }
+
+    /// The same with other codes for its shared terms.
+    pub(super) fn with_locals(&self, other: &impl Fn(usize) -> Code) -> Code {
+        let inner = |code: &Code| code.with_locals(other);
+        match self {
+            Code::Local(index) => other(*index),
+            Code::Sum(constant, terms) => {
+                Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
+            }
+            Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
+            Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
+            Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
+            Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
+            Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
+            Code::Whole(whole) => {
+                let operands = whole.operands.iter().map(inner).collect();
+                Code::Whole(Box::new(Whole { operands, ..(**whole).clone() }))
+            }
+            other => other.clone(),
+        }
+    }
+
+    /// Whether a test holds for it or for one of its parts.
+    pub(super) fn any(&self, test: &mut impl FnMut(&Code) -> bool) -> bool {
+        test(self) || self.parts().into_iter().any(|part| part.any(test))
+    }
+}

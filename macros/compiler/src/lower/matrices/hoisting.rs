@@ -1,0 +1,44 @@
+//! What of an iteration is computed once a solve, where whole matrices are kept.
+
+use clebsch_symbolic::{Role, Shape};
+
+use crate::derive::INERTIA_INVERSE;
+use crate::lower::{Code, Kernel};
+
+/// A kernel of an iteration as two: the terms that do not depend on the coordinates, or on a direction of them, as far as others need them,
+/// one output each; and the rest.
+pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
+    let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_)) || is_direction(role));
+    let outputs = kernel.outputs.iter().flat_map(|(_, entries)| entries);
+    let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
+    let mut terms: Vec<usize> = moving.chain(outputs).flat_map(Code::locals).filter(|&index| !depends[index]).collect();
+    terms.sort_unstable();
+    terms.dedup();
+    // the numbers of terms among those of their kind
+    let number = |index: usize| depends[..index].iter().filter(|&&other| other == depends[index]).count();
+    let before = |index: usize| Code::Local(number(index));
+    let after = |index: usize| match terms.iter().position(|&term| term == index) {
+        Some(term) => Code::Term(term),
+        None => Code::Local(number(index)),
+    };
+    let shape = |index: usize| match &kernel.locals[index] {
+        Code::Whole(whole) => whole.shape,
+        _ => Shape::scalar(),
+    };
+    let (mut prepare, mut rest) = (Kernel::default(), Kernel::default());
+    for (code, depends) in kernel.locals.iter().zip(&depends) {
+        match depends {
+            true => rest.locals.push(code.with_locals(&after)),
+            false => prepare.locals.push(code.with_locals(&before)),
+        }
+    }
+    prepare.outputs = terms.iter().map(|&index| (shape(index), vec![before(index)])).collect();
+    let renamed = |entries: &Vec<Code>| entries.iter().map(|entry| entry.with_locals(&after)).collect();
+    rest.outputs = kernel.outputs.iter().map(|(shape, entries)| (*shape, renamed(entries))).collect();
+    (prepare, rest)
+}
+
+/// Whether a symbol is the direction of a derivative.
+pub(crate) fn is_direction(role: Role) -> bool {
+    matches!(role, Role::Auxiliary(_)) && role != INERTIA_INVERSE
+}
