@@ -65,26 +65,37 @@ impl Report {
     /// A call whose result has to be finite; what it returns, unless it fails or panics.
     fn call<R>(
         &mut self,
-        (place, entry): (&str, &str),
+        at: (&str, &str),
         call: impl FnOnce() -> Result<R, Error>,
         is_finite: impl FnOnce(&R) -> bool,
     ) -> Option<R> {
-        match catch_unwind(AssertUnwindSafe(call)) {
-            Err(_) => self.fail(place, &format!("`{entry}` panicked")),
-            Ok(Err(error)) => {
+        let result = catch_unwind(AssertUnwindSafe(call));
+        let outcome = match &result {
+            Err(_) => Outcome::Panicked,
+            Ok(Err(error)) => Outcome::Refused(*error),
+            Ok(Ok(value)) => Outcome::Returned { is_finite: is_finite(value) },
+        };
+        let is_good = self.judge(at, outcome);
+        result.ok().and_then(Result::ok).filter(|_| is_good)
+    }
+
+    /// Whether a call gave something to go on with. Compiled once, while calls are compiled for each system.
+    fn judge(&mut self, (place, entry): (&str, &str), outcome: Outcome) -> bool {
+        match outcome {
+            Outcome::Panicked => self.fail(place, &format!("`{entry}` panicked")),
+            Outcome::Refused(error) => {
                 self.counts[1] += 1;
                 let text = error.to_string().replace("look for NaN, infinity", "");
                 if ["NaN", "inf"].iter().any(|number| text.contains(number)) && !text.contains("singular") {
                     self.fail(place, &format!("`{entry}` says {text}"));
                 }
             }
-            Ok(Ok(result)) if is_finite(&result) => {
-                self.counts[0] += 1;
-                return Some(result);
+            Outcome::Returned { is_finite: true } => self.counts[0] += 1,
+            Outcome::Returned { is_finite: false } => {
+                self.fail(place, &format!("`{entry}` gave a result that is not finite"));
             }
-            Ok(Ok(_)) => self.fail(place, &format!("`{entry}` gave a result that is not finite")),
         }
-        None
+        matches!(outcome, Outcome::Returned { is_finite: true })
     }
 
     /// A formula that has no error to give: it may pass on what it is given.
@@ -95,19 +106,39 @@ impl Report {
     }
 
     /// A call that has to refuse, naming this.
-    fn refused<R>(&mut self, (place, entry): (&str, &str), call: impl FnOnce() -> Result<R, Error>, named: &str) {
-        let names = |error: &Error| match *error {
+    fn refused<R>(&mut self, at: (&str, &str), call: impl FnOnce() -> Result<R, Error>, named: &str) {
+        let outcome = match catch_unwind(AssertUnwindSafe(call)) {
+            Err(_) => Outcome::Panicked,
+            Ok(Err(error)) => Outcome::Refused(error),
+            Ok(Ok(_)) => Outcome::Returned { is_finite: true },
+        };
+        self.judge_refusal(at, outcome, named);
+    }
+
+    /// Whether it did; compiled once too.
+    fn judge_refusal(&mut self, (place, entry): (&str, &str), outcome: Outcome, named: &str) {
+        let names = |error: Error| match error {
             Error::NotFinite { name } => name == named,
             Error::StepSize { .. } => named == "the step size",
             _ => false,
         };
-        match catch_unwind(AssertUnwindSafe(call)) {
-            Ok(Err(error)) if names(&error) => self.counts[1] += 1,
-            Ok(Err(error)) => self.fail(place, &format!("`{entry}` says {error:?} and not that {named} is broken")),
-            Ok(Ok(_)) => self.fail(place, &format!("`{entry}` takes it")),
-            Err(_) => self.fail(place, &format!("`{entry}` panicked")),
+        match outcome {
+            Outcome::Refused(error) if names(error) => self.counts[1] += 1,
+            Outcome::Refused(error) => {
+                self.fail(place, &format!("`{entry}` says {error:?} and not that {named} is broken"));
+            }
+            Outcome::Returned { .. } => self.fail(place, &format!("`{entry}` takes it")),
+            Outcome::Panicked => self.fail(place, &format!("`{entry}` panicked")),
         }
     }
+}
+
+/// How a call ended.
+#[derive(Clone, Copy)]
+enum Outcome {
+    Panicked,
+    Refused(Error),
+    Returned { is_finite: bool },
 }
 
 fn is_finite<S: Clebsch>(state: &State<S>) -> bool {
