@@ -126,6 +126,7 @@ mod tests {
 
     impl<T: Real> Equation<T, 1> for Parabola {
         type Terms = T;
+        type Jacobian = Matrix1<T>;
 
         fn prepare(&self, target: &Vector1<T>) -> T {
             target.x

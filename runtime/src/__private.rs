@@ -17,14 +17,11 @@ pub use crate::free_rotation::{
 };
 pub use crate::free_rotation_4d::{FreeRotation4, KeptRotation4, free_momentum_4d};
 pub use crate::implicit::{
-    Equation, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
+    Equation, Jacobian, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
 };
 pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
-pub use crate::matrices::{
-    block, determinant, diagonal, diagonal_matrix, embedded, largest_entry, matrix_of, pairing, product, scaled,
-    shifted, skew, skew_components, skew_outer, skew_times, trace,
-};
+pub use crate::matrices::{determinant, embedded, matrix_of, shifted, skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{
     largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
@@ -44,6 +41,7 @@ pub use crate::steered::{
 };
 pub use crate::stumpff::stumpff;
 pub use crate::summation::accumulate;
+pub use crate::sylvester::Sylvester;
 pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
 pub use core;
 pub use nalgebra::{Quaternion, SMatrix, SVector};

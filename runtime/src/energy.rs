@@ -2,7 +2,6 @@
 
 use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
-use crate::matrices::pairing;
 use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
 use core::marker::PhantomData;
@@ -20,7 +19,7 @@ pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu:
 
 /// ½ |μ|²/κ of the inertia κI, given 1/κ.
 pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVector<T, M>) -> T {
-    pairing(mu, mu) * *inverse * T::from_ratio(1, 2)
+    mu.dot(mu) * *inverse * T::from_ratio(1, 2)
 }
 
 /// ½ μ·Σ⁻¹μ of an inertia that depends on the configuration; +∞ where Σ is singular, for there μ determines no velocity.
@@ -96,6 +95,7 @@ struct FromRest<'a, T: Scalar, E: VelocityEquation<T, M>, const M: usize> {
 
 impl<T: Scalar, E: VelocityEquation<T, M>, const M: usize> Equation<T, M> for FromRest<'_, T, E, M> {
     type Terms = SVector<T, M>;
+    type Jacobian = SMatrix<T, M, M>;
 
     fn prepare(&self, target: &SVector<T, M>) -> SVector<T, M> {
         *target

@@ -6,19 +6,21 @@
 //! without iteration where ρ is affine in ξ.
 
 mod fixed_point;
+mod jacobian;
 mod lane;
 mod linear_equation;
 mod path;
 
 pub use fixed_point::solve_fixed_point;
+pub use jacobian::Jacobian;
 pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
-use crate::linear::{Orientation, rows, solve_dense};
+use crate::linear::Orientation;
 use crate::matrices::total;
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
@@ -30,6 +32,9 @@ use nalgebra::{SMatrix, SVector};
 pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// What does not change during the iteration.
     type Terms;
+
+    /// What Dρ(ξ) is given as: `SMatrix<T, M, M>`, or what is inverted faster.
+    type Jacobian: Jacobian<T, M>;
 
     /// The terms for the target μ.
     fn prepare(&self, target: &SVector<T, N>) -> Self::Terms;
@@ -44,7 +49,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     }
 
     /// The residual ρ(ξ) and its Jacobian Dρ(ξ), row i the derivatives of ρ_i.
-    fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>);
+    fn linearize(&self, terms: &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, Self::Jacobian);
 
     /// The residual ρ(ξ) alone, for [`solve_fixed_point`].
     #[inline]
@@ -54,11 +59,11 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// Δ with Dρ Δ = ρ, and the sign of det Dρ; `None` where it is singular in all lanes.
     ///
-    /// The provided method eliminates with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
-    /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`] for each block on its diagonal.
+    /// The provided method is [`Jacobian::solve`], for a matrix elimination with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
+    /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`](crate::linear::solve_dense) for each block on its diagonal.
     #[inline]
-    fn correct(jacobian: &SMatrix<T, M, M>, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
-        solve_dense(jacobian, residual)
+    fn correct(jacobian: &Self::Jacobian, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+        jacobian.solve(residual)
     }
 
     /// The part of |ξ| below which a correction is not made.
@@ -101,7 +106,7 @@ fn at_identity<T: Scalar, const M: usize, const N: usize, E: Equation<T, M, N> +
 ) -> Option<Orientation> {
     let terms = equation.prepare(&SVector::from_element(T::zero()));
     let (_, jacobian) = equation.linearize(&terms, &SVector::from_element(T::zero()));
-    Orientation::of(rows(&jacobian))
+    jacobian.orientation()
 }
 
 /// The sign of det Dρ at the identity, computed without asking [`Equation::orientation`]: for the constant that answers it.
@@ -255,13 +260,10 @@ fn select<T: Scalar, const M: usize>(mask: T::Mask, yes: &SVector<T, M>, no: &SV
 #[cold]
 fn is_round_off<T: Scalar, const M: usize>(
     residual: &SVector<T, M>,
-    jacobian: &SMatrix<T, M, M>,
+    jacobian: &impl Jacobian<T, M>,
     xi: &SVector<T, M>,
 ) -> T::Mask {
-    let length = |column: &[T; M]| column.iter().fold(T::zero(), |sum, entry| sum + entry.abs());
-    let columns = jacobian.data.0.iter().zip(xi.iter());
-    let terms = columns.fold(T::zero(), |sum, (column, x)| sum + length(column) * x.abs());
-    size(residual).at_most(T::from_f64(8.0) * T::EPSILON * terms)
+    size(residual).at_most(T::from_f64(8.0) * T::EPSILON * jacobian.size_of_terms(xi))
 }
 
 /// Whether the residual shrank to less than a quarter: progress too where stiff directions are settled before soft ones, while

@@ -166,6 +166,7 @@ mod root;
 #[cfg(feature = "serde")]
 mod saved;
 mod scalar;
+mod schur;
 mod space;
 mod sphere;
 mod splitting;
@@ -174,6 +175,7 @@ mod steered;
 mod stepper;
 mod stumpff;
 mod summation;
+mod sylvester;
 mod system;
 mod tangent;
 mod time;

@@ -1,10 +1,8 @@
-//! Operations on whole matrices, for generated code that keeps them: straight loops over constant bounds, on the stack.
-//!
-//! nalgebra's own product packs matrices of more than five rows on the heap where its feature `std` is on, and is no faster
-//! for those of twenty. What is here takes no heap, leaves no panic, and serves lanes and numbers with derivatives as well.
+//! Operations on whole matrices that nalgebra has not, for generated code that keeps them: straight loops over constant bounds, on the
+//! stack, without a panic, for lanes and numbers with derivatives as well.
 
 use crate::linear::rows;
-use crate::space::{lane_of, larger};
+use crate::space::lane_of;
 use crate::{Real, Scalar};
 use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
@@ -15,33 +13,10 @@ fn columns<T: Scalar, const R: usize, const C: usize>(columns: [[T; R]; C]) -> S
     SMatrix::from_array_storage(ArrayStorage(columns))
 }
 
-/// A B, column after column: R·K·C multiplications.
-#[inline]
-pub fn product<T: Scalar, const R: usize, const K: usize, const C: usize>(
-    a: &SMatrix<T, R, K>,
-    b: &SMatrix<T, K, C>,
-) -> SMatrix<T, R, C> {
-    columns(from_fn(|j| {
-        let mut sum = [T::zero(); R];
-        for (column, factor) in a.data.0.iter().zip(column(b, j)) {
-            for (sum, entry) in sum.iter_mut().zip(column) {
-                *sum += *entry * factor;
-            }
-        }
-        sum
-    }))
-}
-
 /// Column j of a matrix that has it: where the optimiser does not see that it does, no panic is left.
 #[inline(always)]
 fn column<T: Scalar, const R: usize, const C: usize>(a: &SMatrix<T, R, C>, j: usize) -> [T; R] {
     a.data.0.get(j).copied().unwrap_or([T::zero(); R])
-}
-
-/// s A
-#[inline]
-pub fn scaled<T: Scalar, const R: usize, const C: usize>(a: &SMatrix<T, R, C>, s: T) -> SMatrix<T, R, C> {
-    a.map(|entry| entry * s)
 }
 
 /// A + s I
@@ -54,12 +29,6 @@ pub fn shifted<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, s: T) -> SMatrix
         }
     }
     sum
-}
-
-/// ⟨A, B⟩ = Σ A_ij B_ij.
-#[inline]
-pub fn pairing<T: Scalar, const R: usize, const C: usize>(a: &SMatrix<T, R, C>, b: &SMatrix<T, R, C>) -> T {
-    dot(a.as_slice(), b.as_slice())
 }
 
 /// Σ a_i b_i in eight sums: no entry waits for all those before it.
@@ -81,13 +50,6 @@ fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
 #[inline]
 pub(crate) fn total<T: Scalar>([a, b, c, d, e, f, g, h]: [T; 8]) -> T {
     ((a + b) + (c + d)) + ((e + f) + (g + h))
-}
-
-/// tr A
-#[inline]
-pub fn trace<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
-    let diagonal = a.data.0.iter().enumerate().filter_map(|(i, column)| column.get(i));
-    diagonal.fold(T::zero(), |sum, entry| sum + *entry)
 }
 
 /// det A, by elimination with partial pivoting; 0 where a pivot is.
@@ -119,19 +81,6 @@ fn determinant_of_one<T: Real, const N: usize>(mut a: [[T; N]; N]) -> T {
     determinant
 }
 
-/// The block of A that starts in row i and column j; zero where A has no entry.
-#[inline]
-pub fn block<T: Scalar, const R: usize, const C: usize, const P: usize, const Q: usize>(
-    a: &SMatrix<T, R, C>,
-    i: usize,
-    j: usize,
-) -> SMatrix<T, P, Q> {
-    columns(from_fn(|l| {
-        let column = column(a, j + l);
-        from_fn(|k| column.get(i + k).copied().unwrap_or_else(T::zero))
-    }))
-}
-
 /// A in a zero matrix, from row i and column j on.
 #[inline]
 pub fn embedded<T: Scalar, const P: usize, const Q: usize, const R: usize, const C: usize>(
@@ -145,18 +94,6 @@ pub fn embedded<T: Scalar, const P: usize, const Q: usize, const R: usize, const
     }))
 }
 
-/// The diagonal of A.
-#[inline]
-pub fn diagonal<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SVector<T, N> {
-    columns([from_fn(|i| column(a, i).get(i).copied().unwrap_or_else(T::zero))])
-}
-
-/// The matrix with the diagonal v.
-#[inline]
-pub fn diagonal_matrix<T: Scalar, const N: usize>(v: &SVector<T, N>) -> SMatrix<T, N, N> {
-    columns(from_fn(|j| from_fn(|i| if i == j { v.data.0[0][i] } else { T::zero() })))
-}
-
 /// The matrix of a linear map, column after column from its values at the unit vectors.
 #[inline]
 pub fn matrix_of<T: Scalar, const R: usize, const C: usize>(
@@ -166,12 +103,6 @@ pub fn matrix_of<T: Scalar, const R: usize, const C: usize>(
         let unit = columns([from_fn(|i| if i == j { T::one() } else { T::zero() })]);
         column(&map(&unit), 0)
     }))
-}
-
-/// The largest |A_ij|; NaN are passed over.
-#[inline]
-pub fn largest_entry<T: Scalar, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> T {
-    a.data.0.iter().flatten().fold(T::zero(), |max, entry| larger(max, entry.abs()))
 }
 
 /// Σ x_k E_k in the basis E_ji − E_ij of so(n), i < j in the order (12) (13) … (n−1 n): the rotation of axis i towards axis j.

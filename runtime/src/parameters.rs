@@ -1,7 +1,6 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
 use crate::linear::{Orientation, eliminate, multiple_of_identity, power_of_two_near, rows};
-use crate::matrices::{diagonal, pairing, product};
 use crate::space::{check_lanes, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar, Space};
 use core::array::from_fn;
@@ -91,7 +90,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
         let matrix = invert(inertia)?;
         let is_zero = |(k, entry): (usize, &T)| k % (N + 1) == 0 || entry.equals(T::zero()).all();
         let is_diagonal = matrix.iter().enumerate().all(is_zero);
-        Ok(Self { matrix, diagonal: is_diagonal.then(|| diagonal(&matrix)) })
+        Ok(Self { matrix, diagonal: is_diagonal.then(|| matrix.diagonal()) })
     }
 
     /// Σ⁻¹μ.
@@ -99,7 +98,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
     pub fn times(&self, mu: &SVector<T, N>) -> SVector<T, N> {
         match &self.diagonal {
             Some(diagonal) => diagonal.component_mul(mu),
-            None => product(&self.matrix, mu),
+            None => self.matrix * mu,
         }
     }
 
@@ -111,7 +110,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
 
     /// ½ μ·Σ⁻¹μ.
     pub fn energy(&self, mu: &SVector<T, N>) -> T {
-        pairing(mu, &self.times(mu)) * T::from_ratio(1, 2)
+        mu.dot(&self.times(mu)) * T::from_ratio(1, 2)
     }
 }
 

@@ -3,15 +3,15 @@
 //! w is the velocity times the inertia, perpendicular to q. What rounding leaves of it along q is taken off at each kick: without that
 //! the errors of q·w and of |q| grow exponentially.
 
-use crate::matrices::{pairing, scaled, skew_times};
+use crate::matrices::skew_times;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
 /// w = Mq/|q|² of the momentum with the components μ, without what rounding leaves of it along q; |q|² is off one by rounding alone.
 #[inline]
 pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu: &SVector<T, M>) -> SVector<T, N> {
-    let missing = T::one() - pairing(q, q);
-    scaled(&perpendicular(q, &skew_times(mu, q)), T::one() + missing)
+    let missing = T::one() - q.dot(q);
+    perpendicular(q, &skew_times(mu, q)) * (T::one() + missing)
 }
 
 /// w + g without what of it is along q.
@@ -27,7 +27,7 @@ pub fn pushed<T: Scalar, const N: usize>(
 /// w without what of it is along q.
 #[inline]
 pub fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &SVector<T, N>) -> SVector<T, N> {
-    let along = pairing(q, w);
+    let along = q.dot(w);
     w.zip_map(q, |w, q| w - q * along)
 }
 
@@ -36,7 +36,7 @@ pub fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &SVector<T
 #[inline]
 #[allow(clippy::type_complexity, reason = "the point and its w")]
 pub fn on_sphere<T: Scalar, const N: usize>(q: SVector<T, N>, w: SVector<T, N>) -> (SVector<T, N>, SVector<T, N>) {
-    let missing = T::one() - pairing(&q, &q);
+    let missing = T::one() - q.dot(&q);
     let is_off = (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs());
     if !is_off.any() {
         return (q, w);
@@ -60,14 +60,14 @@ pub fn great_circle<T: Scalar, const N: usize>(
     q: &SVector<T, N>,
     w: &SVector<T, N>,
 ) -> Result<(SVector<T, N>, SVector<T, N>), Error> {
-    let turn = scaled(w, a);
-    let square = pairing(&turn, &turn);
+    let turn = w * a;
+    let square = turn.dot(&turn);
     let exists = square.below(T::one());
     if !exists.any() {
         return Err(crate::element::beyond_right_angle(square));
     }
     // NaN where the root is
     let cosine = (T::one() - square).sqrt();
-    let back = pairing(&turn, w);
+    let back = turn.dot(w);
     Ok((q.zip_map(&turn, |q, turn| q * cosine + turn), w.zip_map(q, |w, q| w * cosine - q * back)))
 }

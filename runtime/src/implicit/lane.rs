@@ -1,10 +1,10 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, QUICK, path, size, with_derivatives};
+use super::{Equation, Jacobian, QUICK, path, size, with_derivatives};
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use num_traits::Zero;
 
 /// The solutions `xi` with those of the lanes that are not `solved` after `made` iterations: the path from the identity is followed in each
@@ -83,18 +83,15 @@ struct InLane<'a, T, E> {
 
 impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T::Lane, M, N> for InLane<'_, T, E> {
     type Terms = E::Terms;
+    type Jacobian = <E::Jacobian as Jacobian<T, M>>::Lane;
 
     fn prepare(&self, target: &SVector<T::Lane, N>) -> Self::Terms {
         self.equation.prepare(&everywhere(target))
     }
 
-    fn linearize(
-        &self,
-        terms: &Self::Terms,
-        xi: &SVector<T::Lane, M>,
-    ) -> (SVector<T::Lane, M>, SMatrix<T::Lane, M, M>) {
+    fn linearize(&self, terms: &Self::Terms, xi: &SVector<T::Lane, M>) -> (SVector<T::Lane, M>, Self::Jacobian) {
         let (residual, jacobian) = self.equation.linearize(terms, &everywhere(xi));
-        (lane_of(&residual, self.lane), lane_of(&jacobian, self.lane))
+        (lane_of(&residual, self.lane), jacobian.lane(self.lane))
     }
 
     fn limit() -> Option<u32> {

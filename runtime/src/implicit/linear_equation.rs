@@ -51,6 +51,7 @@ struct Iterated<'a, E>(&'a E);
 
 impl<T: Scalar, E: LinearEquation<T, M, N>, const M: usize, const N: usize> Equation<T, M, N> for Iterated<'_, E> {
     type Terms = (SMatrix<T, M, M>, SVector<T, M>);
+    type Jacobian = SMatrix<T, M, M>;
 
     fn prepare(&self, target: &SVector<T, N>) -> Self::Terms {
         self.0.system(target)

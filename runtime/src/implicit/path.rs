@@ -8,8 +8,7 @@
 mod bracket;
 mod point;
 
-use super::{Equation, allowed, is_much_smaller, size};
-use crate::linear::solve_dense;
+use super::{Equation, Jacobian, allowed, is_much_smaller, size};
 use crate::space::larger;
 use crate::{Error, Real, Space};
 use nalgebra::SVector;
@@ -82,11 +81,11 @@ impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_,
             T::iterated();
             self.count(1);
             let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
-            let (correction, orientation) = solve_dense(&jacobian, &residual)?;
+            let (correction, orientation) = jacobian.solve(&residual)?;
             if orientation != self.branch {
                 return None;
             }
-            let terms = larger(self.weight, jacobian.max_abs() * size(&xi));
+            let terms = larger(self.weight, jacobian.largest_entry() * size(&xi));
             xi -= correction;
             let (now, seen) = (size(&correction), T::EPSILON * size(&xi));
             let ratio = now / before;

@@ -27,6 +27,7 @@ fn principal(moments: [f64; 3]) -> Body<f64> {
 
 impl<T: Scalar> Equation<T, 3> for Body<T> {
     type Terms = Vector3<T>;
+    type Jacobian = Matrix3<T>;
 
     fn prepare(&self, target: &Vector3<T>) -> Vector3<T> {
         *target
@@ -51,6 +52,7 @@ struct Unpredicted(Body<f64>);
 
 impl Equation<f64, 3> for Unpredicted {
     type Terms = Vector3<f64>;
+    type Jacobian = Matrix3<f64>;
 
     fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
         *target
@@ -66,6 +68,7 @@ struct Curve<F: Fn(f64, f64) -> (f64, f64)>(F, Cell<u32>);
 
 impl<F: Fn(f64, f64) -> (f64, f64)> Equation<f64, 1> for Curve<F> {
     type Terms = f64;
+    type Jacobian = SMatrix<f64, 1, 1>;
 
     fn prepare(&self, target: &Vector1<f64>) -> f64 {
         target.x

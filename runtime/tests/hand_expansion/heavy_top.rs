@@ -366,6 +366,7 @@ const _: () = {
     impl ::clebsch::__private::Equation<f64, 3> for Equation<'_> {
         /// a = hπ
         type Terms = [f64; 3];
+        type Jacobian = SMatrix<f64, 3, 3>;
 
         #[inline]
         fn prepare(&self, target: &SVector<f64, 3>) -> [f64; 3] {

@@ -270,6 +270,7 @@ impl Interpreted<'_, '_, '_> {
 
 impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     type Terms = Vec<f64>;
+    type Jacobian = SMatrix<f64, M, M>;
 
     fn prepare(&self, target: &SVector<f64, MOMENTA>) -> Vec<f64> {
         self.aimed(target, |stepper| stepper.run(&self.solve.prepare).concat())

@@ -389,6 +389,12 @@ impl<'g> Formulas<'g> {
         Formula::new("Jacobian", format!("Dρ({x})·{direction}"), &[equation.directional])
     }
 
+    /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩, where there is one.
+    pub fn formula_of_sylvester_factor(&self, equation: &Equation<'g>) -> Option<Formula> {
+        let x = self.letter(&self.chart_symbols());
+        Some(Formula::new("factor of the Jacobian", format!("B({x})"), &[equation.sylvester_factor(self)?]))
+    }
+
     /// x(μ), where there is a formula for it.
     pub fn formula_of_solution(&self, equation: &Equation<'g>) -> Option<Formula> {
         Some(Formula::new("solution", self.coordinates_of(equation), &[equation.formula?]))

@@ -4,6 +4,7 @@
 //! Entries are evaluated at random points of a prime field, so that what cancels counts as zero however it is written.
 
 mod pattern;
+mod sylvester;
 
 use clebsch_symbolic::{Expr, Shape, identity};
 
@@ -23,6 +24,8 @@ pub enum Structure {
     Symmetric,
     /// Blocks of unknowns, by their positions, each of which depends on itself and on those before it: one small system for each.
     Triangular(Vec<Vec<usize>>),
+    /// δ ↦ ⟨δ^B, E⟩ for skew matrices of so many rows: by the Schur form of B.
+    Sylvester(usize),
 }
 
 /// The equations, to be solved in this order, that an equation for Newton's method falls into.

@@ -1,6 +1,6 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
-use clebsch_symbolic::Role;
+use clebsch_symbolic::{Role, Shape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -127,11 +127,11 @@ impl Emitter<'_, '_> {
         }
         let first = components.first().copied().unwrap_or(0);
         if self.program.form.keeps_matrices() && components.iter().copied().eq(first..first + count) {
-            let (first, part) = (Literal::usize_unsuffixed(first), self.paths.matrix(count, count));
-            return quote!({
-                let part: #part = #private::block(&inertia, #first, #first);
-                #private::orientation_of_inertia(&part, h)?
-            });
+            let part = match count == self.dimension() {
+                true => quote!(inertia),
+                false => matrices::block(quote!(inertia), Shape::square(count), (first, first)),
+            };
+            return quote!(#private::orientation_of_inertia(&#part, h)?);
         }
         let rows = components.iter().map(|&i| {
             let row = components.iter().map(|&j| {

@@ -36,7 +36,7 @@ pub fn derivation(program: &Program<'_>) -> String {
 
 /// How the code is written, and why.
 fn form(program: &Program<'_>) -> String {
-    let Form { code, estimate, is_asked } = program.form;
+    let Form { code, estimate, is_asked, is_body } = program.form;
     let written = match code {
         CodeForm::Unrolled => "Code is written out, entry by entry",
         CodeForm::Matrices => "Code keeps whole matrices, in loops",
@@ -45,6 +45,9 @@ fn form(program: &Program<'_>) -> String {
         (true, _) => "as the declaration asks".to_string(),
         (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => "of few unknowns".to_string(),
         (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
+        (false, CodeForm::Matrices) if is_body && estimate <= LARGEST_UNROLLED => {
+            "for a body in five dimensions or more".to_string()
+        }
         (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
     };
     let in_plane = match program.form.keeps_matrices() && program.formulas.follows_great_circles() {
@@ -486,9 +489,9 @@ fn how(program: &Program<'_>, equation: &Equation<'_>, solve: &Solve) -> String 
         Solution::Newton if solve.residual.is_some() => format!(
             "is solved by the fixed-point iteration x ← x − s h Σ⁻¹ρ(x) in {chart}, s = dx/dξ, which contracts like h|ω|; by Newton's method \
              where it leaves more than a quarter of a correction{}",
-            structure(&equation.structure)
+            structure(&solve.structure)
         ),
-        Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&equation.structure)),
+        Solution::Newton => format!("is solved by Newton's method in {chart}{}", structure(&solve.structure)),
     }
 }
 
@@ -500,6 +503,9 @@ fn structure(structure: &Structure) -> String {
         Structure::Triangular(blocks) => {
             let sizes: Vec<String> = blocks.iter().map(|block| block.len().to_string()).collect();
             format!("; its Jacobian is block triangular, with blocks of {} unknowns", sizes.join(", "))
+        }
+        Structure::Sylvester(n) => {
+            format!("; its linear systems are Sylvester's equations, by the Schur form of {n}×{n} matrices")
         }
     }
 }

@@ -6,7 +6,7 @@ use quote::quote;
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs, matrices};
-use crate::derive::{Equation, Formula, Solution};
+use crate::derive::{Equation, Formula, Solution, Structure};
 use crate::lower::{Solve, is_direction};
 
 impl<'g> Emitter<'_, 'g> {
@@ -137,10 +137,26 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
+    /// The type of the Jacobian.
+    fn jacobian_type(&self, solve: &Solve) -> TokenStream {
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        match solve.structure {
+            Structure::Sylvester(n) => {
+                let n = Literal::usize_unsuffixed(n);
+                quote!(#private::Sylvester<#scalar, #n>)
+            }
+            _ => self.paths.matrix(solve.dimension, solve.dimension),
+        }
+    }
+
     /// The terms, the vector and the matrix that a kernel gives.
     fn linearized(&self, scope: &code::Scope<'_, '_>, solve: &Solve) -> (TokenStream, TokenStream, TokenStream) {
         let [vector, matrix] = [0, 1].map(|k| &solve.linearize.outputs[k]);
         let value = code::grid(scope, vector.0, &vector.1, false);
+        if let Structure::Sylvester(_) = solve.structure {
+            let (private, factor) = (&self.paths.private, code::grid(scope, matrix.0, &matrix.1, false));
+            return (code::locals(scope, &solve.linearize), value, quote!(#private::Sylvester::new(#factor)));
+        }
         if self.program.form.keeps_matrices() {
             let (locals, jacobian) = matrices::matrix_of(scope, &solve.linearize, 1, "delta", is_direction);
             return (locals, value, jacobian);
@@ -187,7 +203,7 @@ impl<'g> Emitter<'_, 'g> {
         let name = self.names.equation(self.program.suffix(index), number);
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
-        let matrix = self.paths.matrix(solve.dimension, solve.dimension);
+        let jacobian_type = self.jacobian_type(solve);
         let keeps = self.program.form.keeps_matrices();
         let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
         let (terms, target_again) = match keeps {
@@ -215,8 +231,13 @@ impl<'g> Emitter<'_, 'g> {
         });
         let (place, (locals, residual, jacobian)) = (self.place(solve), self.linearized(&scope, solve));
         let derived = &self.program.formulas.substeps[index].equations[number];
-        let formulas =
-            [self.program.formulas.formula_of_equation(derived), self.program.formulas.formula_of_jacobian(derived)];
+        let mut formulas = vec![
+            self.program.formulas.formula_of_equation(derived),
+            self.program.formulas.formula_of_jacobian(derived),
+        ];
+        if let Structure::Sylvester(_) = solve.structure {
+            formulas.extend(self.program.formulas.formula_of_sylvester_factor(derived));
+        }
         let structure = self.equation_structure(&name, derived, Some(solve));
         let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
         let alone = solve.residual.as_ref().map(|kernel| {
@@ -258,6 +279,7 @@ impl<'g> Emitter<'_, 'g> {
 
             impl<#lifetime, #parameters> #private::Equation<#dimensions> for #name<#lifetime, #arguments> #predicates {
                 type Terms = #terms;
+                type Jacobian = #jacobian_type;
 
                 #[inline]
                 fn prepare(&self, target: &#target) -> Self::Terms {
@@ -272,7 +294,7 @@ impl<'g> Emitter<'_, 'g> {
 
                 #linearized
                 #[inline]
-                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, #matrix) {
+                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, Self::Jacobian) {
                     #target_again
                     #place
                     #locals

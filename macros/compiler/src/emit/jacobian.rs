@@ -28,7 +28,7 @@ impl Emitter<'_, '_> {
         let vector = self.paths.matrix(solve.dimension, 1);
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
         let (title, body) = match &solve.structure {
-            Structure::Dense => return None,
+            Structure::Dense | Structure::Sylvester(_) => return None,
             Structure::Symmetric => {
                 ("Dρ is symmetric: LDLᵀ where it is definite.", quote!(#private::solve_symmetric(a, b)))
             }

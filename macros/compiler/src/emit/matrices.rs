@@ -1,4 +1,4 @@
-//! Tokens of operations on whole matrices: calls of the runtime's loops, and nalgebra's sums.
+//! Tokens of operations on whole matrices: nalgebra's, and calls of the runtime's for those that it has not.
 
 use clebsch_symbolic::{Analytic, Rational, Role, Shape, integer};
 use proc_macro2::{Literal, TokenStream};
@@ -18,13 +18,17 @@ impl Scope<'_, '_> {
             let operands = operands.iter().map(|operand| self.by_reference(operand));
             quote!(#private::#name(#(#operands),*))
         };
-        let placed = |name: &str, i: usize, j: usize| {
-            let (name, matrix) = (format_ident!("{name}"), self.by_reference(&operands[0]));
-            let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
-            quote!(#private::#name(#matrix, #i, #j))
+        // operands are names: each operation is a statement
+        let method = |name: &str| {
+            let (name, receiver) = (format_ident!("{name}"), self.receiver(&operands[0]));
+            let others = operands[1..].iter().map(|operand| self.by_reference(operand));
+            quote!(#receiver.#name(#(#others),*))
         };
         match operation {
-            MatrixOperation::Argument(input) => self.argument(input.role, *shape),
+            MatrixOperation::Argument(input) => match self.place(input.role, *shape) {
+                Place::Reference(name) => quote!((*#name)),
+                Place::Value(value) => value,
+            },
             MatrixOperation::Zero => {
                 let (scalar, matrix) = (&self.paths.scalar, self.paths.matrix(shape.rows, shape.columns));
                 quote!(<#matrix as #private::Space<#scalar>>::origin())
@@ -39,39 +43,47 @@ impl Scope<'_, '_> {
                 let (matrix, number) = (self.by_reference(&operands[0]), self.code(&operands[1], false));
                 quote!(#private::shifted(#matrix, #number))
             }
-            MatrixOperation::Product => call("product"),
+            MatrixOperation::Product => {
+                let (a, b) = (self.by_reference(&operands[0]), self.by_reference(&operands[1]));
+                quote!(#a * #b)
+            }
             MatrixOperation::InertiaTimes => {
                 let (constants, vector) = (&self.constants, self.by_reference(&operands[0]));
                 quote!(#constants.inertia_inverse.times(#vector))
             }
-            MatrixOperation::Transpose => {
-                let matrix = self.code(&operands[0], true);
-                quote!(#matrix.transpose())
-            }
+            MatrixOperation::Transpose => method("transpose"),
             MatrixOperation::Inverse => call("inverse"),
             MatrixOperation::Analytic(Analytic::Exponential) => call("exponential"),
             MatrixOperation::Analytic(Analytic::Phi) => call("phi"),
             MatrixOperation::Analytic(Analytic::Logarithm) => call("logarithm"),
             MatrixOperation::Value => self.opaque(&Callee::Value(String::new()), operands),
             MatrixOperation::Gradient(leaf) => self.opaque_gradient(*leaf, operands),
-            MatrixOperation::Block(i, j) => placed("block", *i, *j),
-            MatrixOperation::Embedded(i, j) => placed("embedded", *i, *j),
-            MatrixOperation::Hadamard => {
-                let (a, b) = (self.code(&operands[0], true), self.by_reference(&operands[1]));
-                quote!(#a.component_mul(#b))
+            MatrixOperation::Block(i, j) => block(self.receiver(&operands[0]), *shape, (*i, *j)),
+            MatrixOperation::Embedded(i, j) => {
+                let matrix = self.by_reference(&operands[0]);
+                let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
+                quote!(#private::embedded(#matrix, #i, #j))
             }
-            MatrixOperation::DiagonalMatrix => call("diagonal_matrix"),
-            MatrixOperation::Diagonal => call("diagonal"),
+            MatrixOperation::Hadamard => method("component_mul"),
+            MatrixOperation::DiagonalMatrix => {
+                let (matrix, diagonal) =
+                    (self.paths.matrix(shape.rows, shape.columns), self.by_reference(&operands[0]));
+                quote!(<#matrix>::from_diagonal(#diagonal))
+            }
+            MatrixOperation::Diagonal => method("diagonal"),
             MatrixOperation::Skew => call("skew"),
             MatrixOperation::SkewComponents => call("skew_components"),
             MatrixOperation::SkewTimes => call("skew_times"),
             MatrixOperation::SkewOuter => call("skew_outer"),
-            MatrixOperation::Pairing => call("pairing"),
-            MatrixOperation::Trace => call("trace"),
+            MatrixOperation::Pairing => method("dot"),
+            MatrixOperation::Trace => method("trace"),
             MatrixOperation::Determinant => call("determinant"),
-            MatrixOperation::Largest => call("largest_entry"),
+            MatrixOperation::Largest => {
+                let (scalar, matrix) = (&self.paths.scalar, self.by_reference(&operands[0]));
+                quote!(#private::Space::<#scalar>::max_abs(#matrix))
+            }
             MatrixOperation::Entry(i, j) => {
-                let matrix = self.code(&operands[0], true);
+                let matrix = self.receiver(&operands[0]);
                 let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
                 quote!(#matrix[(#i, #j)])
             }
@@ -83,8 +95,7 @@ impl Scope<'_, '_> {
         let Code::Whole(whole) = code else { return None };
         let is_open = matches!(
             whole.operation,
-            MatrixOperation::Block(..)
-                | MatrixOperation::Embedded(..)
+            MatrixOperation::Embedded(..)
                 | MatrixOperation::Skew
                 | MatrixOperation::SkewComponents
                 | MatrixOperation::SkewOuter
@@ -95,19 +106,30 @@ impl Scope<'_, '_> {
 
     /// A matrix as an argument of a function.
     fn by_reference(&self, operand: &Code) -> TokenStream {
-        match operand {
-            Code::Whole(whole) => match &whole.operation {
-                MatrixOperation::Argument(input) => self.argument_by_reference(input.role, whole.shape),
-                _ => {
-                    let value = self.code(operand, false);
-                    quote!(&#value)
-                }
-            },
-            _ => {
+        match self.argument(operand) {
+            Some(Place::Reference(name)) => name,
+            Some(Place::Value(value)) => quote!(&#value),
+            None => {
                 let value = self.code(operand, false);
                 quote!(&#value)
             }
         }
+    }
+
+    /// A matrix whose method is called.
+    fn receiver(&self, operand: &Code) -> TokenStream {
+        match self.argument(operand) {
+            Some(Place::Reference(name)) => name,
+            Some(Place::Value(value)) => value,
+            None => self.code(operand, true),
+        }
+    }
+
+    /// A matrix among the arguments of a function.
+    fn argument(&self, operand: &Code) -> Option<Place> {
+        let Code::Whole(whole) = operand else { return None };
+        let MatrixOperation::Argument(input) = &whole.operation else { return None };
+        Some(self.place(input.role, whole.shape))
     }
 
     /// Σ c_i A_i, those that are added first.
@@ -135,22 +157,7 @@ impl Scope<'_, '_> {
         tokens
     }
 
-    /// A matrix among the arguments of a function, by value.
-    fn argument(&self, role: Role, shape: Shape) -> TokenStream {
-        let place = self.place(role, shape);
-        match place {
-            Place::Reference(name) => quote!((*#name)),
-            Place::Value(value) => value,
-        }
-    }
-
-    fn argument_by_reference(&self, role: Role, shape: Shape) -> TokenStream {
-        match self.place(role, shape) {
-            Place::Reference(name) => name,
-            Place::Value(value) => quote!(&#value),
-        }
-    }
-
+    /// Where a matrix among the arguments of a function stands.
     fn place(&self, role: Role, shape: Shape) -> Place {
         let leaf = |name: &str, access: &str| {
             let name = format_ident!("{name}");
@@ -200,8 +207,7 @@ impl Scope<'_, '_> {
         let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
         let start = positions.first().copied().unwrap_or(0);
         if positions.iter().copied().eq(start..start + shape.rows) {
-            let (start, part) = (Literal::usize_unsuffixed(start), self.paths.matrix(shape.rows, 1));
-            return Place::Value(quote!({ let part: #part = #private::block(#name, #start, 0); part }));
+            return Place::Value(block(quote!(#name), shape, (start, 0)));
         }
         let entries = positions.into_iter().map(Literal::usize_unsuffixed);
         Place::Value(quote!(#private::vector([#(#name[#entries]),*])))
@@ -231,6 +237,12 @@ enum Place {
     Reference(TokenStream),
     /// By value.
     Value(TokenStream),
+}
+
+/// The block of a matrix from a place on.
+pub(super) fn block(matrix: TokenStream, shape: Shape, (i, j): (usize, usize)) -> TokenStream {
+    let [rows, columns, i, j] = [shape.rows, shape.columns, i, j].map(Literal::usize_unsuffixed);
+    quote!(#matrix.fixed_view::<#rows, #columns>(#i, #j).into_owned())
 }
 
 /// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`; terms that do not depend on it stand

@@ -15,6 +15,9 @@ pub const LARGEST_UNROLLED: usize = 10_000;
 /// Systems with fewer unknowns are written out, however long their formulas are: the loops over so few of them gain nothing.
 const FEWEST_UNKNOWNS: usize = 15;
 
+/// Bodies on SO(n) keep matrices from as many unknowns on, those of SO(5): there the same products take six tenths of the time.
+const FEWEST_OF_BODIES: usize = 10;
+
 /// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
 const MOST_UNKNOWNS: usize = 64;
 
@@ -27,6 +30,8 @@ pub struct Form {
     pub estimate: usize,
     /// Whether the declaration asks for it.
     pub is_asked: bool,
+    /// Whether it is a body on SO(5) or larger, whose products of matrices are few.
+    pub is_body: bool,
 }
 
 impl Form {
@@ -45,7 +50,8 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     let asked = formulas.model.code.as_ref();
     let dimension = formulas.inertia.shape().rows;
     let is_long = estimate > LARGEST_UNROLLED && dimension >= FEWEST_UNKNOWNS;
-    let is_large = is_long || dimension > MOST_UNKNOWNS;
+    let is_body = is_body(formulas);
+    let is_large = is_long || is_body || dimension > MOST_UNKNOWNS;
     let code = match asked {
         Some(asked) => asked.value,
         None if is_large && without_matrices(formulas).is_none() => CodeForm::Matrices,
@@ -73,7 +79,16 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
         ));
     }
-    Ok(Form { code, estimate, is_asked: asked.is_some() })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body })
+}
+
+/// Whether an equation is that of a body on SO(n), whose Jacobian is Sylvester's map.
+fn is_body(formulas: &Formulas<'_>) -> bool {
+    let mut equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
+    equations.any(|equation| {
+        let is_iterated = equation.solution == Solution::Newton && equation.components.len() >= FEWEST_OF_BODIES;
+        is_iterated && equation.sylvester_factor(formulas).is_some()
+    })
 }
 
 /// The largest linear system that a step or a set-up solves.

@@ -270,6 +270,10 @@ fn separate(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) ->
     kernel(scalars, &grids, Hoisting::Constants(hoisted))
 }
 
+/// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
+/// there, half as long for SO(10), and less memory in all.
+const FEWEST_OF_SYLVESTER: usize = 21;
+
 fn solve<'g>(
     formulas: &Formulas<'g>,
     substep: &Substep<'g>,
@@ -286,6 +290,11 @@ fn solve<'g>(
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
     let mut residual = None;
+    let is_large = scalars.keeps_matrices && equation.components.len() >= FEWEST_OF_SYLVESTER;
+    let sylvester = match equation.solution {
+        Solution::Newton if is_large => equation.sylvester_factor(formulas),
+        _ => None,
+    };
     let (prepare, linearize) = match equation.solution {
         Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
@@ -293,7 +302,7 @@ fn solve<'g>(
         Solution::Linear | Solution::Newton if scalars.keeps_matrices => {
             let linearize = match equation.solution {
                 Solution::Linear => [-equation.residual.substitute(&at_rest(formulas)), equation.directional],
-                _ => [equation.residual, equation.directional],
+                _ => [equation.residual, sylvester.unwrap_or(equation.directional)],
             };
             let linearize = matrices::kernel(&linearize);
             match fixed_point::residual_of_matrices(formulas, equation, predict.as_ref()) {
@@ -331,7 +340,10 @@ fn solve<'g>(
         given: Vec::new(),
         coupled: equation.coupled.clone(),
         solution: equation.solution,
-        structure: equation.structure.clone(),
+        structure: match sylvester {
+            Some(factor) => Structure::Sylvester(factor.shape().rows),
+            None => equation.structure.clone(),
+        },
         prepare,
         predict,
         sine_squared,

@@ -1,11 +1,11 @@
 //! Points of the path, and Newton's method with one unknown held fixed.
 
 use super::unsolvable;
-use crate::implicit::{Equation, is_much_smaller, size};
-use crate::linear::{Orientation, eliminate, rows};
+use crate::implicit::{Equation, Jacobian, is_much_smaller, size};
+use crate::linear::Orientation;
 use crate::space::larger;
 use crate::{Error, Real, Space};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// A point (ξ, s) of the path with its unit tangent, in the direction away from the identity.
 #[derive(Clone, Copy)]
@@ -43,9 +43,9 @@ pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
 }
 
 /// ρ, Dρ and ∂ρ/∂s at a point.
-struct Linearization<T: Real, const M: usize> {
+struct Linearization<T: Real, J: Jacobian<T, M>, const M: usize> {
     residual: SVector<T, M>,
-    jacobian: SMatrix<T, M, M>,
+    jacobian: J,
     rate: SVector<T, M>,
 }
 
@@ -61,12 +61,11 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     pub fn start(&mut self) -> Result<Point<T, M>, Error> {
         let zero = SVector::from_element(T::zero());
         let Linearization { jacobian, rate, .. } = self.linearize(&zero, T::zero());
-        if !(jacobian.is_finite() && rate.is_finite()) {
+        if !(jacobian.all_finite() && rate.is_finite()) {
             return Err(Error::NotFinite { name: "the implicit equation of the step" });
         }
-        let mut slope = core::array::from_fn(|i| [-rate[i]]);
-        self.branch = eliminate(rows(&jacobian), &mut slope).ok_or(unsolvable(T::zero()))?;
-        let slope_xi = SVector::<T, M>::from_fn(|i, _| slope[i][0]);
+        let slope_xi;
+        (slope_xi, self.branch) = jacobian.solve_exchanged(None, &-rate).ok_or(unsolvable(T::zero()))?;
         if !slope_xi.is_finite() {
             return Err(unsolvable(T::zero()));
         }
@@ -129,7 +128,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         while self.is_affordable() {
             let at = self.linearize(&xi, s);
             let (correction, change) = at.correct(parameter)?;
-            let terms = larger(self.weight * s.abs(), at.jacobian.max_abs() * size(&xi));
+            let terms = larger(self.weight * s.abs(), at.jacobian.largest_entry() * size(&xi));
             xi -= correction;
             s -= change;
             // Only the unknowns that move count: a path that saturates has ξ far below its scale.
@@ -164,48 +163,43 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         let half = T::from_ratio(1, 2);
         let turn = larger((slope_xi - from.slope_xi).max_abs() / self.scale, (slope_s - from.slope_s).abs());
         if turn < half {
-            let is_past = slope_s <= T::zero() || Orientation::of(rows(&at.jacobian)) != Some(self.branch);
+            let is_past = slope_s <= T::zero() || at.jacobian.orientation() != Some(self.branch);
             return Some(Point { xi, s, slope_xi, slope_s, is_past });
         }
         None
     }
 
     /// ρ(ξ; sμ) = ρ(ξ; 0) + s(ρ(ξ; μ) − ρ(ξ; 0)), for ρ is affine in μ.
-    fn linearize(&mut self, xi: &SVector<T, M>, s: T) -> Linearization<T, M> {
+    fn linearize(&mut self, xi: &SVector<T, M>, s: T) -> Linearization<T, E::Jacobian, M> {
         self.count(2);
         T::iterated();
         T::iterated();
         let (residual, jacobian) = self.equation.linearize(&self.still, xi);
         let (residual_moving, jacobian_moving) = self.equation.linearize(&self.moving, xi);
         let rate = residual_moving - residual;
-        Linearization { residual: residual + rate * s, jacobian: jacobian + (jacobian_moving - jacobian) * s, rate }
+        Linearization { residual: residual + rate * s, jacobian: jacobian.between(&jacobian_moving, s), rate }
     }
 }
 
-impl<T: Real, const M: usize> Linearization<T, M> {
+impl<T: Real, J: Jacobian<T, M>, const M: usize> Linearization<T, J, M> {
     /// The Newton correction of (ξ, s) with the parameter held fixed.
     fn correct(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
-        self.solve(parameter, core::array::from_fn(|i| self.residual[i]), T::zero())
+        self.solve(parameter, &self.residual, T::zero())
     }
 
     /// The derivatives of (ξ, s) by the parameter.
     fn tangent(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
-        let fixed = |i| if parameter.0 < M { self.jacobian[(i, parameter.0)] } else { self.rate[i] };
-        self.solve(parameter, core::array::from_fn(|i| -fixed(i)), T::one())
+        let fixed = if parameter.0 < M { self.jacobian.column(parameter.0) } else { self.rate };
+        self.solve(parameter, &-fixed, T::one())
     }
 
     /// Solves \[Dρ ∂ρ/∂s\] (ξ, s) = `right` without the column of the parameter, which gets `fixed`.
-    fn solve(&self, parameter: Parameter, right: [T; M], fixed: T) -> Option<(SVector<T, M>, T)> {
-        let mut matrix = rows(&self.jacobian);
-        if parameter.0 < M {
-            matrix.iter_mut().zip(&self.rate).for_each(|(row, &rate)| row[parameter.0] = rate);
-        }
-        let mut unknowns = right.map(|entry| [entry]);
-        eliminate(matrix, &mut unknowns)?;
-        let mut xi = SVector::from_fn(|i, _| unknowns[i][0]);
+    fn solve(&self, parameter: Parameter, right: &SVector<T, M>, fixed: T) -> Option<(SVector<T, M>, T)> {
+        let exchanged = (parameter.0 < M).then_some((parameter.0, &self.rate));
+        let (mut xi, _) = self.jacobian.solve_exchanged(exchanged, right)?;
         let mut s = fixed;
-        if parameter.0 < M {
-            core::mem::swap(&mut s, &mut xi[parameter.0]);
+        if let Some(unknown) = xi.get_mut(parameter.0) {
+            core::mem::swap(&mut s, unknown);
         }
         Some((xi, s))
     }

@@ -24,6 +24,7 @@ impl<const MOST: u32> Cubic<MOST> {
 
 impl<const MOST: u32> Equation<f64, 3> for Cubic<MOST> {
     type Terms = Vector3<f64>;
+    type Jacobian = Matrix3<f64>;
 
     fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
         *target
@@ -52,6 +53,7 @@ struct Provided(Cubic<0>);
 
 impl Equation<f64, 3> for Provided {
     type Terms = Vector3<f64>;
+    type Jacobian = Matrix3<f64>;
 
     fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
         self.0.prepare(target)

@@ -2,10 +2,9 @@
 
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::{
-    InertiaInverse, Orientation, block, determinant, diagonal, diagonal_matrix, distance_of_projection, embedded,
-    great_circle, invert_uniform, kinetic_energy_uniform, largest_entry, matrix_of, on_sphere, orientation_of_inertia,
-    orientation_of_uniform, pairing, perpendicular, product, projection, pushed, scaled, shifted, skew,
-    skew_components, skew_outer, skew_times, tangent, trace,
+    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, great_circle,
+    invert_uniform, kinetic_energy_uniform, matrix_of, on_sphere, orientation_of_inertia, orientation_of_uniform,
+    perpendicular, projection, pushed, shifted, skew, skew_components, skew_outer, skew_times, tangent,
 };
 use clebsch::Error;
 use nalgebra::{SMatrix, SVector};
@@ -25,23 +24,15 @@ fn near(a: f64, b: f64) -> bool {
 proptest! {
     #![proptest_config(cases(64))]
 
-    /// Those of nalgebra.
+    /// By what nalgebra has.
     #[test]
-    fn operations_are_those_of_matrices(a in square(), b in square(), v in vector::<5>(1.0), s in -2.0_f64..2.0) {
-        prop_assert!((product(&a, &b) - a * b).amax() < 1e-13 && (product(&a, &v) - a * v).amax() < 1e-13);
-        prop_assert_eq!(scaled(&a, s), a * s);
+    fn operations_are_those_of_matrices(a in square(), part in matrix::<2, 3>(1.0), s in -2.0_f64..2.0) {
         prop_assert_eq!(shifted(&a, s), a + Square::identity() * s);
-        prop_assert!(near(pairing(&a, &b), a.dot(&b)) && near(trace(&a), a.trace()));
         prop_assert!(near(determinant(&a), a.determinant()));
-        prop_assert_eq!(diagonal(&a), a.diagonal());
-        prop_assert_eq!(diagonal_matrix(&v), Square::from_diagonal(&v));
-        let part: SMatrix<f64, 2, 3> = block(&a, 1, 2);
-        prop_assert_eq!(part, a.fixed_view::<2, 3>(1, 2).into_owned());
         let whole: Square = embedded(&part, 1, 2);
-        prop_assert_eq!(block::<f64, 5, 5, 2, 3>(&whole, 1, 2), part);
+        prop_assert_eq!(whole.fixed_view::<2, 3>(1, 2).into_owned(), part);
         prop_assert!(near(whole.norm(), part.norm()), "zero elsewhere");
         prop_assert!((matrix_of(|x: &SVector<f64, 5>| a * x) - a).amax() == 0.0);
-        prop_assert_eq!(largest_entry(&a), a.amax());
     }
 
     /// x ↦ Σ x_k E_k with E = E_ji − E_ij, A ↦ ⟨A, E⟩ its transpose, and what they do to vectors.
@@ -55,6 +46,43 @@ proptest! {
         prop_assert!((skew_times(&x, &v) - z * v).amax() < 1e-14);
         let outer: SVector<f64, 10> = skew_outer(&v, &w);
         prop_assert!((outer - skew_components::<f64, 5, 10>(&(v * w.transpose()))).amax() < 1e-15);
+    }
+
+    /// x ↦ ⟨x^B, E⟩ and its matrix are the same Jacobian: values, solutions, signs, columns, sizes.
+    #[test]
+    fn maps_of_skew_matrices_are_their_matrices(a in square(), b in square(), x in vector::<10>(1.0), c in vector::<10>(1.0), s in 0.0_f64..1.0, j in 0_usize..10) {
+        let factor = a + Square::identity() * 1.5;
+        let (map, other) = (Sylvester::new(factor), Sylvester::new(b));
+        let matrix: SMatrix<f64, 10, 10> = matrix_of(|x| map.times(x));
+        let delta: Square = skew(&x);
+        let value: SVector<f64, 10> = skew_components(&(delta * factor + factor.transpose() * delta));
+        prop_assert!((map.times(&x) - value / 2.0).amax() < 1e-14, "half of a skew matrix's components");
+        prop_assume!(matrix.try_inverse().is_some_and(|inverse| inverse.norm() < 1e3));
+        let is_same = |a: Option<(SVector<f64, 10>, Orientation)>, b: Option<(SVector<f64, 10>, Orientation)>| match (a, b) {
+            (Some((x, sign)), Some((y, turned))) => (x - y).amax() < 1e-9 * (1.0 + y.amax()) && sign == turned,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        prop_assert!(is_same(map.solve(&x), matrix.solve(&x)));
+        prop_assert!(is_same(map.solve_exchanged(None, &x), matrix.solve_exchanged(None, &x)));
+        let mut exchanged = matrix;
+        exchanged.set_column(j, &c);
+        if exchanged.try_inverse().is_some_and(|inverse| inverse.norm() < 1e3) {
+            prop_assert!(is_same(map.solve_exchanged(Some((j, &c)), &x), exchanged.solve(&x)));
+            prop_assert!(is_same(matrix.solve_exchanged(Some((j, &c)), &x), exchanged.solve(&x)));
+        }
+        let [own, whole]: [&dyn Fn() -> Option<Orientation>; 2] = [&|| Jacobian::<f64, 10>::orientation(&map), &|| matrix.orientation()];
+        prop_assert_eq!(own(), whole());
+        let (column, expected) = (Jacobian::<f64, 10>::column(&map, j), matrix.column(j).into_owned());
+        prop_assert!((column - expected).amax() < 1e-15 && Jacobian::<f64, 10>::column(&matrix, j) == expected);
+        let terms: f64 = matrix.iter().zip((0..10).flat_map(|k| [x[k]; 10])).map(|(entry, x)| (entry * x).abs()).sum();
+        prop_assert!(near(matrix.size_of_terms(&x), terms) && map.size_of_terms(&x) >= terms * (1.0 - 1e-14));
+        prop_assert!(matrix.largest_entry() == matrix.amax());
+        prop_assert!(Jacobian::<f64, 10>::largest_entry(&map) >= matrix.amax() * (1.0 - 1e-15));
+        let between = Jacobian::<f64, 10>::between(&map, &other, s).times(&x);
+        prop_assert!((between - (map.times(&x) * (1.0 - s) + other.times(&x) * s)).amax() < 1e-13);
+        let broken = Sylvester::new(factor * f64::NAN);
+        prop_assert!(Jacobian::<f64, 10>::all_finite(&map) && !Jacobian::<f64, 10>::all_finite(&broken));
+        prop_assert_eq!(Jacobian::<f64, 10>::lane(&map, 0).times(&x), map.times(&x));
     }
 
     /// Σ⁻¹μ and the energy by any inertia, by a diagonal one and by κI.

@@ -1,0 +1,49 @@
+//! Jacobians of bodies on SO(n): Sylvester's linear map of skew matrices.
+
+use clebsch_symbolic::{Expr, Group, Shape, View};
+
+use crate::derive::equation::Equation;
+use crate::derive::{Formulas, Symbols};
+use crate::model::Model;
+
+impl<'g> Equation<'g> {
+    /// B with Dρ(x)·δ = ⟨δ^·B, E⟩ for all δ in so(n), which is ΔB + BᵀΔ for Δ = δ^.
+    ///
+    /// ⟨A, E⟩ is the skew part of A, so that a term uΔ counts as Δuᵀ. `None` where Δ stands between two matrices, and for other groups.
+    pub fn sylvester_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
+        let Formulas { model, symbols, .. } = formulas;
+        let (n, direction) = self.whole_rotation(model, symbols)?;
+        let mut factor = model.graph.zero(Shape::square(n));
+        for outer in self.directional.word_terms() {
+            let [components] = outer.word[..] else { return None };
+            let View::Components(_, inner) = components.view() else { return None };
+            for term in outer.over(inner) {
+                let turns = |letter: &Expr<'g>| matches!(letter.view(), View::Wedge(_, x) if x == direction);
+                let at = term.word.iter().position(turns)?;
+                let (before, after) = (&term.word[..at], &term.word[at + 1..]);
+                let scale = term.scale(model.graph);
+                if before.iter().chain(after).chain([&scale]).any(|other| other.depends_on(direction)) {
+                    return None;
+                }
+                let product = |letters: &[Expr<'g>]| {
+                    letters.iter().fold(model.graph.identity(n), |product, letter| product * *letter)
+                };
+                factor = factor
+                    + match (before.is_empty(), after.is_empty()) {
+                        (true, _) => scale * product(after),
+                        (_, true) => scale * product(before).transpose(),
+                        _ => return None,
+                    };
+            }
+        }
+        Some(factor)
+    }
+
+    /// n and δ, where the unknowns are all those of one SO(n).
+    fn whole_rotation(&self, model: &Model<'g>, symbols: &Symbols<'g>) -> Option<(usize, Expr<'g>)> {
+        let [block] = symbols.blocks_of(&self.components)[..] else { return None };
+        let block = &symbols.blocks[block];
+        let Group::SpecialOrthogonal(n) = model.factors[block.factor].group else { return None };
+        self.components.iter().copied().eq(block.components()).then_some((n, block.direction))
+    }
+}

@@ -1,0 +1,108 @@
+//! Dρ(ξ) as the solvers take it: a matrix, or a linear map that is inverted by its structure.
+
+use crate::linear::{Orientation, eliminate, rows, solve_dense};
+use crate::space::lane_of;
+use crate::{Real, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
+
+/// The Jacobian of an implicit equation for M unknowns.
+pub trait Jacobian<T: Scalar, const M: usize>: Copy {
+    /// The same of single numbers.
+    type Lane: Jacobian<T::Lane, M>;
+
+    /// What it is in one lane.
+    fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// Δ with Dρ Δ = `residual` and the sign of det Dρ; `None` where it is singular in all lanes.
+    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)>;
+
+    /// The sign of det Dρ; `None` where it is singular or not finite in some lane.
+    fn orientation(&self) -> Option<Orientation>;
+
+    /// The same as [`solve`](Self::solve) with another column j in place of its own; by elimination where this is a matrix.
+    fn solve_exchanged(
+        &self,
+        exchanged: Option<(usize, &SVector<T, M>)>,
+        right: &SVector<T, M>,
+    ) -> Option<(SVector<T, M>, Orientation)>
+    where
+        T: Real;
+
+    /// Column j: the derivative with respect to unknown j.
+    fn column(&self, j: usize) -> SVector<T, M>;
+
+    /// Σ |Dρ_ij| |x_j|, the size of the terms of Dρ x, or somewhat more.
+    fn size_of_terms(&self, x: &SVector<T, M>) -> T;
+
+    /// The largest |Dρ_ij|, or somewhat more.
+    fn largest_entry(&self) -> T;
+
+    /// Whether all of it is finite.
+    fn all_finite(&self) -> bool;
+
+    /// (1 − s) Dρ + s Dρ′.
+    fn between(&self, other: &Self, s: T) -> Self;
+}
+
+impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
+    type Lane = SMatrix<T::Lane, M, M>;
+
+    #[inline]
+    fn lane(&self, lane: usize) -> Self::Lane {
+        lane_of(self, lane)
+    }
+
+    #[inline(always)]
+    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+        solve_dense(self, residual)
+    }
+
+    #[inline]
+    fn orientation(&self) -> Option<Orientation> {
+        Orientation::of(rows(self))
+    }
+
+    fn solve_exchanged(
+        &self,
+        exchanged: Option<(usize, &SVector<T, M>)>,
+        right: &SVector<T, M>,
+    ) -> Option<(SVector<T, M>, Orientation)>
+    where
+        T: Real,
+    {
+        let mut matrix = rows(self);
+        if let Some((j, column)) = exchanged {
+            let entries = matrix.iter_mut().filter_map(|row| row.get_mut(j));
+            entries.zip(column).for_each(|(entry, &other)| *entry = other);
+        }
+        let mut unknowns = core::array::from_fn(|i| [right[i]]);
+        let orientation = eliminate(matrix, &mut unknowns)?;
+        Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
+    }
+
+    #[inline]
+    fn column(&self, j: usize) -> SVector<T, M> {
+        SVector::from_fn(|i, _| self.get((i, j)).copied().unwrap_or_else(T::zero))
+    }
+
+    fn size_of_terms(&self, x: &SVector<T, M>) -> T {
+        let length = |column: &[T; M]| column.iter().fold(T::zero(), |sum, entry| sum + entry.abs());
+        let columns = self.data.0.iter().zip(x.iter());
+        columns.fold(T::zero(), |sum, (column, x)| sum + length(column) * x.abs())
+    }
+
+    #[inline]
+    fn largest_entry(&self) -> T {
+        Space::max_abs(self)
+    }
+
+    #[inline]
+    fn all_finite(&self) -> bool {
+        Space::<T>::is_finite(self)
+    }
+
+    #[inline]
+    fn between(&self, other: &Self, s: T) -> Self {
+        self + (other - self) * s
+    }
+}

@@ -1,0 +1,196 @@
+//! The real Schur form of a small matrix, by QR iteration.
+
+use crate::linear::{entry, rows};
+use crate::{Real, Space};
+use core::array::from_fn;
+use nalgebra::SMatrix;
+
+/// B = Q T Qᵀ with orthogonal Q, and T upper triangular but for blocks of two rows on its diagonal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Schur<T, const N: usize> {
+    pub q: [[T; N]; N],
+    pub t: [[T; N]; N],
+}
+
+/// Sweeps for one block: two or three are usual.
+const SWEEPS: u32 = 60;
+
+impl<T: Real, const N: usize> Schur<T, N> {
+    /// By Householder's reflections to Hessenberg form, then by sweeps with the two shifts of Francis; `None` for a matrix that is not
+    /// finite.
+    ///
+    /// Blocks of two rows are left as they are, whether their eigenvalues are real or not. Cost: about 20 N³ multiplications.
+    ///
+    /// Source: Golub and Van Loan, *Matrix Computations*, 4th edition, algorithms 7.4.2, 7.5.1 and 7.5.2.
+    pub fn new(b: &SMatrix<T, N, N>) -> Option<Self> {
+        if !b.is_finite() {
+            return None;
+        }
+        let mut schur = Self::hessenberg(rows(b));
+        let (mut end, mut sweeps) = (N, 0);
+        while end > 2 {
+            let start = schur.start_of_block(end);
+            if end - start <= 2 {
+                (end, sweeps) = (start, 0);
+                continue;
+            }
+            if sweeps == SWEEPS {
+                return None;
+            }
+            sweeps += 1;
+            schur.sweep(start, end, sweeps % 10 == 0);
+        }
+        Some(schur)
+    }
+
+    /// B = Q H Qᵀ with zeros below the first subdiagonal of H.
+    fn hessenberg(b: [[T; N]; N]) -> Self {
+        let identity = from_fn(|i| from_fn(|j| if i == j { T::one() } else { T::zero() }));
+        let mut form = Self { q: identity, t: b };
+        for k in 0..N.saturating_sub(2) {
+            let below = from_fn(|i| if i > k { entry(&form.t, i, k) } else { T::zero() });
+            form.reflect(0, Reflection::<T, N>::onto(below, k + 1), k, N);
+            form.t.iter_mut().skip(k + 2).for_each(|row| row[k] = T::zero());
+        }
+        form
+    }
+
+    /// Where the block begins that ends before `end` and has no negligible entry below its diagonal.
+    fn start_of_block(&mut self, end: usize) -> usize {
+        let mut start = end - 1;
+        while start > 0 {
+            let around = entry(&self.t, start, start).abs() + entry(&self.t, start - 1, start - 1).abs();
+            let Some(below) = self.t.get_mut(start).and_then(|row| row.get_mut(start - 1)) else { break };
+            if below.abs() <= T::EPSILON * around {
+                *below = T::zero();
+                break;
+            }
+            start -= 1;
+        }
+        start
+    }
+
+    /// One sweep over rows `start` to `end`, with the two eigenvalues of its last two rows as shifts, or with others that lead out of cycles.
+    fn sweep(&mut self, start: usize, end: usize, is_exceptional: bool) {
+        let at = |i: usize, j: usize| entry(&self.t, i, j);
+        let (last, before) = (end - 1, end - 2);
+        let (trace, determinant) = match is_exceptional {
+            false => (
+                at(before, before) + at(last, last),
+                at(before, before) * at(last, last) - at(before, last) * at(last, before),
+            ),
+            true => {
+                let size = at(last, before).abs() + at(before, before - 1).abs();
+                (size * T::from_ratio(3, 2), size * size)
+            }
+        };
+        // the first column of (T − σ₁)(T − σ₂)
+        let (first, second) = (at(start, start), at(start + 1, start + 1));
+        let below = at(start + 1, start);
+        let column = [
+            first * first + at(start, start + 1) * below - trace * first + determinant,
+            below * (first + second - trace),
+            below * at(start + 2, start + 1),
+        ];
+        self.reflect(start, Reflection::onto(column, 0), start, end.min(start + 4));
+        for k in start + 1..before {
+            let bulge = from_fn(|i| entry(&self.t, k + i, k - 1));
+            self.reflect(k, Reflection::<T, 3>::onto(bulge, 0), k - 1, end.min(k + 4));
+            self.clear(k + 1..k + 3, k - 1);
+        }
+        let bulge = from_fn(|i| entry(&self.t, before + i, before - 1));
+        self.reflect(before, Reflection::<T, 2>::onto(bulge, 0), before - 1, end);
+        self.clear(last..end, before - 1);
+    }
+
+    /// Zeros where a reflection has made them up to rounding.
+    fn clear(&mut self, rows: core::ops::Range<usize>, column: usize) {
+        let rows = self.t.get_mut(rows).into_iter().flatten();
+        rows.filter_map(|row| row.get_mut(column)).for_each(|entry| *entry = T::zero());
+    }
+
+    /// T ← P T P and Q ← Q P for the reflection P of W rows from `at` on: in columns from `left` on, and in rows before `bottom`.
+    fn reflect<const W: usize>(&mut self, at: usize, reflection: Reflection<T, W>, left: usize, bottom: usize) {
+        let Reflection { v, weight } = reflection;
+        if let Some(rows) = self.t.get_mut(at..).and_then(<[_]>::first_chunk_mut::<W>) {
+            for j in left..N {
+                let part = rows.iter().zip(&v).fold(T::zero(), |sum, (row, v)| sum + row[j] * *v) * weight;
+                rows.iter_mut().zip(&v).for_each(|(row, v)| row[j] -= *v * part);
+            }
+        }
+        for row in self.t.iter_mut().take(bottom).chain(&mut self.q) {
+            if let Some(entries) = row.get_mut(at..).and_then(<[_]>::first_chunk_mut::<W>) {
+                let part = entries.iter().zip(&v).fold(T::zero(), |sum, (x, v)| sum + *x * *v) * weight;
+                entries.iter_mut().zip(&v).for_each(|(x, v)| *x -= *v * part);
+            }
+        }
+    }
+}
+
+/// I − w v vᵀ
+struct Reflection<T, const W: usize> {
+    v: [T; W],
+    weight: T,
+}
+
+impl<T: Real, const W: usize> Reflection<T, W> {
+    /// That which leaves of x only entry `head`; none where there is no other.
+    fn onto(x: [T; W], head: usize) -> Self {
+        let mut v = x;
+        let others = x.iter().enumerate().filter(|(i, _)| *i != head);
+        let rest = others.fold(T::zero(), |sum, (_, x)| sum + *x * *x);
+        match v.get_mut(head) {
+            // not where the rest is just small: it would stay as it is, and the sweep would stand still
+            Some(first) if rest > T::zero() => {
+                let square = rest + *first * *first;
+                let (length, size) = (square.sqrt(), first.abs());
+                *first = if *first < T::zero() { *first - length } else { *first + length };
+                Self { v, weight: T::one() / (square + length * size) }
+            }
+            _ => Self { v, weight: T::zero() },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Schur;
+    use nalgebra::SMatrix;
+
+    /// B = Q T Qᵀ, Q is orthogonal, and below its diagonal T has single entries alone, no two in a row.
+    fn is_a_form_of<const N: usize>(b: &SMatrix<f64, N, N>) {
+        let Schur { q, t } = Schur::new(b).expect("a matrix of numbers");
+        let [q, t] = [q, t].map(|rows| SMatrix::<f64, N, N>::from_fn(|i, j| rows[i][j]));
+        assert!((q * t * q.transpose() - b).norm() <= 1e-14 * N as f64 * b.norm(), "{b}");
+        assert!((q.transpose() * q - SMatrix::identity()).norm() < 1e-14 * N as f64, "{q}");
+        for i in 1..N {
+            assert!((0..i - 1).all(|j| t[(i, j)] == 0.0), "{t}");
+            assert!(i < 2 || t[(i, i - 1)] == 0.0 || t[(i - 1, i - 2)] == 0.0, "{t}");
+        }
+    }
+
+    #[test]
+    fn matrices_are_decomposed() {
+        let wave = |shift: usize| move |i: usize, j: usize| ((i * i * 7 + j * 3 * (i + 1) + shift) as f64).sin();
+        for shift in 0..200 {
+            is_a_form_of(&SMatrix::<f64, 1, 1>::from_fn(wave(shift)));
+            is_a_form_of(&SMatrix::<f64, 2, 2>::from_fn(wave(shift)));
+            is_a_form_of(&SMatrix::<f64, 3, 3>::from_fn(wave(shift)));
+            is_a_form_of(&SMatrix::<f64, 4, 4>::from_fn(wave(shift)));
+            is_a_form_of(&SMatrix::<f64, 7, 7>::from_fn(wave(shift)));
+            is_a_form_of(&SMatrix::<f64, 10, 10>::from_fn(wave(shift)));
+        }
+    }
+
+    /// Cyclic shifts, on which sweeps without other shifts stand still; all eigenvalues alike; entries of very different sizes.
+    #[test]
+    fn special_matrices_are_decomposed() {
+        is_a_form_of(&SMatrix::<f64, 6, 6>::from_fn(|i, j| if (i + 1) % 6 == j { 1.0 } else { 0.0 }));
+        is_a_form_of(&SMatrix::<f64, 4, 4>::from_fn(|i, j| if (i + 1) % 4 == j { 1.0 } else { 0.0 }));
+        is_a_form_of(&SMatrix::<f64, 6, 6>::identity());
+        is_a_form_of(&SMatrix::<f64, 6, 6>::from_fn(|i, j| if i <= j { 1.0 } else { 0.0 }));
+        is_a_form_of(&SMatrix::<f64, 6, 6>::from_fn(|i, j| ((i * j) as f64).cos() * 10_f64.powi(-4 * (i + j) as i32)));
+        is_a_form_of(&SMatrix::<f64, 6, 6>::from_fn(|i, j| 1.0 / (1 + i + j) as f64));
+        assert!(Schur::new(&SMatrix::<f64, 3, 3>::repeat(f64::NAN)).is_none());
+    }
+}

@@ -1,0 +1,381 @@
+//! The linear map Δ ↦ ΔB + BᵀΔ of skew matrices, inverted without the matrix of n(n − 1)/2 rows.
+//!
+//! It is Dρ of the momentum equation of a body on SO(n) in Cayley's chart. With B = QTQᵀ (Schur), Y = QᵀΔQ is skew too and solves
+//! TᵀY + YT = QᵀRQ for the right side R, block after block from the first. The eigenvalues of the map are the sums λ_i + λ_j, i < j, of
+//! two of B: flat bodies, which have an eigenvalue 0, are no exception. The sign of their product is that of the small systems' determinants.
+//!
+//! Source: Bartels and Stewart, *Solution of the matrix equation AX + XB = C*, Communications of the ACM 15 (1972) 820–826.
+
+use crate::implicit::Jacobian;
+use crate::linear::{Orientation, eliminate, entry, power_of_two_near, rows, solve_dense};
+use crate::matrices::{matrix_of, skew, skew_components};
+use crate::schur::Schur;
+use crate::space::{lane_of, set_lane};
+use crate::{Mask, Real, Scalar, Space};
+use core::array::from_fn;
+use nalgebra::{SMatrix, SVector};
+
+/// The map x ↦ ⟨x^B, E⟩ of the components of skew matrices of N rows, in the basis of [`skew`]: ΔB + BᵀΔ for Δ = x^.
+///
+/// Cost of a solve: about 30 N³ multiplications.
+#[derive(Clone, Copy, Debug)]
+pub struct Sylvester<T, const N: usize> {
+    factor: SMatrix<T, N, N>,
+}
+
+impl<T: Scalar, const N: usize> Sylvester<T, N> {
+    /// The map with the factor B.
+    #[inline]
+    pub fn new(factor: SMatrix<T, N, N>) -> Self {
+        Self { factor }
+    }
+
+    /// Its value at x.
+    #[inline]
+    pub fn times<const M: usize>(&self, x: &SVector<T, M>) -> SVector<T, M> {
+        let x: SMatrix<T, N, N> = skew(x);
+        skew_components(&(x * self.factor))
+    }
+}
+
+impl<T: Real, const N: usize> Sylvester<T, N> {
+    /// The solutions for some right sides, and the sign of the determinant; `None` where the map is singular.
+    fn solutions<const M: usize, const K: usize>(
+        &self,
+        rights: [SVector<T, M>; K],
+    ) -> Option<([SVector<T, M>; K], Orientation)> {
+        if T::DERIVATIVES > 0 {
+            // derivatives of what the iteration neglects are not negligible
+            return dense_solutions(&matrix_of(|x| self.times(x)), rights);
+        }
+        // squares of entries of ordinary size are numbers, whatever the units
+        let unit = power_of_two_near(self.factor.max_abs());
+        let schur = Schur::new(&(self.factor * unit))?;
+        let (mut solutions, mut orientation) = (rights, Orientation::POSITIVE);
+        for solution in &mut solutions {
+            (*solution, orientation) = schur.solve(&(*solution * unit))?;
+        }
+        Some((solutions, orientation))
+    }
+}
+
+/// The solutions by elimination.
+fn dense_solutions<T: Real, const M: usize, const K: usize>(
+    matrix: &SMatrix<T, M, M>,
+    rights: [SVector<T, M>; K],
+) -> Option<([SVector<T, M>; K], Orientation)> {
+    let mut orientation = Orientation::of(rows(matrix))?;
+    let mut solutions = rights;
+    for solution in &mut solutions {
+        (*solution, orientation) = solve_dense(matrix, solution)?;
+    }
+    Some((solutions, orientation))
+}
+
+/// Rows of a block on the diagonal of a Schur form: the first, and one or two in all.
+#[derive(Clone, Copy)]
+struct Block {
+    first: usize,
+    size: usize,
+}
+
+impl<T: Real, const N: usize> Schur<T, N> {
+    /// The blocks on the diagonal, from the first; those of no rows are behind them.
+    fn blocks(&self) -> [Block; N] {
+        let mut next = 0;
+        from_fn(|_| {
+            let first = next;
+            let size = match entry(&self.t, first + 1, first) == T::zero() {
+                _ if first >= N => 0,
+                true => 1,
+                false => 2,
+            };
+            next += size;
+            Block { first, size }
+        })
+    }
+
+    /// x with ⟨x^B, E⟩ = `right`, and the sign of the determinant of this map; `None` where it is 0.
+    fn solve<const M: usize>(&self, right: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+        let q = SMatrix::<T, N, N>::from_fn(|i, j| self.q[i][j]);
+        let right: SMatrix<T, N, N> = skew(right);
+        let right = rows(&(q.transpose() * right * q));
+        // columns of T
+        let t: [[T; N]; N] = from_fn(|j| from_fn(|i| self.t[i][j]));
+        let (blocks, mut y, mut orientation) = (self.blocks(), [[T::zero(); N]; N], Orientation::POSITIVE);
+        for (number, p) in blocks.iter().enumerate() {
+            for q in blocks.iter().skip(number).filter(|q| q.size > 0) {
+                // (QᵀRQ)_ij without the terms of blocks before, in which T_kiY_kj is −T_kiY_jk
+                let rest = |i: usize, j: usize| {
+                    let [above, left] =
+                        [[i, j, p.first], [j, i, q.first]].map(|[i, j, count]| dot(&t, i, &y, j, count));
+                    entry(&right, i, j) + above - left
+                };
+                let (found, sign) =
+                    if p.first == q.first { alone(&self.t, *p, rest)? } else { pair(&self.t, *p, *q, rest)? };
+                orientation = orientation * sign;
+                for (k, value) in found.into_iter().enumerate() {
+                    let (i, j) = (p.first + k / 2, q.first + k % 2);
+                    if k / 2 < p.size && k % 2 < q.size {
+                        set(&mut y, i, j, value);
+                        set(&mut y, j, i, -value);
+                    }
+                }
+            }
+        }
+        let y = SMatrix::<T, N, N>::from_fn(|i, j| y[i][j]);
+        Some((skew_components(&(q * y * q.transpose())) * T::from_ratio(1, 2), orientation))
+    }
+}
+
+/// Σ a_ik b_jk, k < `count`.
+fn dot<T: Real, const N: usize>(a: &[[T; N]; N], i: usize, b: &[[T; N]; N], j: usize, count: usize) -> T {
+    let entries = a.get(i).into_iter().flatten().zip(b.get(j).into_iter().flatten());
+    entries.take(count).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
+}
+
+fn set<T: Real, const N: usize>(rows: &mut [[T; N]; N], i: usize, j: usize, value: T) {
+    if let Some(entry) = rows.get_mut(i).and_then(|row| row.get_mut(j)) {
+        *entry = value;
+    }
+}
+
+/// Y_pp, row by row: skew, so that it is 0 but for the number y with (t₁₁ + t₂₂) y = `rest` of a block of two rows.
+fn alone<T: Real, const N: usize>(
+    t: &[[T; N]; N],
+    p: Block,
+    rest: impl Fn(usize, usize) -> T,
+) -> Option<([T; 4], Orientation)> {
+    let zero = T::zero();
+    if p.size < 2 {
+        return Some(([zero; 4], Orientation::POSITIVE));
+    }
+    let (i, j) = (p.first, p.first + 1);
+    let ([y], sign) = quotient(rest(i, j), entry(t, i, i) + entry(t, j, j))?;
+    Some(([zero, y, -y, zero], sign))
+}
+
+/// Y_pq, row by row, with T_ppᵀ Y_pq + Y_pq T_qq = `rest`.
+fn pair<T: Real, const N: usize>(
+    t: &[[T; N]; N],
+    p: Block,
+    q: Block,
+    rest: impl Fn(usize, usize) -> T,
+) -> Option<([T; 4], Orientation)> {
+    if p.size == 1 && q.size == 1 {
+        let ([y], sign) = quotient(rest(p.first, q.first), entry(t, p.first, p.first) + entry(t, q.first, q.first))?;
+        return Some(([y, T::zero(), T::zero(), T::zero()], sign));
+    }
+    let holds = |row: usize| row / 2 < p.size && row % 2 < q.size;
+    let matrix: [[T; 4]; 4] = from_fn(|row| {
+        let (i, j) = (row / 2, row % 2);
+        from_fn(|column| {
+            let (k, l) = (column / 2, column % 2);
+            if !(holds(row) && holds(column)) {
+                return if row == column { T::one() } else { T::zero() };
+            }
+            let above = if j == l { entry(t, p.first + k, p.first + i) } else { T::zero() };
+            let left = if i == k { entry(t, q.first + l, q.first + j) } else { T::zero() };
+            above + left
+        })
+    });
+    let mut y = from_fn(|row| [if holds(row) { rest(p.first + row / 2, q.first + row % 2) } else { T::zero() }]);
+    let orientation = eliminate(matrix, &mut y)?;
+    Some((y.map(|[y]| y), orientation))
+}
+
+/// a/b and the sign of b; `None` where it is 0 or not finite.
+fn quotient<T: Real>(a: T, b: T) -> Option<([T; 1], Orientation)> {
+    let sign = if b < T::zero() { Orientation::NEGATIVE } else { Orientation::POSITIVE };
+    (b != T::zero() && b.is_finite()).then(|| ([a / b], sign))
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, N> {
+    type Lane = Sylvester<T::Lane, N>;
+
+    fn lane(&self, lane: usize) -> Self::Lane {
+        Sylvester::new(lane_of(&self.factor, lane))
+    }
+
+    #[inline(never)]
+    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+        let mut solution = *residual;
+        let (mut regular, mut negative) = (0_u16, 0_u16);
+        for lane in 0..T::LANES {
+            let own = Sylvester::new(lane_of(&self.factor, lane));
+            if let Some(([own], orientation)) = own.solutions([lane_of(residual, lane)]) {
+                set_lane(&mut solution, lane, &own);
+                regular |= 1 << lane;
+                negative |= u16::from(orientation == Orientation::NEGATIVE) << lane;
+            }
+        }
+        let orientation = Orientation::new(T::Mask::from_bits(regular), T::Mask::from_bits(negative));
+        (regular != 0).then_some((solution, orientation))
+    }
+
+    fn orientation(&self) -> Option<Orientation> {
+        let (_, orientation) = Jacobian::<T, M>::solve(self, &SVector::from_element(T::zero()))?;
+        orientation.is_known::<T>().then_some(orientation)
+    }
+
+    fn solve_exchanged(
+        &self,
+        exchanged: Option<(usize, &SVector<T, M>)>,
+        right: &SVector<T, M>,
+    ) -> Option<(SVector<T, M>, Orientation)>
+    where
+        T: Real,
+    {
+        let Some((j, column)) = exchanged else { return Jacobian::<T, M>::solve(self, right) };
+        // Sherman and Morrison: A + (c − a_j) e_jᵀ has the solution x − (x_j/z_j)(z − e_j) for Ax = right, Az = c
+        let ([mut x, z], orientation) = self.solutions([*right, *column])?;
+        let (pivot, entry) = (z.get(j)?, x.get(j).copied()?);
+        if *pivot == T::zero() {
+            return None;
+        }
+        let (unknown, turned) = (entry / *pivot, *pivot < T::zero());
+        x -= z * unknown;
+        *x.get_mut(j)? = unknown;
+        Some((x, if turned { orientation * Orientation::NEGATIVE } else { orientation }))
+    }
+
+    fn column(&self, j: usize) -> SVector<T, M> {
+        self.times(&SVector::<T, M>::from_fn(|i, _| if i == j { T::one() } else { T::zero() }))
+    }
+
+    fn size_of_terms(&self, x: &SVector<T, M>) -> T {
+        // the sum of all entries of |Δ||B|
+        let delta: SMatrix<T, N, N> = skew(x);
+        let sum = |entries: &mut dyn Iterator<Item = T>| entries.fold(T::zero(), |sum, entry| sum + entry.abs());
+        let terms =
+            (0..N).map(|k| sum(&mut delta.column(k).iter().copied()) * sum(&mut self.factor.row(k).iter().copied()));
+        terms.fold(T::zero(), |sum, term| sum + term)
+    }
+
+    fn largest_entry(&self) -> T {
+        // entries are B_ij, and B_ii + B_jj
+        self.factor.max_abs() * T::from_ratio(2, 1)
+    }
+
+    fn all_finite(&self) -> bool {
+        Space::<T>::is_finite(&self.factor)
+    }
+
+    fn between(&self, other: &Self, s: T) -> Self {
+        Self::new(self.factor + (other.factor - self.factor) * s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sylvester;
+    use crate::implicit::Jacobian;
+    use crate::linear::{Orientation, rows, solve_dense};
+    use crate::matrices::matrix_of;
+    use nalgebra::{SMatrix, SVector};
+
+    /// Numbers between −1 and 1 by a linear congruence.
+    fn draw<const R: usize, const C: usize>(seed: &mut u64) -> SMatrix<f64, R, C> {
+        SMatrix::from_fn(|_, _| {
+            *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        })
+    }
+
+    /// The same by elimination of all unknowns: solutions, signs, columns, and systems with an exchanged column.
+    fn is_that_of_its_matrix<const N: usize, const M: usize>(factor: SMatrix<f64, N, N>, seed: &mut u64) {
+        let map = Sylvester::new(factor);
+        let matrix: SMatrix<f64, M, M> = matrix_of(|x| map.times(x));
+        let condition = matrix.norm() * matrix.try_inverse().expect("a regular map").norm();
+        let near = |a: &SVector<f64, M>, b: &SVector<f64, M>| (a - b).norm() < 1e-13 * condition * b.norm();
+        let [right, column] = [draw(seed), draw(seed)];
+
+        let (x, orientation) = Jacobian::<f64, M>::solve(&map, &right).expect("regular");
+        let (expected, sign) = solve_dense(&matrix, &right).expect("regular");
+        assert!(near(&x, &expected), "{factor}: {x} and {expected}");
+        assert_eq!(orientation, sign, "{factor}");
+        assert_eq!(Jacobian::<f64, M>::orientation(&map), Orientation::of(rows(&matrix)));
+
+        let j = M / 2;
+        assert!((Jacobian::<f64, M>::column(&map, j) - matrix.column(j)).norm() < 1e-15 * matrix.norm());
+        let mut exchanged = matrix;
+        exchanged.set_column(j, &column);
+        let Some((expected, sign)) = solve_dense(&exchanged, &right) else { panic!("regular") };
+        let (x, orientation) = map.solve_exchanged(Some((j, &column)), &right).expect("regular");
+        assert!((exchanged * x - right).norm() < 1e-12 * condition * (exchanged.norm() * expected.norm()));
+        assert_eq!(orientation, sign, "{factor}");
+
+        let terms = (0..M).flat_map(|i| (0..M).map(move |j| (i, j))).map(|(i, j)| (matrix[(i, j)] * right[j]).abs());
+        let terms: f64 = terms.sum();
+        let size = Jacobian::<f64, M>::size_of_terms(&map, &right);
+        // in few dimensions many entries are sums of two that cancel
+        assert!(size >= terms * (1.0 - 1e-14) && (N < 6 || size < 2.0 * terms), "{size} for {terms}");
+        assert!(Jacobian::<f64, M>::largest_entry(&map) >= matrix.amax() * (1.0 - 1e-15));
+    }
+
+    /// Random factors, of which many have pairs of complex eigenvalues and maps with negative determinants; of bodies near rest.
+    #[test]
+    fn maps_are_inverted() {
+        let seed = &mut 7;
+        let mut negative = 0;
+        for _ in 0..40 {
+            is_that_of_its_matrix::<2, 1>(draw(seed), seed);
+            is_that_of_its_matrix::<3, 3>(draw(seed), seed);
+            is_that_of_its_matrix::<6, 15>(draw(seed), seed);
+            is_that_of_its_matrix::<7, 21>(draw(seed), seed);
+            let body = SMatrix::<f64, 8, 8>::from_diagonal(&SVector::from_fn(|i, _| 1.0 + i as f64));
+            is_that_of_its_matrix::<8, 28>(body + draw::<8, 8>(seed) * 0.1, seed);
+            let map = Sylvester::new(draw::<6, 6>(seed));
+            let orientation = Jacobian::<f64, 15>::orientation(&map);
+            negative += usize::from(orientation == Some(Orientation::NEGATIVE));
+        }
+        assert!((5..35).contains(&negative), "{negative} of 40");
+    }
+
+    /// An eigenvalue 0 is none of the map, whose eigenvalues are sums of two.
+    #[test]
+    fn flat_bodies_are_no_exception() {
+        let seed = &mut 11;
+        for off in [0.0, 1e-9, 0.1] {
+            let flat = SMatrix::<f64, 6, 6>::from_diagonal(&SVector::from_fn(|i, _| i as f64));
+            let turned = draw::<6, 6>(seed).qr().q();
+            let factor = turned * (flat + (draw::<6, 6>(seed) - draw::<6, 6>(seed)) * off) * turned.transpose();
+            is_that_of_its_matrix::<6, 15>(factor, seed);
+        }
+        let minus = SMatrix::<f64, 6, 6>::from_diagonal(&SVector::from_fn(|i, _| i as f64 - 0.25));
+        is_that_of_its_matrix::<6, 15>(minus, seed);
+    }
+
+    /// Identical eigenvalues, rotations, and matrices that are triangular already.
+    #[test]
+    fn special_factors_are_decomposed() {
+        let seed = &mut 13;
+        is_that_of_its_matrix::<6, 15>(SMatrix::identity(), seed);
+        is_that_of_its_matrix::<6, 15>(draw::<6, 6>(seed).qr().q() + SMatrix::identity() * 0.3, seed);
+        is_that_of_its_matrix::<6, 15>(draw::<6, 6>(seed).upper_triangle() + SMatrix::identity() * 2.0, seed);
+        // a cyclic shift, on which sweeps without a shift stand still
+        let cyclic = SMatrix::<f64, 5, 5>::from_fn(|i, j| if (i + 1) % 5 == j { 1.0 } else { 0.0 });
+        is_that_of_its_matrix::<5, 10>(cyclic, seed);
+    }
+
+    /// Units are powers of two: the same digits.
+    #[test]
+    fn units_do_not_matter() {
+        let seed = &mut 17;
+        let (factor, right) = (draw::<6, 6>(seed) + SMatrix::identity() * 2.0, draw::<15, 1>(seed));
+        let solve = |unit: f64| Jacobian::<f64, 15>::solve(&Sylvester::new(factor * unit), &right).expect("regular").0;
+        for power in [-960, -160, 160, 960] {
+            let unit = 2.0_f64.powi(power);
+            assert_eq!(solve(unit) * unit, solve(1.0));
+        }
+    }
+
+    #[test]
+    fn what_is_singular_or_broken_has_no_solution() {
+        let right = SVector::<f64, 15>::repeat(1.0);
+        let opposite = SMatrix::<f64, 6, 6>::from_diagonal(&SVector::from_fn(|i, _| i as f64 - 1.0));
+        for factor in [opposite, SMatrix::zeros(), SMatrix::repeat(f64::NAN), SMatrix::repeat(f64::INFINITY)] {
+            assert_eq!(Jacobian::<f64, 15>::solve(&Sylvester::new(factor), &right), None);
+        }
+    }
+}
