@@ -85,7 +85,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
             weight: SMatrix::from_element(zero),
             gap_price: None,
             barrier: barrier.unwrap_or(Barrier::none()),
-            curvature: Curvature::Mirrored { damping: zero },
+            curvature: Curvature::Mirrored { damping: zero, steadiness: zero },
             bend: T::one(),
             is_last: false,
         };
@@ -141,7 +141,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         let rank = gramian.rank();
         self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
         if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
-            self.settings.curvature = Curvature::Kept { damping: self.steadiness() };
+            self.settings.curvature = Curvature::Kept { steadiness: self.steadiness() };
         } else if summary.negative > FLAT && is_bent {
             self.bend_less();
             self.is_probed = false;
@@ -203,7 +203,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
             self.settings.bend = T::one();
             self.damping = T::zero();
             self.before = Some(size);
-            self.settings.curvature = Curvature::Kept { damping: self.steadiness() };
+            self.settings.curvature = Curvature::Kept { steadiness: self.steadiness() };
         }
         may_be
     }
@@ -213,7 +213,8 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         matches!(self.before, Some(before) if before <= T::from_ratio(numerator, denominator))
     }
 
-    /// Near a solution √ε, which keeps corrections from going far where round-off alone bends the price, as along a symmetry.
+    /// Near a solution √ε, as a part of the price's curvature: it keeps corrections from going far where round-off alone bends the price, as
+    /// along a symmetry.
     fn steadiness(&self) -> T {
         match self.before {
             Some(before) if before * before <= T::EPSILON.sqrt() => T::EPSILON.sqrt(),
@@ -223,7 +224,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
     /// The curvature of the next sweep, so that it goes down.
     fn mirrored(&self) -> Curvature<T> {
-        Curvature::Mirrored { damping: larger(self.damping, self.steadiness()) }
+        Curvature::Mirrored { damping: self.damping, steadiness: self.steadiness() }
     }
 
     fn bend_less(&mut self) {

@@ -8,16 +8,25 @@ use nalgebra::{SMatrix, SVector};
 /// What is made of a Hessian that is not positive.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Curvature<T> {
-    /// As it is, but for this small multiple of its own diagonal: the critical point of the quadratic model.
-    Kept { damping: T },
-    /// With negative eigenvalues turned over, so that the price goes down, and with this multiple of its own diagonal added.
-    Mirrored { damping: T },
+    /// As it is, but for this small part of the price's curvature: the critical point of the quadratic model.
+    Kept { steadiness: T },
+    /// With negative eigenvalues turned over, so that the price goes down, and with a multiple of its own diagonal or a small part of the
+    /// price's curvature added, whichever is more.
+    Mirrored { damping: T, steadiness: T },
 }
 
 impl<T: Real> Curvature<T> {
     /// The curvature as it is.
     pub fn kept() -> Self {
-        Self::Kept { damping: T::zero() }
+        Self::Kept { steadiness: T::zero() }
+    }
+
+    /// The multiples of the diagonal and of the price's curvature.
+    fn added(&self) -> (T, T) {
+        match *self {
+            Self::Kept { steadiness } => (T::zero(), steadiness),
+            Self::Mirrored { damping, steadiness } => (damping, steadiness),
+        }
     }
 
     /// Whether the price goes down.
@@ -56,15 +65,15 @@ const UNITS: f64 = 16.0;
 const MIRRORED: f64 = 1e-4;
 
 impl<T: Real, const U: usize> Pivot<T, U> {
-    /// Of a symmetric matrix, of which only the lower triangle is read.
+    /// Of a symmetric matrix, of which only the lower triangle is read, where the price itself curves by `natural` along each input.
     #[inline]
-    pub fn of(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Self {
+    pub fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
         let mut h = *h;
-        let (Curvature::Kept { damping } | Curvature::Mirrored { damping }) = curvature;
-        if damping > T::zero() {
+        let (damping, steadiness) = curvature.added();
+        if larger(damping, steadiness) > T::zero() {
             for i in 0..U {
                 let entry = h[(i, i)];
-                h[(i, i)] = entry + damping * entry.abs();
+                h[(i, i)] = entry + larger(damping * entry.abs(), steadiness * natural[i].abs());
             }
         }
         match triangular(&h) {

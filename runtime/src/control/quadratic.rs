@@ -13,6 +13,8 @@ pub(super) struct Quadratic<T, const D: usize, const U: usize> {
     input: SMatrix<T, U, U>,
     /// The part of it that is of this step alone.
     own: SMatrix<T, U, U>,
+    /// Where there are bounds: the diagonal of that part without them.
+    unbounded: Option<SVector<T, U>>,
     /// Q_xν, Q_uν
     place_multiplier: SMatrix<T, D, D>,
     pub input_multiplier: SMatrix<T, U, D>,
@@ -83,6 +85,7 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
             mixed: step.mixed_curvature,
             input: step.input_curvature,
             own: step.input_curvature,
+            unbounded: None,
             place_multiplier: SMatrix::from_element(T::zero()),
             input_multiplier: SMatrix::from_element(T::zero()),
         }
@@ -96,6 +99,7 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
         force: &SVector<T, C>,
         stiffness: &SVector<T, C>,
     ) {
+        self.unbounded = Some(self.input.diagonal());
         let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
         let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
         self.by_place += bounds.by_place.tr_mul(force);
@@ -125,10 +129,21 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
         -fall.curvature / fall.direction.dot(&(self.own * fall.direction))
     }
 
+    /// How much the price curves along each input, of which steadiness is a part.
+    ///
+    /// Bounds that are reached, of this step and, through P, of later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price
+    /// does. A part √ε of that would hold what is free beside them: each correction would make a part 10⁻⁴ of the way to a bound that is
+    /// reached with the multiplier 0. Hence, where there are bounds, the step alone tells, as interior point methods shift the Hessian of
+    /// the Lagrangian by what has nothing to do with Σ. Inputs that the step does not price are left as they are.
+    #[inline]
+    fn natural(&self) -> SVector<T, U> {
+        self.unbounded.unwrap_or_else(|| self.input.diagonal())
+    }
+
     /// The input that makes the model least, and the value that is left.
     #[inline]
     pub fn eliminate(&self, curvature: Curvature<T>) -> (Policy<T, D, U>, Value<T, D>) {
-        let pivot = Pivot::of(&self.input, curvature);
+        let pivot = Pivot::of(&self.input, &self.natural(), curvature);
         let shift = pivot.against(&self.by_input);
         let gain = pivot.against(&self.mixed);
         let by_multiplier = pivot.against(&self.input_multiplier);

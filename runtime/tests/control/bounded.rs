@@ -122,15 +122,20 @@ fn guesses_need_not_keep_bounds() -> Result<(), Error> {
     Ok(())
 }
 
-/// A bound of the velocity, which is a bound of the place: it is passed at v = ½ for most of the time.
-#[test]
-fn bounds_of_the_place_are_kept() -> Result<(), Error> {
-    // in twelve steps too every bound that is reached pushes: in ten one does not, and the search does not end
-    let (h, steps) = if cfg!(miri) { (0.5, 12) } else { (0.1, 60) };
+/// Where |v| ≤ ½ in place of the box.
+fn bounded_velocity(h: f64) -> Bounded {
     let mut system = bounded_integrator(h);
     system.bound_place = SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, -1.0);
     system.bound_input = SMatrix::<f64, 2, 1>::new(0.0, 0.0);
     system.bound = Vector2::new(0.5, 0.5);
+    system
+}
+
+/// A bound of the velocity, which is a bound of the place: it is passed at v = ½ for most of the time.
+#[test]
+fn bounds_of_the_place_are_kept() -> Result<(), Error> {
+    let (h, steps) = if cfg!(miri) { (0.6, 10) } else { (0.1, 60) };
+    let system = bounded_velocity(h);
     let control: Control<_, 2, 1, 2> = system.control(h)?;
     let start = Vector2::zeros();
     let mut plan = vec![control.stage(&start); steps];
@@ -148,5 +153,77 @@ fn bounds_of_the_place_are_kept() -> Result<(), Error> {
         matches!(error, Error::Infeasible { stage: 0, bound: "the bound", violation } if expected(violation)),
         "{error}"
     );
+    Ok(())
+}
+
+/// With |v| ≤ ½ inputs fall linearly to 0, u_k = a + c (m − k) for k ≤ m, and rise to their opposites at last. Σ h u_k = ½ gives c, and
+/// Σ (N − k) u_k the distance. At a = 0 and at a = c one bound more is reached than pushes.
+#[test]
+fn bounds_that_are_reached_need_not_push() -> Result<(), Error> {
+    let plans = [(0.6, 10, 2), (0.6, 10, 3), (1.0, 7, 2), (0.3, 20, 2), (0.3, 20, 7), (0.1, 60, 5), (0.1, 60, 21)];
+    for (h, steps, m) in plans.into_iter().take(if cfg!(miri) { 1 } else { 7 }) {
+        for part in [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.5, 1.0 - 1e-6, 1.0] {
+            let (free, last) = (m as f64, steps - 1);
+            let fall = 0.5 / (h * (free + 1.0) * (part + free / 2.0));
+            let rise = |k: usize| if k <= m { fall * (part + (m - k) as f64) } else { 0.0 };
+            let distance = 0.5 * h * last as f64 - (1..=m).map(|k| 2.0 * h * h * k as f64 * rise(k)).sum::<f64>();
+            let price = (0..=m).map(|k| h * rise(k) * rise(k)).sum::<f64>();
+            let control: Control<_, 2, 1, 2> = bounded_velocity(h).control(h)?;
+            let start = Vector2::zeros();
+            let mut plan = vec![control.stage(&start); steps];
+            let found = control.solve(&start, Target::Place(Vector2::new(distance, 0.0)), &mut plan)?;
+            assert!((found.price() - price).abs() < 1e-11 * price, "{found:?} after {price}");
+            for (k, stage) in found.stages().iter().enumerate() {
+                let expected = rise(k) - rise(last - k);
+                assert!((stage.input()[0] - expected).abs() < 1e-6, "{k}: {} after {expected}", stage.input()[0]);
+                let pushes = if k > m + 1 && k < last - m { fall } else { 0.0 };
+                let is_between = k == m + 1 || k + m == last;
+                let error = stage.multipliers()[0] - if is_between { fall * (1.0 - part) } else { pushes };
+                assert!(error.abs() < 1e-6, "{k}: {error:e}");
+            }
+            assert!(found.is_minimum() && found.gap() < 1e-12 && found.iterations() <= 60, "{found:?}");
+        }
+    }
+    Ok(())
+}
+
+/// The price of going from (0, 1) to (l, 0) in `steps` steps of x⁺ = x + hv, v⁺ = v + hu, and the furthest place between.
+fn braked(h: f64, steps: usize, wall: f64) -> (f64, f64) {
+    // columns of what inputs add to the end, and the least inputs that add what lacks
+    let columns: Vec<Vector2<f64>> = (0..steps).map(|k| Vector2::new(h * h * (steps - 1 - k) as f64, h)).collect();
+    let gramian: Matrix2<f64> = columns.iter().map(|b| b * b.transpose()).sum();
+    let lack = Vector2::new(wall - h * steps as f64, -1.0);
+    let multiplier = gramian.try_inverse().unwrap() * lack;
+    let (mut x, mut furthest) = (Vector2::new(0.0, 1.0), 0.0);
+    for b in &columns {
+        x += Vector2::new(h * x[1], h * b.dot(&multiplier));
+        furthest = f64::max(furthest, x[0]);
+    }
+    (h * lack.dot(&multiplier) / 2.0, furthest)
+}
+
+/// A car brakes from (0, 1) to rest at a wall that it may not pass before: the bound of a place is one of the input two steps earlier.
+/// At 0.15 and 0.2 the wall is reached a step before it pushes.
+#[test]
+fn a_wall_is_not_passed() -> Result<(), Error> {
+    let (plans, walls) = if cfg!(miri) { (1, 1) } else { (3, 25) };
+    for (h, steps) in [(0.2, 10), (0.1, 20), (0.05, 30)].into_iter().take(plans) {
+        for wall in (1..=walls).map(|centimetres| h + f64::from(centimetres) / 100.0) {
+            let mut system = bounded_integrator(h);
+            system.b = SMatrix::<f64, 2, 1>::new(0.0, h);
+            system.bound_place = SMatrix::<f64, 2, 2>::new(1.0, 0.0, -1.0, 0.0);
+            system.bound_input = SMatrix::<f64, 2, 1>::new(0.0, 0.0);
+            system.bound = Vector2::new(wall, 9.0);
+            let control: Control<_, 2, 1, 2> = system.control(h)?;
+            let start = Vector2::new(0.0, 1.0);
+            let mut plan = vec![control.stage(&start); steps];
+            let found = control.solve(&start, Target::Place(Vector2::new(wall, 0.0)), &mut plan)?;
+            // whoever is at rest at the wall stays there
+            let ways = (2..=steps).map(|k| braked(h, k, wall)).filter(|(_, furthest)| *furthest <= wall + 1e-12);
+            let price = ways.map(|(price, _)| price).fold(f64::MAX, f64::min);
+            assert!((found.price() - price).abs() < 1e-11 * price, "{wall}: {found:?} after {price}");
+            assert!(found.is_minimum() && found.gap() < 1e-12 && found.iterations() <= 40, "{wall}: {found:?}");
+        }
+    }
     Ok(())
 }
