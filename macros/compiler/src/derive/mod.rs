@@ -484,9 +484,9 @@ impl Formulas<'_> {
             return false;
         };
         let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == Space::Unit;
-        let turns = factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
+        let turns = || factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
         rotates
-            && self.generator[0] == turns
+            && self.generator[0] == turns()
             && self.symbols.charts[0] == Chart::Sine
             && self.uniform_inertia.is_some()
             && self.model.isotropy == Isotropy::Fixed

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clebsch_symbolic::{Chart, Group};
 
 use crate::derive::{Collocation, Equation, MOST_LISTED, Solution, Structure, Substep};
-use crate::lower::{Form, LARGEST_UNROLLED, Program, Solve};
+use crate::lower::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS, Program, Solve};
 use crate::model::{CodeForm, Discretization, Isotropy, Kinetic, Model, Order, Side, Space};
 
 /// The text of `DERIVATION`.
@@ -36,7 +36,7 @@ pub fn derivation(program: &Program<'_>) -> String {
 
 /// How the code is written, and why.
 fn form(program: &Program<'_>) -> String {
-    let Form { code, estimate, is_asked, is_body } = program.form;
+    let Form { code, estimate, is_asked, is_body_or_point } = program.form;
     let written = match code {
         CodeForm::Unrolled => "Code is written out, entry by entry",
         CodeForm::Matrices => "Code keeps whole matrices, in loops",
@@ -45,8 +45,11 @@ fn form(program: &Program<'_>) -> String {
         (true, _) => "as the declaration asks".to_string(),
         (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => "of few unknowns".to_string(),
         (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
-        (false, CodeForm::Matrices) if is_body && estimate <= LARGEST_UNROLLED => {
-            "for a body in five dimensions or more".to_string()
+        (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED && is_body_or_point => {
+            "any number for bodies in five dimensions or more and points on S⁷ or larger".to_string()
+        }
+        (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED => {
+            format!("and its momentum more than {MOST_UNKNOWNS} components")
         }
         (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
     };

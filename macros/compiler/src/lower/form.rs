@@ -18,8 +18,12 @@ const FEWEST_UNKNOWNS: usize = 15;
 /// Bodies on SO(n) keep matrices from as many unknowns on, those of SO(5): there the same products take six tenths of the time.
 const FEWEST_OF_BODIES: usize = 10;
 
+/// Points on spheres are turned in (q, w) from as many components of the momentum on, those of S⁷: of many steps at once each takes seven
+/// tenths of the time there and four on S¹⁰; a single one, which makes all components, takes 1.3 times as long.
+const FEWEST_OF_SPHERES: usize = 28;
+
 /// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
-const MOST_UNKNOWNS: usize = 64;
+pub const MOST_UNKNOWNS: usize = 64;
 
 /// How kernels are written, and why.
 #[derive(Clone, Debug)]
@@ -30,8 +34,8 @@ pub struct Form {
     pub estimate: usize,
     /// Whether the declaration asks for it.
     pub is_asked: bool,
-    /// Whether it is a body on SO(5) or larger, whose products of matrices are few.
-    pub is_body: bool,
+    /// Whether it is a system that keeps matrices at any number of products: a body on SO(5) or larger, or a point on S⁷ or larger.
+    pub is_body_or_point: bool,
 }
 
 impl Form {
@@ -50,8 +54,9 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     let asked = formulas.model.code.as_ref();
     let dimension = formulas.inertia.shape().rows;
     let is_long = estimate > LARGEST_UNROLLED && dimension >= FEWEST_UNKNOWNS;
-    let is_body = is_body(formulas);
-    let is_large = is_long || is_body || dimension > MOST_UNKNOWNS;
+    let is_point = dimension >= FEWEST_OF_SPHERES && formulas.follows_great_circles();
+    let is_body_or_point = is_point || is_body(formulas);
+    let is_large = is_long || is_body_or_point || dimension > MOST_UNKNOWNS;
     let code = match asked {
         Some(asked) => asked.value,
         None if is_large && without_matrices(formulas).is_none() => CodeForm::Matrices,
@@ -79,7 +84,7 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
         ));
     }
-    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point })
 }
 
 /// Whether an equation is that of a body on SO(n), whose Jacobian is Sylvester's map.

@@ -31,7 +31,7 @@ use crate::model::{CodeForm, Factor, Isotropy, Space};
 pub use code::{Code, Kernel, MatrixOperation, Whole};
 pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
-pub use form::{Form, LARGEST_UNROLLED};
+pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
 pub use grid::{Grid, Lowering};
 pub use kernel::{Hoisted, Hoisting};
 pub(crate) use matrices::is_direction;

@@ -45,7 +45,16 @@ const GROUPS: [(&str, Maker); 11] = [
 ];
 
 /// The largest dimension of a group whose elements are found by an equation: formulas are looked at in all of its directions.
-pub const DIMENSION: usize = 128;
+const DIMENSION: usize = 128;
+
+/// The largest dimension of a group of rotations of unit vectors in which conserved momenta are looked for among all combinations of
+/// components.
+const COMBINED: usize = 64;
+
+/// Whether conserved momenta are looked for among single components alone, as there are many.
+pub fn is_large(group: Group, configurations: &[Configuration<'_>]) -> bool {
+    group.dimension() > COMBINED && configurations.iter().all(|leaf| leaf.space == Space::Unit)
+}
 
 /// SU(2) is made of quaternions, the others of real matrices.
 fn special_unitary(n: usize) -> Group {
@@ -129,9 +138,11 @@ pub(super) fn check_large(
     factors: &[Factor<'_>],
     configurations: &[Configuration<'_>],
 ) -> Result<(), Diagnostic> {
-    let Some(factor) = factors.iter().find(|factor| factor.group.dimension() > DIMENSION) else { return Ok(()) };
+    let must_be_looked_at =
+        |factor: &&Factor<'_>| factor.group.dimension() > DIMENSION || is_large(factor.group, configurations);
+    let Some(factor) = factors.iter().find(must_be_looked_at) else { return Ok(()) };
     let text = factor.group.name(factor.symbol.graph());
-    if !configurations.iter().all(|leaf| leaf.space == Space::Unit) {
+    if !is_large(factor.group, configurations) {
         let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", factor.group.dimension());
         return Err(Diagnostic::new(factor.span, message).help("use a smaller group, or a product of several").note(
             "only rotations of a unit vector may have more: the others are found by an equation in all of them",
@@ -140,7 +151,7 @@ pub(super) fn check_large(
     match declaration.symmetries.first() {
         Some(symmetry) => Err(Diagnostic::new(
             Place::of(&symmetry.body),
-            format!("a symmetry is offered, but `{text}` has more than {DIMENSION} dimensions"),
+            format!("a symmetry is offered, but `{text}` has more than {COMBINED} dimensions"),
         )
         .help("leave out `symmetry`: which components of the momentum are conserved is found without it")
         .note("in larger groups single components are looked at, not what combines them")),

@@ -36,7 +36,7 @@ mod velocity;
 pub use crate::parse::{
     ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
-pub use groups::DIMENSION;
+pub use groups::is_large;
 pub use outline::{Outline, outline};
 pub use power::{Place, Power, Term};
 pub use structure::Structure;

@@ -13,7 +13,7 @@ use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
 use super::power::{self, Link};
 use super::{DiscreteLagrangian, Symbols, naming};
-use crate::model::{DIMENSION, Isotropy, Model};
+use crate::model::{Isotropy, Model, is_large};
 use directions::directions;
 
 /// A conserved momentum.
@@ -73,7 +73,7 @@ pub(super) fn find<'g>(
     inertia: Expr<'g>,
     (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
 ) -> Symmetries<'g> {
-    if model.factors.iter().any(|factor| factor.group.dimension() > DIMENSION) {
+    if model.factors.iter().any(|factor| is_large(factor.group, &model.configurations)) {
         return large::find(model, symbols, generator, lagrangian);
     }
     let (families, directions) = directions(model, symbols, generator);
