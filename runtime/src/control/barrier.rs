@@ -30,7 +30,8 @@ impl<T: Real> Barrier<T> {
         Self { weight: T::zero() }
     }
 
-    /// The first of a sequence, for so many bounds and a price of this size.
+    /// The first of a sequence, for so many bounds and a price of this size: the larger of what the plan costs and of what it costs to keep
+    /// the bounds that it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
     pub fn first(bounds: T, price: T) -> Self {
         Self { weight: T::from_f64(FIRST) * price / bounds }
     }

@@ -51,6 +51,8 @@ pub(super) struct Iterate<X, T, const D: usize> {
     pub is_cornered: bool,
     /// How often the price of the gap was raised.
     pub rounds: u32,
+    /// The part of the first excess by which bounds are still relaxed.
+    pub relaxation: T,
 }
 
 /// What a sweep is good for.
@@ -104,6 +106,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
             stalls: 0,
             is_cornered: false,
             rounds: 0,
+            relaxation: if barrier.is_none() { T::one() } else { zero },
         }
     }
 
@@ -191,6 +194,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         self.is_cornered = last.is_none();
         if let Some(last) = last {
             self.last = last;
+            self.relaxation = T::zero();
             self.settings.curvature = self.mirrored();
             (self.before, self.calm, self.is_probed) = (None, 0, false);
         }
@@ -236,6 +240,11 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     pub fn magnitude<const U: usize>(&mut self, summary: &Summary<T, D, U>, decrement: T) -> T {
         self.largest = larger(self.largest, summary.magnitude + decrement.abs());
         summary.magnitude + T::EPSILON.sqrt() * self.largest
+    }
+
+    /// Counts a price among those that the problem has.
+    pub fn expect(&mut self, price: T) {
+        self.largest = larger(self.largest, price);
     }
 
     /// Whether the gap is only priced.
@@ -296,6 +305,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         if let Some(made) = made {
             self.last = made.last;
             self.settings.multipliers += made.change * made.fraction;
+            self.relaxation *= T::one() - made.fraction;
         }
         if self.is_priced() {
             // the weight is raised between critical plans

@@ -73,12 +73,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
                 continue;
             }
             if now.is_open {
-                self.open(plan, &mut now, approach, &stiffer, summary.magnitude + decrement);
+                let price = larger(summary.magnitude + decrement, summary.repair());
+                self.open(plan, &mut now, approach, &stiffer, price);
                 continue;
             }
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
             match now.verdict(&end, size, unit, Barrier::last(bounds, magnitude).weight) {
                 Verdict::Done | Verdict::Tighten if now.may_be_at_saddle(summary.negative, size) => continue,
+                // Nothing pushes, but bounds are not kept yet.
+                Verdict::Done if self.is_violated(plan, now.relaxation) => {}
                 Verdict::Done => {
                     self.settle(plan, &change, now.settings.barrier)?;
                     // Where inputs need no correction, the multipliers may.
@@ -141,6 +144,10 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         now.is_open = false;
         now.settings.weight = *stiffer;
         if C > 0 {
+            // Where neither plans nor what keeps bounds have a price, any is as good.
+            let is_free = price <= S::Scalar::zero() && self.is_violated(plan, now.relaxation);
+            let price = if is_free { S::Scalar::one() } else { price };
+            now.expect(price);
             now.settings.barrier = Barrier::first(S::Scalar::from_f64((plan.len() * C) as f64), price);
             self.begin(plan, now.settings.barrier);
         }

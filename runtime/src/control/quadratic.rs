@@ -18,6 +18,9 @@ pub(super) struct Quadratic<T, const D: usize, const U: usize> {
     /// Q_xν, Q_uν
     place_multiplier: SMatrix<T, D, D>,
     pub input_multiplier: SMatrix<T, U, D>,
+    /// The slopes of what violates bounds.
+    violation_by_place: SVector<T, D>,
+    violation_by_input: SVector<T, U>,
 }
 
 /// The least price from a place on, to second order in δ and δν.
@@ -28,6 +31,8 @@ pub(super) struct Value<T, const D: usize> {
     pub hessian: SMatrix<T, D, D>,
     /// Ψ = ∂²V/∂x∂ν
     pub by_multiplier: SMatrix<T, D, D>,
+    /// The slope of what violates bounds from the place on.
+    pub violation: SVector<T, D>,
 }
 
 /// δu = k + K δ + G δν
@@ -38,6 +43,8 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
     /// The number of negative eigenvalues of Q_uu.
     pub negative: usize,
     pub fall: Option<Fall<T, U>>,
+    /// g·Q_uu⁻¹g with the slope g of what violates bounds.
+    pub yielding: T,
 }
 
 impl<T: Real, const D: usize> Value<T, D> {
@@ -53,6 +60,7 @@ impl<T: Real, const D: usize> Value<T, D> {
             costate: endpoint.slope + end.slope.tr_mul(&force),
             hessian: endpoint.curvature + end.slope.tr_mul(&(weight * end.slope)),
             by_multiplier: end.slope.transpose(),
+            violation: SVector::from_element(T::zero()),
         }
     }
 }
@@ -70,6 +78,7 @@ impl<T: Real, const D: usize> Value<T, D> {
             costate: SVector::from_fn(|i, _| endpoint.slope[i] - price(i) * end.pull[i]),
             hessian: endpoint.curvature + SMatrix::from_fn(|i, j| price(i) * end.metric[(i, j)]),
             by_multiplier: end.slope.transpose(),
+            violation: SVector::from_element(T::zero()),
         }
     }
 }
@@ -88,22 +97,27 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
             unbounded: None,
             place_multiplier: SMatrix::from_element(T::zero()),
             input_multiplier: SMatrix::from_element(T::zero()),
+            violation_by_place: SVector::from_element(T::zero()),
+            violation_by_input: SVector::from_element(T::zero()),
         }
     }
 
-    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a: `force` is ζ and `stiffness` the diagonal Σ.
+    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a: `force` is ζ and `stiffness` the diagonal Σ. What violates bounds has these `weights`.
     #[inline]
     pub fn add_bounds<const C: usize>(
         &mut self,
         bounds: &BoundsExpansion<T, D, U, C>,
         force: &SVector<T, C>,
         stiffness: &SVector<T, C>,
+        weights: &SVector<T, C>,
     ) {
         self.unbounded = Some(self.input.diagonal());
         let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
         let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
         self.by_place += bounds.by_place.tr_mul(force);
         self.by_input += bounds.by_input.tr_mul(force);
+        self.violation_by_place = bounds.by_place.tr_mul(weights);
+        self.violation_by_input = bounds.by_input.tr_mul(weights);
         self.place += bounds.place_curvature + bounds.by_place.tr_mul(&by_place);
         self.mixed += bounds.mixed_curvature + bounds.by_input.tr_mul(&by_place);
         self.input += bounds.input_curvature + bounds.by_input.tr_mul(&by_input);
@@ -115,6 +129,8 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
         let (a, b) = (&step.by_place, &step.by_input);
         self.by_place += a.tr_mul(&next.costate);
         self.by_input += b.tr_mul(&next.costate);
+        self.violation_by_place += a.tr_mul(&next.violation);
+        self.violation_by_input += b.tr_mul(&next.violation);
         self.own = self.input;
         let (along, across) = (next.hessian * a, next.hessian * b);
         self.place += a.tr_mul(&along);
@@ -147,13 +163,15 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
         let shift = pivot.against(&self.by_input);
         let gain = pivot.against(&self.mixed);
         let by_multiplier = pivot.against(&self.input_multiplier);
+        let yielding = -self.violation_by_input.dot(&pivot.against(&self.violation_by_input));
         let half = T::from_ratio(1, 2);
         let hessian = self.place + self.mixed.tr_mul(&gain);
         let value = Value {
             costate: self.by_place + self.mixed.tr_mul(&shift),
             hessian: SMatrix::from_fn(|i, j| (hessian[(i, j)] + hessian[(j, i)]) * half),
             by_multiplier: self.place_multiplier + gain.tr_mul(&self.input_multiplier),
+            violation: self.violation_by_place + gain.tr_mul(&self.violation_by_input),
         };
-        (Policy { shift, gain, by_multiplier, negative: pivot.negative, fall: pivot.fall }, value)
+        (Policy { shift, gain, by_multiplier, negative: pivot.negative, fall: pivot.fall, yielding }, value)
     }
 }

@@ -130,6 +130,14 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan.iter().any(|stage| stage.excess.iter().any(|excess| *excess > S::Scalar::zero()))
     }
 
+    /// Whether a bound is violated, where all are still relaxed by this part of the first excess: by more than the round-off of its slack,
+    /// and by more than that of the first excess.
+    pub fn is_violated(&self, plan: &[Stage<S, D, U, C>], relaxation: S::Scalar) -> bool {
+        let round_off = S::Scalar::from_f64(16.0) * S::Scalar::EPSILON;
+        let mut bounds = plan.iter().flat_map(|stage| stage.slack.iter().zip(stage.excess.iter()));
+        relaxation > round_off && bounds.any(|(slack, excess)| *excess - *slack > round_off * *excess)
+    }
+
     /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
     pub fn worst_bound(&self, plan: &[Stage<S, D, U, C>]) -> Option<(usize, usize, S::Scalar)> {
         let mut worst = None;

@@ -1,6 +1,6 @@
 //! What the caller keeps for each step of a plan.
 
-use crate::{Controlled, Real};
+use crate::{Controlled, Real, Scalar};
 use core::fmt::{self, Debug, Formatter};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
@@ -65,6 +65,21 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// Goes back to the input of the guess, without multipliers.
     pub(super) fn forget(&mut self) {
         *self = Self { input: self.guess, guess: self.guess, ..Self::rest(&self.place) };
+    }
+
+    /// Σ a/s of the bounds that are violated, and the weights 1/s of those.
+    pub(super) fn violation(&self) -> (S::Scalar, SVector<S::Scalar, C>) {
+        let mut sum = S::Scalar::zero();
+        let weights = SVector::from_fn(|i, _| {
+            let (slack, violation) = (self.slack[i], self.excess[i] - self.slack[i]);
+            if violation > S::Scalar::zero() {
+                sum += violation / slack;
+                slack.recip()
+            } else {
+                S::Scalar::zero()
+            }
+        });
+        (sum, weights)
     }
 
     /// The place x_k where the step starts.

@@ -71,6 +71,9 @@ pub(super) struct Summary<T, const D: usize, const U: usize> {
     pub reach: SVector<T, U>,
     /// The costate at the end.
     pub costate: SVector<T, D>,
+    /// V = Σ a/s of the bounds that are violated, and g·H⁻¹g with its slope g.
+    violation: T,
+    yielding: T,
 }
 
 impl<T: Real, const D: usize, const U: usize> Summary<T, D, U> {
@@ -86,7 +89,17 @@ impl<T: Real, const D: usize, const U: usize> Summary<T, D, U> {
             fall: None,
             reach: SVector::from_element(T::zero()),
             costate,
+            violation: T::zero(),
+            yielding: T::zero(),
         }
+    }
+
+    /// What it costs at least to keep the bounds that are violated: a change that keeps each of them takes V away, for which
+    /// ½ V²/(g·H⁻¹g) is the least price in the quadratic model. It does not vanish with the price of the plan, and units of bounds cancel.
+    /// What the target asks for, which makes it dearer, is left aside.
+    pub fn repair(&self) -> T {
+        let price = self.violation / self.yielding * self.violation * T::from_ratio(1, 2);
+        if price > T::zero() && price.is_finite() { price } else { T::zero() }
     }
 
     #[inline]
@@ -98,6 +111,7 @@ impl<T: Real, const D: usize, const U: usize> Summary<T, D, U> {
         self.lack += model.input_multiplier.tr_mul(&policy.shift);
         self.gramian -= model.input_multiplier.tr_mul(&policy.by_multiplier);
         self.negative += policy.negative;
+        self.yielding += policy.yielding;
         if let Some(fall) = policy.fall
             && self.fall.is_none_or(|(_, deepest, _)| fall.curvature < deepest.curvature)
         {
@@ -143,7 +157,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
                     self.system.bounds_expanded(t, &stage.place, &stage.input, &(stage.multipliers * settings.bend));
                 let (force, stiffness) = settings.barrier.condense(stage);
                 let force = if settings.is_last { stage.multipliers } else { force };
-                model.add_bounds(&bounds, &force, &stiffness);
+                let (violation, weights) = stage.violation();
+                model.add_bounds(&bounds, &force, &stiffness, &weights);
+                summary.violation += violation;
             }
             model.add_value(&step, &value);
             let (policy, mut before) = model.eliminate(settings.curvature);

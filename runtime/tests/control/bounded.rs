@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, SMatrix, Vector2};
 use std::vec;
 use std::vec::Vec;
 
-type Bounded = Linear<2, 1, 2, 1>;
+pub type Bounded = Linear<2, 1, 2, 1>;
 
 /// Size and number of the steps to the time 4. Miri, which interprets, takes few.
 const STEPS: (f64, usize) = if cfg!(miri) { (0.4, 10) } else { (0.1, 40) };

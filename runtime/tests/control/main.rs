@@ -9,6 +9,7 @@ mod pendulum;
 mod quadratic;
 mod refused;
 mod single;
+mod unpriced;
 
 use clebsch::BoundsExpansion;
 use nalgebra::{SMatrix, SVector};
