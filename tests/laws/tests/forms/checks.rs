@@ -26,7 +26,7 @@ where
 {
     let mut random = Random::new(seed);
     let near = |distance: f64, what: &str| {
-        assert!(distance < 2e-11, "{what}: {distance:.1e} apart for {}", U::NAME);
+        assert!(distance < 2e-13, "{what}: {distance:.1e} apart for {}", U::NAME);
     };
     for _ in 0..5 {
         let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
