@@ -2,4 +2,5 @@
 
 mod closed_forms;
 mod derivatives;
+mod extremes;
 mod plans;

@@ -158,7 +158,7 @@ scenes! {
     a_weighted_group: weighted_sl2::WeightedSl2 { weight: Matrix2::new(1.0, 1.2, 0.9, 1.1) }, Matrix2::identity(), 0.05;
 }
 
-/// What has no steps: `regulator` is steered by itself, `unicycle` and `regulator` are controlled, and `annotated_body` has private fields.
+/// What is not stepped here: `regulator` and `unicycle` are planned, in the tests of control, and `annotated_body` has private fields.
 const OTHERS: [&str; 3] = ["annotated_body", "regulator", "unicycle"];
 
 #[test]
