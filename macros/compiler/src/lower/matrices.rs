@@ -335,12 +335,12 @@ impl Matrices {
         let shape = Shape::new(left[0].shape().rows, right[right.len() - 1].shape().columns);
         let inner = right[0].shape().rows;
         if let ([letter], 1) = (left, shape.columns)
-            && let View::Wedge(algebra, x) = letter.view()
-            && is_rotations(letter.graph(), algebra)
+            && let Some((sign, x)) = skew_letter(*letter)
         {
             let operands = vec![self.value(x), self.product(right)];
             let cost = Cost { additions: inner * inner, multiplications: inner * (inner - 1), ..Cost::default() };
-            return self.operation(MatrixOperation::SkewTimes, operands, shape, cost);
+            let turned = self.operation(MatrixOperation::SkewTimes, operands, shape, cost);
+            return self.total(shape, vec![(sign, turned)]);
         }
         if let ([letter], 1) = (left, shape.columns)
             && letter.as_symbol().is_some_and(|symbol| symbol.role == INERTIA_INVERSE)
@@ -480,6 +480,22 @@ impl Matrices {
         };
         let (weights, operands) = parts.into_iter().unzip();
         self.operation(MatrixOperation::Sum(weights), operands, shape, cost)
+    }
+}
+
+/// ±1 and x of a letter ±x^ of rotations.
+fn skew_letter(letter: Expr<'_>) -> Option<(Rational, Expr<'_>)> {
+    match letter.view() {
+        View::Wedge(algebra, x) => is_rotations(letter.graph(), algebra).then(|| (integer(1), x)),
+        View::Transpose(inner) => skew_letter(inner).map(|(sign, x)| (-sign, x)),
+        View::Sum(terms) => match terms.as_slice() {
+            [WordTerm { coefficient, scalars, word }] if scalars.is_empty() && coefficient.abs().is_one() => {
+                let [only] = word[..] else { return None };
+                skew_letter(only).map(|(sign, x)| (sign * coefficient, x))
+            }
+            _ => None,
+        },
+        _ => None,
     }
 }
 
