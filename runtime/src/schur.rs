@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn matrices_are_decomposed() {
         let wave = |shift: usize| move |i: usize, j: usize| ((i * i * 7 + j * 3 * (i + 1) + shift) as f64).sin();
-        for shift in 0..200 {
+        for shift in 0..if cfg!(miri) { 1 } else { 200 } {
             is_a_form_of(&SMatrix::<f64, 1, 1>::from_fn(wave(shift)));
             is_a_form_of(&SMatrix::<f64, 2, 2>::from_fn(wave(shift)));
             is_a_form_of(&SMatrix::<f64, 3, 3>::from_fn(wave(shift)));

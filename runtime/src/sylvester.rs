@@ -317,8 +317,8 @@ mod tests {
     #[test]
     fn maps_are_inverted() {
         let seed = &mut 7;
-        let mut negative = 0;
-        for _ in 0..40 {
+        let (mut negative, draws) = (0, if cfg!(miri) { 1 } else { 40 });
+        for _ in 0..draws {
             is_that_of_its_matrix::<2, 1>(draw(seed), seed);
             is_that_of_its_matrix::<3, 3>(draw(seed), seed);
             is_that_of_its_matrix::<6, 15>(draw(seed), seed);
@@ -329,7 +329,7 @@ mod tests {
             let orientation = Jacobian::<f64, 15>::orientation(&map);
             negative += usize::from(orientation == Some(Orientation::NEGATIVE));
         }
-        assert!((5..35).contains(&negative), "{negative} of 40");
+        assert!(cfg!(miri) || (5..35).contains(&negative), "{negative} of 40");
     }
 
     /// An eigenvalue 0 is none of the map, whose eigenvalues are sums of two.

@@ -391,8 +391,9 @@ impl<'g> Formulas<'g> {
 
     /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩, where there is one.
     pub fn formula_of_sylvester_factor(&self, equation: &Equation<'g>) -> Option<Formula> {
-        let x = self.letter(&self.chart_symbols());
-        Some(Formula::new("factor of the Jacobian", format!("B({x})"), &[equation.sylvester_factor(self)?]))
+        let (x, direction) = (self.letter(&self.chart_symbols()), self.letter(&self.direction_symbols()));
+        let left = format!("Dρ({x})·{direction} = ⟨{direction}^·B, E⟩ with B({x})");
+        Some(Formula::new("factor of the Jacobian", left, &[equation.sylvester_factor(self)?]))
     }
 
     /// x(μ), where there is a formula for it.
