@@ -1,4 +1,6 @@
 //! The real Schur form of a small matrix, by QR iteration.
+//!
+//! For every [`Real`], while nalgebra's is for its `RealField` alone, and without a panic that is left in a step.
 
 use crate::linear::{entry, rows};
 use crate::{Real, Space};

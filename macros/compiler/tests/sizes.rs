@@ -32,6 +32,20 @@ fn points_of_all_dimensions() {
     }
 }
 
+/// The largest that the documentation names.
+#[test]
+fn symplectic_and_unimodular_matrices_of_all_sizes() {
+    let named = ["Sp<4>", "Sp<6>", "Sp<8>", "Sp<10>", "SL<3>", "SL<5>", "SL<7>", "SL<8>"];
+    for group in named {
+        let declaration = format!(
+            "#[derive(Clebsch)]
+            #[clebsch(action = |F: {group}, q: {group}| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h), scalar = f64)]
+            struct Motion;"
+        );
+        assert_eq!(compiles(&declaration), Ok(()), "{group}");
+    }
+}
+
 #[test]
 fn bodies_of_all_dimensions() {
     for n in 2..=11 {

@@ -46,7 +46,7 @@ fn form(program: &Program<'_>) -> String {
         (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => "of few unknowns".to_string(),
         (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
         (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED && is_body_or_point => {
-            "any number for bodies in five dimensions or more and points on S⁷ or larger".to_string()
+            "and bodies in five dimensions or more and points on S⁷ or larger keep them at any number".to_string()
         }
         (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED => {
             format!("and its momentum more than {MOST_UNKNOWNS} components")

@@ -12,7 +12,8 @@ use crate::model::{CodeForm, Isotropy};
 /// Steps of systems on either side of it were measured in both forms (`cargo bench -p clebsch-tests --bench large`).
 pub const LARGEST_UNROLLED: usize = 10_000;
 
-/// Systems with fewer unknowns are written out, however long their formulas are: the loops over so few of them gain nothing.
+/// Systems with fewer unknowns that are neither bodies nor points are written out, however long their formulas are: the loops over so few gain
+/// nothing.
 const FEWEST_UNKNOWNS: usize = 15;
 
 /// Bodies on SO(n) keep matrices from as many unknowns on, those of SO(5): there the same products take six tenths of the time.
