@@ -25,7 +25,7 @@ use nalgebra::SVector;
 /// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
 /// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
-/// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign.
+/// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign, as h grows or as s does.
 ///
 /// Where the momentum of the identity is not 0, as for a cost in which a potential depends on q and F together, μ is the
 /// momentum less that of the identity, and so is ρ.
@@ -83,10 +83,11 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         None
     }
 
-    /// The sign of det Dρ at ξ = 0 and μ = 0, which every solution on the branch has; `None` where it is singular.
+    /// The sign of det Dρ which every solution on the branch has; `None` where it is singular.
     ///
-    /// The provided method makes one linearisation. It is asked for in every solve: answer from a constant, made by
-    /// [`orientation`], where one is at hand.
+    /// The provided method makes one linearisation, at ξ = 0 and μ = 0. It is asked for in every solve: answer from a constant where one is at
+    /// hand, made by [`orientation`], or the sign of det Σ/h, which Dρ has there for short steps. Where a force or a potential in the cost
+    /// gives it another one, the step is too long: a solution that is not connected to those of short steps is refused.
     #[inline]
     fn orientation(&self) -> Option<Orientation> {
         at_identity(self)

@@ -68,6 +68,12 @@ impl Orientation {
         T::Mask::from_bits(self.positive | self.negative)
     }
 
+    /// The sign in one lane.
+    #[inline]
+    pub(crate) fn lane(self, lane: usize) -> Self {
+        Self { positive: self.positive >> lane & 1, negative: self.negative >> lane & 1 }
+    }
+
     /// The lanes in which the sign is that of `other`.
     #[inline]
     pub(crate) fn agrees<T: Scalar>(self, other: Self) -> T::Mask {

@@ -4,11 +4,12 @@ use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use clebsch_symbolic::Graph;
 use clebsch_symbolic::work::{self, Exhausted};
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
-use crate::parse::{ChartChoice, Declaration, Discretization, Kinetic, Order};
+use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
 /// The work of one expansion: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
 /// the systems of the tests take less than a tenth of it.
@@ -35,23 +36,60 @@ pub(crate) fn within<T>(
     work::within(WORK, || stages(&stage)).unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
 }
 
+/// What to write where the whole is too large.
+const LESS: &str = "use a smaller group or fewer factors, or a struct for each part that moves by itself";
+
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: Stage) -> Diagnostic {
-    let (place, what) = match stage {
-        Stage::Model => (Place::of(&declaration.action.body), "the laws of this action take"),
-        Stage::Derive => {
-            (Place::of(&declaration.kinetic.closure().body), "the formulas that are derived from this take")
-        }
-        Stage::Lower => (Place::of(&declaration.kinetic.closure().body), "the code of a step with this takes"),
-        Stage::Emit => (Place::of(&declaration.kinetic.closure().body), "the text of a step with this takes"),
+    let kinetic = || Place::of(&declaration.kinetic.closure().body);
+    let (place, what, instead) = match (culprit(declaration), stage) {
+        (Some(culprit), _) => culprit,
+        (None, Stage::Model) => (Place::of(&declaration.action.body), "the laws of this action take", LESS),
+        (None, Stage::Derive) => (kinetic(), "the formulas that are derived from this take", LESS),
+        (None, Stage::Lower) => (kinetic(), "the code of a step with this takes", LESS),
+        (None, Stage::Emit) => (kinetic(), "the text of a step with this takes", LESS),
     };
     let message = format!("`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
     let error = Diagnostic::new(place, message);
     let error = smaller(declaration).into_iter().fold(error, |error, text| error.help(text));
     error
-        .help("use a smaller group or fewer factors, or a struct for each part that moves by itself")
+        .help(instead)
         .note("formulas are written out at compile time, where products of sums have a term for each pair of terms")
 }
+
+/// What the declaration is small without, and what to write instead: the first closure that can be left out, without which a quarter of the budget is enough.
+fn culprit(declaration: &Declaration) -> Option<(Place, &'static str, &'static str)> {
+    type Without = fn(&mut Declaration);
+    let potential = declaration.potential.as_ref().and_then(Potential::closure);
+    let rows: [(Option<&Closure>, Without, &str, &str); 4] = [
+        (
+            declaration.endpoint.as_ref(),
+            |rest| rest.endpoint = None,
+            "what is derived from this price takes",
+            "write a shorter price of the end",
+        ),
+        (
+            potential,
+            |rest| rest.potential = None,
+            "what is derived from this potential takes",
+            "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`",
+        ),
+        (declaration.force.as_ref(), |rest| rest.force = None, FORCE, SHORTER_FORCE),
+        (declaration.force_on.as_ref(), |rest| rest.force_on = None, FORCE, SHORTER_FORCE),
+    ];
+    let is_small = |without: Without| {
+        let mut rest = declaration.clone();
+        without(&mut rest);
+        let stages = || crate::program(&Graph::new(), &rest, &Cell::new(Stage::Model)).is_ok();
+        work::within(WORK / 4, stages) == Ok(true)
+    };
+    rows.into_iter().find_map(|(closure, without, what, instead)| {
+        closure.filter(|_| is_small(without)).map(|closure| (Place::of(&closure.body), what, instead))
+    })
+}
+
+const FORCE: &str = "what is derived from this force takes";
+const SHORTER_FORCE: &str = "write a shorter force, or put the part of it that is long into the input";
 
 /// What makes the formulas of a declaration long and can be left out.
 fn smaller(declaration: &Declaration) -> Vec<&'static str> {

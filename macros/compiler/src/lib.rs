@@ -21,6 +21,7 @@ use proc_macro2::TokenStream;
 
 pub use budget::WORK;
 pub use clebsch_symbolic::Graph;
+use clebsch_symbolic::work;
 
 use crate::budget::Stage;
 use crate::diagnostic::Diagnostics;
@@ -55,7 +56,7 @@ fn integrator(item: TokenStream) -> Result<TokenStream, Diagnostics> {
 /// What stands beside errors; `None` where the types cannot be read.
 fn stub(item: TokenStream) -> Option<TokenStream> {
     let (graph, declaration) = (Graph::new(), parse::parse(item).ok()?);
-    let outline = budget::within(&declaration, |_| Ok(model::outline(&graph, &declaration)));
+    let outline = work::within(WORK, || model::outline(&graph, &declaration));
     Some(emit::stub(&declaration, &outline.ok()??))
 }
 

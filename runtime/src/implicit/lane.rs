@@ -1,6 +1,7 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, Jacobian, QUICK, path, size, with_derivatives};
+use super::{Equation, Jacobian, QUICK, at_identity, path, size, with_derivatives};
+use crate::linear::Orientation;
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
@@ -96,6 +97,14 @@ impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T
 
     fn limit() -> Option<u32> {
         E::limit()
+    }
+
+    fn orientation(&self) -> Option<Orientation> {
+        match self.equation.orientation() {
+            Some(orientation) => Some(orientation.lane(self.lane)),
+            // singular in this lane or in another
+            None => at_identity(self),
+        }
     }
 }
 

@@ -19,7 +19,7 @@ pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
         solve_dense(a, b)
     }
 
-    /// The sign of det A for μ = 0; `None` where it is singular. See [`Equation::orientation`].
+    /// The sign of det A on the branch, that for μ = 0; `None` where it is singular. See [`Equation::orientation`].
     #[inline]
     fn orientation(&self) -> Option<Orientation> {
         let (a, b) = self.system(&SVector::from_element(T::zero()));
@@ -59,6 +59,10 @@ impl<T: Scalar, E: LinearEquation<T, M, N>, const M: usize, const N: usize> Equa
 
     fn linearize(&self, (a, b): &Self::Terms, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>) {
         (a * xi - b, *a)
+    }
+
+    fn orientation(&self) -> Option<Orientation> {
+        self.0.orientation()
     }
 }
 

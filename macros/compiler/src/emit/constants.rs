@@ -75,7 +75,7 @@ impl Emitter<'_, '_> {
     /// Whether the orientation of an equation is a constant, made of Σ.
     pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
         let iterates = matches!(solve.solution, Solution::Newton | Solution::Linear);
-        iterates && solve.is_inertial && !solve.moves && !self.program.formulas.inertia_moves()
+        iterates && !self.program.formulas.inertia_moves()
     }
 
     /// For each equation whose orientation is a constant: the name of its orientation, and the equation.
@@ -117,7 +117,7 @@ impl Emitter<'_, '_> {
         self.model.factors[self.program.formulas.symbols.blocks[block].factor].side == Side::Left
     }
 
-    /// The sign of det Σ/h for some components, Dρ at the identity but for positive factors.
+    /// The sign of det Σ/h for some components: of Dρ at the identity for short steps, but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
         let (private, krate) = (&self.paths.private, &self.paths.krate);
         let count = components.len();

@@ -21,8 +21,8 @@ fn describe(scalars: &Scalars, scalar: Scalar) -> Option<String> {
     match scalars.node(scalar) {
         Node::Input(input) if input.role == Role::StepSize => Some("h".into()),
         Node::Input(input) => {
-            let plain = input.name.chars().all(|c| c.is_ascii_alphanumeric() || "_[]".contains(c));
-            let base: String = input.name.replace('[', "_").replace(']', "");
+            let plain = input.name.chars().all(|c| c.is_ascii_alphanumeric() || "_[].".contains(c));
+            let base: String = input.name.replace(['[', '.'], "_").replace(']', "");
             let index = match (input.is_vector, input.row, input.column) {
                 (true, row, _) => format!("{row}"),
                 (false, row, column) => format!("{row}{column}"),

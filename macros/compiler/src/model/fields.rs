@@ -196,7 +196,8 @@ fn parameter<'g>(
         check_promise(promise, span, ty.shape, field)?;
     }
     let name = field.name();
-    let symbol_name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("field_{name}") } else { name };
+    // by itself a number would be one in formulas
+    let symbol_name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("self.{name}") } else { name };
     let property = match promise {
         None => Property::General,
         Some(Promise::Symmetric) => Property::Symmetric,

@@ -2,7 +2,9 @@
 
 use std::fmt::Display;
 
+use clebsch_compiler::diagnostic::Diagnostics;
 use clebsch_compiler::{Graph, WORK, compile};
+use proc_macro2::Span;
 
 use crate::verdict::verdict;
 
@@ -74,7 +76,7 @@ fn table() -> Vec<(&'static str, String, Option<&'static str>)> {
         ("conversions",            potential(nested("", "x", " as f64", 90)),                Some("")),
         ("products",               potential(nested("(x.x + 1) * ", "1", "", 190)),          None),
         ("statements",             potential(format!("{{ {} x.x }}", "let y = 1; ".repeat(20_000))), Some("too long")),
-        ("squares of squares",     potential(format!("{{ let y = x.x + x.y; {} y }}", "let y = y * y + x.z; ".repeat(60))), Some("too large")),
+        ("squares of squares",     potential(format!("{{ let y = x.x + x.y; {} y }}", "let y = y * y + x.z; ".repeat(60))), Some("this expression grows too large")),
         ("a name",                 potential(format!("self.{}", "n".repeat(100_000))),       Some("cannot find")),
         ("fields",                 field(format!("f64, {}", (0..20_000).map(|k| format!("f{k}: f64, ")).collect::<String>())), Some("too long")),
         ("some fields",            field(format!("[f64; 2], {}", (0..3000).map(|k| format!("f{k}: f64, ")).collect::<String>())), None),
@@ -173,10 +175,39 @@ fn what_exhausts_its_budget_is_refused_at_its_cost() {
     assert!(said.starts_with("error: `Body` is too large to expand: "), "{said}");
     assert!(said.contains(&format!("more than {WORK} terms")), "{said}");
     assert!(said.contains("help: leave out `chart = exponential`: formulas in Cayley's are shorter"), "{said}");
+    assert_within(&errors, &text, cost);
+}
+
+/// The tokens of the error stand within a part of the declaration.
+fn assert_within(errors: &Diagnostics, text: &str, part: &str) {
+    let start = text.find(part).expect("a part of the declaration");
     let places: Vec<_> = errors.to_compile_errors().into_iter().map(|token| token.span()).collect();
-    let start = text.find(cost).expect("the cost");
-    assert!(
-        places.iter().all(|place| place.start().column >= start && place.end().column <= start + cost.len()),
-        "{said}"
-    );
+    let is_within = |place: &Span| place.start().column >= start && place.end().column <= start + part.len();
+    assert!(places.iter().all(is_within), "{errors}");
+}
+
+/// A potential or a force that is too long is told at its place, and not at the cost, which is short.
+#[test]
+fn what_exhausts_the_budget_is_told_at_its_own_closure() {
+    let long = lets("(b + self.s * x.y).sin()", 200);
+    let of_velocity = format!("{} * v", long.replace("x.", "v."));
+    for (key, value, what) in [
+        ("potential", format!("|x| {long}"), "this potential"),
+        ("force", format!("|v| {of_velocity}"), "this force"),
+        ("force_on", format!("|v| {of_velocity}"), "this force"),
+    ] {
+        let keys = format!(
+            "action = |a: Translation<3>, x: Vector3| x + a, cost = |h, a| a.norm_squared() / (2 * h), {key} = {value}"
+        );
+        let text = format!("#[clebsch({keys})] pub struct P {{ pub s: f64 }}");
+        let errors = compile(&Graph::new(), text.parse().expect("tokens")).err().expect("an error");
+        let said = errors.to_string();
+        assert!(
+            said.starts_with(&format!(
+                "error: `P` is too large to expand: what is derived from {what} takes more than {WORK} terms"
+            )),
+            "{said}"
+        );
+        assert_within(&errors, &text, &value);
+    }
 }

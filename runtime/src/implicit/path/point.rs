@@ -57,16 +57,16 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         Self { equation, still, moving, branch, scale, weight, count: 0, most, made }
     }
 
-    /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight.
+    /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight. There is no solution where det Dρ has another sign than on the branch.
     pub fn start(&mut self) -> Result<Point<T, M>, Error> {
         let zero = SVector::from_element(T::zero());
         let Linearization { jacobian, rate, .. } = self.linearize(&zero, T::zero());
         if !(jacobian.all_finite() && rate.is_finite()) {
             return Err(Error::NotFinite { name: "the implicit equation of the step" });
         }
-        let slope_xi;
-        (slope_xi, self.branch) = jacobian.solve_exchanged(None, &-rate).ok_or(unsolvable(T::zero()))?;
-        if !slope_xi.is_finite() {
+        let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(unsolvable(T::zero()))?;
+        self.branch = self.equation.orientation().ok_or(unsolvable(T::zero()))?;
+        if orientation != self.branch || !slope_xi.is_finite() {
             return Err(unsolvable(T::zero()));
         }
         (self.scale, self.weight) = (slope_xi.max_abs(), size(&rate));

@@ -10,7 +10,8 @@ use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{hat, vee};
 use nalgebra::{Matrix3, Matrix4, Rotation3, SMatrix, SVector, Vector1, Vector3};
 use systems::{
-    Bob, Composed, Damped, DampedByLogarithm, DampedLate, Pivoted, Rocket, Satellite, Sloshing, Vehicle, Windy,
+    Bob, Composed, Damped, DampedByLogarithm, DampedLate, Hill, Pivoted, Rocket, RunAway, Satellite, Sloshing, Vehicle,
+    Windy,
 };
 
 const NEAR: f64 = 1e-13;
@@ -293,5 +294,58 @@ fn inputs_are_checked_and_no_input_is_zero() -> Result<(), Error> {
     assert_eq!(broken.map(|_| ()), Err(Error::NotFinite { name: "the input" }));
     let cotangent = stepper.cotangent_state(Matrix3::identity(), SMatrix::zeros())?;
     assert_eq!(stepper.step_symmetric(&cotangent).map(|_| ()), Err(Error::NoCovector));
+    Ok(())
+}
+
+/// Whether a step of h is made, and is `expected`; or is refused, with a longest step that is `bound` but for the two per cent of the bracket.
+fn assert_bounded<S>(stepper: &Stepper<S>, x: f64, momentum: f64, (expected, bound): (f64, f64))
+where
+    S: Clebsch<Scalar = f64, Configuration = Vector1<f64>, Momentum = Vector1<f64>> + Clone,
+{
+    let h = stepper.step_size();
+    let state = stepper.state(Vector1::new(x), Vector1::new(momentum)).expect("a state");
+    match stepper.step(&state) {
+        Ok(next) => {
+            assert!(h / bound < 1.0, "{h} is beyond {bound}");
+            assert_near(next.momentum(), &Vector1::new(expected), 1e-12 * expected.abs(), "the step");
+        }
+        Err(Error::Unsolvable { solvable_step: Some(longest), .. }) => {
+            assert!(h / bound > 1.0, "{h} is within {bound}");
+            let part = longest / bound;
+            assert!((0.97..=1.0).contains(&part), "{longest} for {bound}");
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+/// m a/h = N + (h/2) g (a/h − v₀) has one solution at every step size but hg = 2m. Beyond, it is not that of short steps, which has gone to infinity and come back
+/// from the other side: a drive that pushes forward would throw the trolley back. With damping the same happens back in time.
+#[test]
+fn solutions_that_have_come_back_from_infinity_are_refused() -> Result<(), Error> {
+    for (gain, mass, sign) in [(2.5, 1.0, 1.0), (0.4, 3.0, 1.0), (-2.5, 1.0, -1.0)] {
+        let bound = sign * 2.0 * mass / f64::abs(gain);
+        for part in [0.05, 0.5, 0.99, 1.01, 1.5, 4.0] {
+            let h: f64 = part * bound;
+            let (speed, momentum) = (0.7, 1.3);
+            let velocity = (momentum - h / 2.0 * gain * speed) / (mass - h / 2.0 * gain);
+            let expected = mass * velocity + h / 2.0 * gain * (velocity - speed);
+            let stepper = RunAway { mass, gain, speed }.into_stepper(h)?;
+            assert_bounded(&stepper, 0.0, momentum, (expected, bound));
+        }
+    }
+    Ok(())
+}
+
+/// The same of a potential in the cost: N = m a/h − (h/2) k (x + a/2), N⁺ = m a/h + (h/2) k (x + a/2), up to h = 2 √(m/k).
+#[test]
+fn a_hill_at_the_midpoint_bounds_the_step() -> Result<(), Error> {
+    let (mass, slope, x, momentum): (f64, f64, f64, f64) = (1.3, 2.9, 0.4, -1.1);
+    let bound = 2.0 * (mass / slope).sqrt();
+    for part in [0.05, 0.5, 0.99, 1.01, 1.5, 4.0] {
+        let h = part * bound;
+        let a = (momentum + h / 2.0 * slope * x) / (mass / h - h / 4.0 * slope);
+        let expected = mass * a / h + h / 2.0 * slope * (x + a / 2.0);
+        assert_bounded(&Hill { mass, slope }.into_stepper(h)?, x, momentum, (expected, bound));
+    }
     Ok(())
 }

@@ -161,3 +161,27 @@ pub struct DampedLate {
     pub moments: Vector3<f64>,
     pub damping: f64,
 }
+
+/// A drive that pulls the more the faster it goes, past the speed that it is set to.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    cost   = |h, a| self.mass * a.norm_squared() / (2 * h),
+    force  = |v| self.gain * (v - self.speed * Vector1::x()),
+)]
+pub struct RunAway {
+    pub mass: f64,
+    pub gain: f64,
+    pub speed: f64,
+}
+
+/// On top of a hill −kx²/2, the potential at the midpoint of the step.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    cost   = |h, x, a| self.mass * a.norm_squared() / (2 * h) + h * self.slope * (x + a / 2).norm_squared() / 2,
+)]
+pub struct Hill {
+    pub mass: f64,
+    pub slope: f64,
+}

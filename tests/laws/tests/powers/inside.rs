@@ -148,5 +148,5 @@ fn free_bodies_are_bodies_alone() {
     let mut skew = inertia;
     skew[2][(0, 1)] += 0.1;
     let error = Cloud(skew, 2.0).into_stepper(0.1).expect_err("the third is not symmetric");
-    assert!(matches!(error, Error::NotSymmetric { field: "field_0", .. }), "{error:?}");
+    assert!(matches!(error, Error::NotSymmetric { field: "self.0", .. }), "{error:?}");
 }
