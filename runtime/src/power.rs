@@ -75,6 +75,13 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// Whether all sites have the same kinetic energy.
     const IS_UNIFORM: bool;
 
+    /// Whether the gradient of the potential is gathered site by site, by [`gradient_at`](Self::gradient_at); else the terms are gone through, and what each has
+    /// for its sites is added there, by [`add_gradient`](Self::add_gradient).
+    const GATHERS: bool;
+
+    /// Whether the configuration of a site is finite wherever its motion is, as unit vectors and rotations are: then only momenta are looked at.
+    const IS_BOUNDED: bool;
+
     /// The site with this index.
     ///
     /// # Panics
@@ -87,8 +94,15 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// The potential V(t, q), a sum over sites.
     fn potential_of_sites(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> Self::Scalar;
 
-    /// Adds ∂V/∂q, a covector for each site.
-    fn add_gradient(&self, t: Self::Scalar, q: &[Point<Self, N>; N], gradient: &mut [Point<Self, N>; N]);
+    /// ∂V/∂q_i of all terms that read the site i, where it is gathered.
+    #[inline]
+    fn gradient_at(&self, _t: Self::Scalar, _q: &[Point<Self, N>; N], _i: usize) -> Point<Self, N> {
+        Space::origin()
+    }
+
+    /// Adds ∂V/∂q, a covector for each site, where it is not gathered.
+    #[inline]
+    fn add_gradient(&self, _t: Self::Scalar, _q: &[Point<Self, N>; N], _gradient: &mut [Point<Self, N>; N]) {}
 
     /// The constants of a step of size `h`.
     ///
@@ -127,6 +141,9 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// ∂V/∂q.
     #[inline]
     fn slope(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> [Point<Self, N>; N] {
+        if Self::GATHERS {
+            return from_fn(|i| self.gradient_at(t, q, i));
+        }
         let mut gradient = [Space::origin(); N];
         self.add_gradient(t, q, &mut gradient);
         gradient
@@ -135,14 +152,27 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// J(q, weight ∂V).
     #[inline]
     fn power_kick(&self, t: Self::Scalar, q: &[Point<Self, N>; N], weight: Self::Scalar) -> [SiteMomentum<Self, N>; N] {
+        if Self::GATHERS {
+            return from_fn(|i| self.kick_of_site(i, &q[i], &self.gradient_at(t, q, i), weight));
+        }
         let gradient = self.slope(t, q);
-        from_fn(|i| {
-            let momentum = self.site(i).momentum_map(&q[i], &gradient[i]);
-            momentum.zip_map(&momentum, |x, _| weight * x)
-        })
+        from_fn(|i| self.kick_of_site(i, &q[i], &gradient[i], weight))
     }
 
-    /// The kicks of all sites in the storage of others, added to their momenta. Gives the sum of all numbers of the state, which is finite
+    /// J(q, weight ∂V) of one site.
+    #[inline(always)]
+    fn kick_of_site(
+        &self,
+        i: usize,
+        q: &Point<Self, N>,
+        gradient: &Point<Self, N>,
+        weight: Self::Scalar,
+    ) -> SiteMomentum<Self, N> {
+        let momentum = self.site(i).momentum_map(q, gradient);
+        momentum.zip_map(&momentum, |x, _| weight * x)
+    }
+
+    /// The kicks of all sites in the storage of others, added to their momenta. Gives the sum of all numbers of the state that may not be finite, which is finite
     /// where they are, unless they are very large.
     #[inline]
     fn kick_into(
@@ -154,14 +184,16 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         kick: &mut [SiteMomentum<Self, N>; N],
         mu: &mut [SiteMomentum<Self, N>; N],
     ) -> Self::Scalar {
-        gradient.iter_mut().for_each(|gradient| *gradient = Space::origin());
-        self.add_gradient(t, q, gradient);
+        if !Self::GATHERS {
+            gradient.iter_mut().for_each(|gradient| *gradient = Space::origin());
+            self.add_gradient(t, q, gradient);
+        }
         let mut sum = <Self::Scalar as num_traits::Zero>::zero();
         for i in 0..N {
-            let momentum = self.site(i).momentum_map(&q[i], &gradient[i]);
-            kick[i] = momentum.zip_map(&momentum, |x, _| weight * x);
+            let slope = if Self::GATHERS { self.gradient_at(t, q, i) } else { gradient[i] };
+            kick[i] = self.kick_of_site(i, &q[i], &slope, weight);
             mu[i] = plus(&mu[i], &kick[i]);
-            sum += q[i].sum() + mu[i].sum();
+            sum += if Self::IS_BOUNDED { mu[i].sum() } else { q[i].sum() + mu[i].sum() };
         }
         sum
     }

@@ -8,6 +8,8 @@ use clebsch_symbolic::Graph;
 use clebsch_symbolic::work::{self, Exhausted};
 use proc_macro2::{Span, TokenStream, TokenTree};
 
+use syn::Type;
+
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
@@ -98,7 +100,9 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
     let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
     let is_lagrangian = matches!(declaration.kinetic, Kinetic::Lagrangian(_));
     let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
+    let is_product = declaration.action.arguments.iter().any(|argument| matches!(argument.ty, Some(Type::Array(_))));
     let rows = [
+        (is_product, crate::model::IN_LOOPS),
         (dials.emit.tangent, "leave `tangent` out of `emit`: it takes second derivatives of everything"),
         (chart == Some(ChartChoice::Exponential), "leave out `chart = exponential`: formulas in Cayley's are shorter"),
         (

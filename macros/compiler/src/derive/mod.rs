@@ -50,7 +50,7 @@ pub use exact::Splitting;
 pub(crate) use exact::{INERTIA_INVERSE, by_inertia, inertia_inverse};
 pub use force::EdgeForce;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
-pub use power::Link;
+pub use power::{Home, Link, Stencil, stencil};
 pub use print::Formula;
 pub(crate) use print::MOST_LISTED;
 pub use reference::Reference;

@@ -1,8 +1,8 @@
 //! What ties the sites of a power to each other: the gradient of each term, differentiated once for all indices.
 
-use clebsch_symbolic::{Expr, Role};
+use clebsch_symbolic::{Expr, Property, Role};
 
-use crate::model::{Model, Term};
+use crate::model::{Configuration, Linear, Model, Place, Power, Term};
 
 /// A term of the potential of a power with its gradient.
 pub struct Link<'g> {
@@ -10,6 +10,105 @@ pub struct Link<'g> {
     pub term: Term<'g>,
     /// ∂/∂q for each place that the term reads, by its number: one expression for each leaf of the configuration there.
     pub gradient: Vec<(usize, Vec<Expr<'g>>)>,
+}
+
+/// The index of the term whose place is a given site.
+pub struct Home<'g> {
+    /// The index of its sum, where it has one, with the symbol of that index standing for the site.
+    pub index: Option<Expr<'g>>,
+    /// Whether it is taken modulo N.
+    pub wraps: bool,
+    /// Whether there is such a term for every site.
+    pub is_everywhere: bool,
+}
+
+impl<'g> Link<'g> {
+    /// For each place of the gradient, the term that has a given site there: at most one of a sum over one index, or of none. `None` where there are more.
+    pub fn homes(&self, power: &Power<'g>) -> Option<Vec<Home<'g>>> {
+        self.gradient.iter().map(|(place, _)| self.home(power, &power.places[*place])).collect()
+    }
+
+    fn home(&self, power: &Power<'g>, place: &Place<'g>) -> Option<Home<'g>> {
+        let Place { index, wraps } = *place;
+        match (self.term.ranges.as_slice(), Linear::of(index)?.indices.as_slice()) {
+            ([], _) => Some(Home { index: None, wraps, is_everywhere: false }),
+            ([range], [1]) => {
+                let site = index.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
+                let own = (2 * site - index).expand();
+                let whole = (site.graph().integer(0), power.sites);
+                Some(Home { index: Some(own), wraps, is_everywhere: *range == whole && (wraps || own == site) })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The gradient of one site, of all terms that read it.
+pub struct Stencil<'g> {
+    /// The sites that it reads, whose numbers go on from those of the power; the symbol of the index stands for the site.
+    pub places: Vec<Place<'g>>,
+    /// What every site has: one expression for each leaf of its configuration.
+    pub gradient: Vec<Expr<'g>>,
+    /// What only some have, or what depends on the index of the term: the numbers of the term, and of the place in its gradient.
+    pub rest: Vec<(usize, usize)>,
+}
+
+/// The gradient of one site; `None` where terms cannot be told by the sites that they read, such as those of sums over pairs.
+pub fn stencil<'g>(model: &Model<'g>, links: &[Link<'g>]) -> Option<Stencil<'g>> {
+    let power = model.power.as_ref()?;
+    let zero = |leaf: &Configuration<'g>| model.graph.zero(leaf.shape);
+    let gradient = model.configurations.iter().map(zero).collect();
+    let mut stencil = Stencil { places: Vec::new(), gradient, rest: Vec::new() };
+    for (term, link) in links.iter().enumerate() {
+        for (number, (home, (_, slopes))) in link.homes(power)?.iter().zip(&link.gradient).enumerate() {
+            let symbols: Vec<Expr<'g>> = slopes.iter().flat_map(|slope| slope.symbols()).collect();
+            let moved =
+                home.index.filter(|_| home.is_everywhere && !symbols.iter().any(|symbol| is_of_term(power, *symbol)));
+            let Some(own) = moved else {
+                stencil.rest.push((term, number));
+                continue;
+            };
+            let moved: Vec<(Expr<'g>, Expr<'g>)> = symbols
+                .iter()
+                .filter_map(|symbol| Some((*symbol, stencil.moved(model, *symbol, (own, home.wraps))?)))
+                .collect();
+            for (sum, slope) in stencil.gradient.iter_mut().zip(slopes) {
+                *sum = *sum + slope.substitute(&moved);
+            }
+        }
+    }
+    Some(stencil)
+}
+
+impl<'g> Stencil<'g> {
+    /// The symbol of a configuration at a place of a term, as that of a site relative to the one whose gradient this is.
+    fn moved(&mut self, model: &Model<'g>, symbol: Expr<'g>, (own, wraps): (Expr<'g>, bool)) -> Option<Expr<'g>> {
+        let (power, Some(Role::At(place, leaf))) = (model.power.as_ref()?, role(symbol)) else { return None };
+        let there = &power.places[place];
+        let site = own.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
+        let index = there.index.substitute(&[(site, own)]).expand();
+        let place = Place { index, wraps: (wraps || there.wraps) && index != site };
+        let known = self.places.iter().position(|known| *known == place);
+        let number = known.unwrap_or(self.places.len());
+        let text = place.text();
+        if known.is_none() {
+            self.places.push(place);
+        }
+        let property = symbol.as_symbol().map_or(Property::General, |data| data.property);
+        let name = format!("{}[{text}]", model.configurations[leaf].name);
+        Some(model.graph.symbol(&name, symbol.shape(), Role::At(power.places.len() + number, leaf), property))
+    }
+}
+
+fn role(symbol: Expr<'_>) -> Option<Role> {
+    symbol.as_symbol().map(|data| data.role)
+}
+
+/// Whether a symbol is another one for each index of a term: the index itself, or what a field has there.
+fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
+    let mut entries =
+        power.parameters.iter().filter(|parameter| parameter.per_site).flat_map(|parameter| &parameter.leaves);
+    matches!(role(symbol), Some(Role::Site(_))) || entries.any(|leaf| leaf.symbol == symbol)
 }
 
 /// The terms of a power, with their gradients; nothing else has any.

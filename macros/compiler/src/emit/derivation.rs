@@ -72,13 +72,18 @@ fn sites(program: &Program<'_>) -> String {
         true => "all with the same kinetic energy, whose constants are made once",
         false => "whose kinetic energies differ, so that the constants of each are made in each step",
     };
-    let terms = match power.terms.len() {
-        0 => "Nothing ties them to each other.".to_string(),
-        1 => format!(
-            "They are tied to each other by the potential, a sum of one formula; it is differentiated once and added up in loops: the code does not grow with {length}."
-        ),
-        count => format!(
-            "They are tied to each other by the potential, sums of {count} formulas; each is differentiated once and added up in loops: the code does not grow with {length}."
+    let (formulas, each) = match power.terms.len() {
+        1 => ("a sum of one formula".to_string(), "it"),
+        count => (format!("sums of {count} formulas"), "each"),
+    };
+    let added = match program.gathered.is_some() {
+        true => "the gradient of a site is gathered from the terms that read it",
+        false => "what a term has for its sites is added there",
+    };
+    let terms = match power.terms.is_empty() {
+        true => "Nothing ties them to each other.".to_string(),
+        false => format!(
+            "They are tied to each other by the potential, {formulas}; {each} is differentiated once, and {added}, in loops: the code does not grow with {length}."
         ),
     };
     format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")

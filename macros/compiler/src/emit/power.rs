@@ -1,13 +1,24 @@
 //! Powers: the site as a system of its own, and the implementation for all of them, a loop over sites for each method.
 
-use clebsch_symbolic::{Expr, Rational, Role, integer};
+use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, integer};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::code::{accessor, grid, locals, nested_type};
+use super::code::{Scope, accessor, grid, locals, nested_type};
 use super::{Emitter, Generics, docs};
-use crate::lower::{Kernel, LinkKernels};
-use crate::model::{Order, Parameter, Place, Power, Promise};
+use crate::derive::{Home, Link};
+use crate::lower::{Code, Gathered, Kernel, LinkKernels};
+use crate::model::{Configuration, Order, Parameter, Place, Power, Promise, Space};
+
+/// How the term is found that has a site at a place.
+struct Head {
+    /// The place, where it is one of the term's.
+    own: Option<usize>,
+    /// The index `i0` of the term, from that of the site.
+    index: TokenStream,
+    /// What leaves where there is no such term.
+    guard: Option<TokenStream>,
+}
 
 impl<'g> Emitter<'_, 'g> {
     /// The struct of a site and the implementation for all sites, where the declaration is a power.
@@ -63,7 +74,18 @@ impl<'g> Emitter<'_, 'g> {
             .then(|| quote!(scalar: ::core::marker::PhantomData,));
         let is_uniform = power.is_uniform;
         let point = self.configuration_type();
-        let (potential, gradient) = (self.potential_of_power(power), self.gradient_of_power(power));
+        let potential = self.potential_of_power(power);
+        let gathers = self.program.gathered.is_some();
+        let is_orthogonal = |group: Group| group.element_property() == Property::Orthogonal;
+        let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
+            Space::Unit => true,
+            Space::Group(group) => is_orthogonal(group),
+            Space::Vectors => false,
+        });
+        let gradient = match &self.program.gathered {
+            Some(gathered) => self.gathered_gradient(power, gathered, &point),
+            None => self.added_gradient(power, &point),
+        };
         let formulas = self.program.formulas.formulas_of_terms();
         let of_potential = docs::formulas("The potential energy, a sum over sites.", &formulas, None);
         quote! {
@@ -72,6 +94,8 @@ impl<'g> Emitter<'_, 'g> {
                 type Site = #site_type;
 
                 const IS_UNIFORM: ::core::primitive::bool = #is_uniform;
+                const GATHERS: ::core::primitive::bool = #gathers;
+                const IS_BOUNDED: ::core::primitive::bool = #is_bounded;
 
                 /// The site with this index, which is below the number of sites.
                 #[inline]
@@ -90,11 +114,7 @@ impl<'g> Emitter<'_, 'g> {
                     #potential
                     sum
                 }
-                /// Adds the gradient of the potential, a covector for each site.
-                fn add_gradient(&self, t: #scalar, q: &[#point; #length], gradient: &mut [#point; #length]) {
-                    let _ = (t, q, &gradient);
-                    #gradient
-                }
+                #gradient
             }
         }
     }
@@ -109,34 +129,175 @@ impl<'g> Emitter<'_, 'g> {
         quote!(#(#terms)*)
     }
 
-    fn gradient_of_power(&self, power: &Power<'g>) -> TokenStream {
-        let scope = self.scope_of_system();
-        let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &crate::derive::Link<'g>)| {
+    /// The method that goes through the terms and adds what each has for its sites.
+    fn added_gradient(&self, power: &Power<'g>, point: &TokenStream) -> TokenStream {
+        let (scalar, length, scope) = (&self.paths.scalar, &power.length, self.scope_of_system());
+        let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &Link<'g>)| {
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
-            let locals = locals(&scope, gradient);
-            let leaves = &self.model.configurations;
-            let mut outputs = gradient.outputs.iter();
-            let mut added = Vec::new();
-            for (place, slopes) in &link.gradient {
+            let (locals, leaves) = (locals(&scope, gradient), self.model.configurations.len());
+            let sites = link.gradient.iter().zip(gradient.outputs.chunks(leaves));
+            let added = sites.map(|((place, slopes), outputs)| {
                 let site = format_ident!("at{place}");
-                for (leaf, slope) in leaves.iter().zip(slopes) {
-                    // by construction: one output for each leaf of each place
-                    let Some((shape, entries)) = outputs.next() else { continue };
-                    if slope.is_zero() {
-                        continue;
-                    }
-                    let (access, value) = (accessor(&leaf.accessor), grid(&scope, *shape, entries, leaf.is_quaternion));
-                    added.push(quote! {
+                let added = self.added(&scope, slopes, outputs, quote!((*gradient)), quote!(+=));
+                (!added.is_empty()).then(|| {
+                    quote! {
                         if let ::core::option::Option::Some(gradient) = gradient.get_mut(#site) {
-                            (*gradient) #access += #value;
+                            #(#added)*
                         }
-                    });
-                }
-            }
+                    }
+                })
+            });
+            let added = added.flatten();
             self.loops(power, &link.term.ranges, &places, gradient, quote!(#locals #(#added)*))
         };
         let terms = self.program.links.iter().zip(&self.program.formulas.links).map(term);
-        quote!(#(#terms)*)
+        quote! {
+            /// Adds the gradient of the potential, a covector for each site.
+            fn add_gradient(&self, t: #scalar, q: &[#point; #length], gradient: &mut [#point; #length]) {
+                let _ = (t, q, &gradient);
+                #(#terms)*
+            }
+        }
+    }
+
+    /// The method that gathers the gradient of one site from the terms that read it.
+    fn gathered_gradient(&self, power: &Power<'g>, gathered: &Gathered<'g>, point: &TokenStream) -> TokenStream {
+        let (private, scalar, length) = (&self.paths.private, &self.paths.scalar, &power.length);
+        let (scope, Gathered { stencil, whole, rest }) = (self.scope_of_system(), gathered);
+        let places = [power.places.as_slice(), &stencil.places].concat();
+        let whole = {
+            let (locals, added) = (
+                locals(&scope, whole),
+                self.added(&scope, &stencil.gradient, &whole.outputs, quote!(gradient), quote!(=)),
+            );
+            let head = Head { own: None, index: quote!(let i0 = site as ::core::primitive::isize;), guard: None };
+            (!added.is_empty()).then(|| self.at_site(power, &places, head, whole, quote!(#locals #(#added)*)))
+        };
+        let rest = stencil.rest.iter().zip(rest).filter_map(|(&(term, number), kernel)| {
+            let link = &self.program.formulas.links[term];
+            let (place, slopes) = &link.gradient[number];
+            let (locals, added) =
+                (locals(&scope, kernel), self.added(&scope, slopes, &kernel.outputs, quote!(gradient), quote!(+=)));
+            let home = link.homes(power)?.into_iter().nth(number).filter(|_| !added.is_empty())?;
+            let head = self.head(power, *place, &home, &link.term.ranges);
+            Some(self.at_site(power, &places, head, kernel, quote!(#locals #(#added)*)))
+        });
+        quote! {
+            /// The gradient of the potential at a site, from all terms that read it.
+            #[inline]
+            fn gradient_at(&self, t: #scalar, q: &[#point; #length], site: ::core::primitive::usize) -> #point {
+                let _ = (t, q, site);
+                let mut gradient: #point = #private::Space::<#scalar>::origin();
+                #whole
+                #(#rest)*
+                gradient
+            }
+        }
+    }
+
+    /// Where the term is found that has a site at a place.
+    fn head(&self, power: &Power<'g>, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Head {
+        let (private, length) = (&self.paths.private, &power.length);
+        let (Some(index), [(from, to), ..]) = (home.index, ranges) else {
+            let (name, place) = (format_ident!("at{own}"), self.index_of(&power.places, power, own));
+            let guard = quote!(#place if site != #name { break 'term; });
+            return Head { own: Some(own), index: TokenStream::new(), guard: Some(guard) };
+        };
+        let (from, to) = (linear(*from, power), linear(*to, power));
+        let moved = match (home.wraps, index.as_symbol(), linear(index, power)) {
+            (true, _, moved) => quote!(let i0 = #private::wrapped::<#length>(#moved) as ::core::primitive::isize;),
+            (false, Some(_), _) => quote!(),
+            (false, None, moved) => quote!(let i0 = #moved;),
+        };
+        let guard = (!home.is_everywhere).then(|| quote!(if !(#from..#to).contains(&i0) { break 'term; }));
+        Head { own: Some(own), index: quote!(let i0 = site as ::core::primitive::isize; #moved), guard }
+    }
+
+    /// A statement for one site, with the configurations that it reads.
+    fn at_site(
+        &self,
+        power: &Power<'g>,
+        places: &[Place<'g>],
+        head: Head,
+        kernel: &Kernel,
+        body: TokenStream,
+    ) -> TokenStream {
+        let Head { own, index, guard } = head;
+        let length = &power.length;
+        let is_read =
+            |place: &usize| kernel.inputs().iter().any(|input| matches!(input.role, Role::At(at, _) if at == *place));
+        let sites: Vec<usize> = (0..places.len()).filter(is_read).collect();
+        let mut fields = self.places_of_fields(power, kernel);
+        fields.retain(|place| !sites.contains(place));
+        let asks = |place: &usize| Some(*place) != own;
+        let is_asked = guard.is_some()
+            || sites.iter().chain(&fields).any(asks)
+            || kernel.inputs().iter().any(|input| matches!(input.role, Role::Site(_)));
+        let index = is_asked.then_some(index);
+        let indices = sites.iter().chain(&fields).map(|&place| match Some(place) == own {
+            true => {
+                let name = format_ident!("at{place}");
+                quote!(let #name = site;)
+            }
+            false => self.index_of(places, power, place),
+        });
+        let fields = fields.iter().map(|place| {
+            let name = format_ident!("at{place}");
+            quote!(if #name >= #length { break 'term; })
+        });
+        let sites = sites.iter().map(|place| {
+            let (name, site) = (format_ident!("q{place}"), format_ident!("at{place}"));
+            quote!(let ::core::option::Option::Some(#name) = q.get(#site) else { break 'term };)
+        });
+        quote! {
+            'term: {
+                #index
+                #guard
+                #(#indices)* #(#fields)* #(#sites)*
+                #body
+            }
+        }
+    }
+
+    /// Adds the slopes of a place to `target`, or sets it to them, leaf by leaf.
+    fn added(
+        &self,
+        scope: &Scope<'_, 'g>,
+        slopes: &[Expr<'g>],
+        outputs: &[(Shape, Vec<Code>)],
+        target: TokenStream,
+        operator: TokenStream,
+    ) -> Vec<TokenStream> {
+        let leaves = self.model.configurations.iter().zip(slopes).zip(outputs);
+        let leaves = leaves.filter(|((_, slope), _)| !slope.is_zero());
+        let add = |((leaf, _), (shape, entries)): ((&Configuration<'g>, _), &(Shape, Vec<Code>))| {
+            let (access, value) = (accessor(&leaf.accessor), grid(scope, *shape, entries, leaf.is_quaternion));
+            quote!(#target #access #operator #value;)
+        };
+        leaves.map(add).collect()
+    }
+
+    /// The places whose entries of fields a kernel reads.
+    fn places_of_fields(&self, power: &Power<'g>, kernel: &Kernel) -> Vec<usize> {
+        let of_fields = power.parameters.iter().filter(|parameter| parameter.per_site).filter_map(|parameter| {
+            let read = |leaf: &crate::model::Leaf<'g>| {
+                let role = leaf.symbol.as_symbol().map(|data| data.role);
+                kernel.inputs().iter().any(|input| Some(input.role) == role)
+            };
+            parameter.leaves.iter().any(read).then(|| place_of(parameter))?
+        });
+        of_fields.collect()
+    }
+
+    /// The statement that computes the index of a place.
+    fn index_of(&self, places: &[Place<'g>], power: &Power<'g>, place: usize) -> TokenStream {
+        let (private, length) = (&self.paths.private, &power.length);
+        let (name, Place { index, wraps }) = (format_ident!("at{place}"), &places[place]);
+        let index = linear(*index, power);
+        match wraps {
+            true => quote!(let #name = #private::wrapped::<#length>(#index);),
+            false => quote!(let #name = (#index) as ::core::primitive::usize;),
+        }
     }
 
     /// A statement for all indices of a term, with the configurations that it reads.
@@ -148,25 +309,11 @@ impl<'g> Emitter<'_, 'g> {
         kernel: &Kernel,
         body: TokenStream,
     ) -> TokenStream {
-        let (private, length) = (&self.paths.private, &power.length);
-        let of_fields = power.parameters.iter().filter(|parameter| parameter.per_site).filter_map(|parameter| {
-            let read = |leaf: &crate::model::Leaf<'g>| {
-                let role = leaf.symbol.as_symbol().map(|data| data.role);
-                kernel.inputs().iter().any(|input| Some(input.role) == role)
-            };
-            parameter.leaves.iter().any(read).then(|| place_of(parameter))?
-        });
-        let mut read: Vec<usize> = places.iter().copied().chain(of_fields).collect();
+        let length = &power.length;
+        let mut read: Vec<usize> = places.iter().copied().chain(self.places_of_fields(power, kernel)).collect();
         read.sort_unstable();
         read.dedup();
-        let indices = read.iter().map(|&place| {
-            let (name, Place { index, wraps }) = (format_ident!("at{place}"), &power.places[place]);
-            let index = linear(*index, power);
-            match wraps {
-                true => quote!(let #name = #private::wrapped::<#length>(#index);),
-                false => quote!(let #name = (#index) as ::core::primitive::usize;),
-            }
-        });
+        let indices = read.iter().map(|&place| self.index_of(&power.places, power, place));
         // a field of an array is read by an index that is known to be inside; sites are asked for
         let fields = read.iter().filter(|place| !places.contains(place)).map(|place| {
             let name = format_ident!("at{place}");

@@ -24,7 +24,7 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Property, Shape, identity};
 
-use crate::derive::{Formulas, inverse_by};
+use crate::derive::{self, Formulas, Stencil, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Factor, Isotropy, Space};
 
@@ -100,6 +100,8 @@ pub struct Program<'g> {
     pub cotangent_lift: Kernel,
     /// The terms of a power.
     pub links: Vec<LinkKernels>,
+    /// The gradient of one site of a power, where it is gathered from the terms that read it.
+    pub gathered: Option<Gathered<'g>>,
     /// Computes the constants, one output each.
     pub constants: Kernel,
     /// A short name for each constant.
@@ -112,6 +114,16 @@ pub struct LinkKernels {
     pub value: Kernel,
     /// Its gradient: for each place that it reads, one output for each leaf of the configuration.
     pub gradient: Kernel,
+}
+
+/// The gradient of one site of a power.
+pub struct Gathered<'g> {
+    /// Its formulas.
+    pub stencil: Stencil<'g>,
+    /// What every site has, one output for each leaf of the configuration.
+    pub whole: Kernel,
+    /// The rest, a kernel for each place of a term.
+    pub rest: Vec<Kernel>,
 }
 
 /// Lowers formulas to kernels.
@@ -146,9 +158,11 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();
         LinkKernels { value: outputs(&mut scalars, &[link.term.value]), gradient: outputs(&mut scalars, &slopes) }
     });
-    let links = links.collect();
+    let links: Vec<LinkKernels> = links.collect();
+    let gathered = gathered(&formulas, &links, |expressions| outputs(&mut scalars, expressions));
     let program = Program {
         links,
+        gathered,
         act: outputs(&mut scalars, &formulas.model.action),
         momentum_map: stacked(&formulas.momentum_map, &mut scalars),
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),
@@ -241,6 +255,23 @@ fn inverses<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
 
 fn replaced<'g>(expressions: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
     expressions.iter().map(|expression| expression.substitute(replacements)).collect()
+}
+
+/// The gradient of one site, where each site is read by few terms and gathering takes no more operations than adding up what each term has for its sites.
+fn gathered<'g>(
+    formulas: &Formulas<'g>,
+    links: &[LinkKernels],
+    mut kernel: impl FnMut(&[Expr<'g>]) -> Kernel,
+) -> Option<Gathered<'g>> {
+    let stencil = derive::stencil(&formulas.model, &formulas.links)?;
+    let whole = kernel(&stencil.gradient);
+    let rest = stencil.rest.iter().map(|&(term, place)| kernel(&formulas.links[term].gradient[place].1));
+    let rest: Vec<Kernel> = rest.collect();
+    let gathered = rest.iter().chain([&whole]).map(|kernel| kernel.cost().total()).sum::<usize>();
+    // what is added up is read and written once more for each place of a term
+    let entries = |kernel: &Kernel| kernel.outputs.iter().map(|(_, entries)| entries.len()).sum::<usize>();
+    let added = links.iter().map(|link| link.gradient.cost().total() + 2 * entries(&link.gradient)).sum::<usize>();
+    (!links.is_empty() && gathered <= added).then_some(Gathered { stencil, whole, rest })
 }
 
 /// Several expressions, one output each, nothing taken out.

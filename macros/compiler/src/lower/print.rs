@@ -73,7 +73,20 @@ impl Program<'_> {
         }));
         for (number, link) in self.links.iter().enumerate() {
             kernels.push((format!("term_{}", number + 1), &link.value));
-            kernels.push((format!("gradient_of_term_{}", number + 1), &link.gradient));
+            if self.gathered.is_none() {
+                kernels.push((format!("gradient_of_term_{}", number + 1), &link.gradient));
+            }
+        }
+        if let Some(gathered) = &self.gathered {
+            kernels.push(("gradient_of_site".to_string(), &gathered.whole));
+            kernels.extend(
+                gathered
+                    .stencil
+                    .rest
+                    .iter()
+                    .zip(&gathered.rest)
+                    .map(|((term, place), kernel)| (format!("gradient_of_term_{}_{}", term + 1, place + 1), kernel)),
+            );
         }
         kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
         kernels.extend(self.kernels_of_control());

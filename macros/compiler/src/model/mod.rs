@@ -38,7 +38,8 @@ pub use crate::parse::{
 };
 pub use groups::is_large;
 pub use outline::{Outline, outline};
-pub use power::{Place, Power, Term};
+pub use power::{Linear, Place, Power, Term};
+pub(crate) use sizes::IN_LOOPS;
 pub use structure::Structure;
 pub use types::*;
 

@@ -15,7 +15,7 @@ use super::value::Value;
 use super::{Configuration, Item, Kinetic, Leaf, Model, Order, Parameter, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place as Where};
 use crate::parse::{self, Declaration, Located};
-pub(super) use bounds::Linear;
+pub use bounds::Linear;
 
 /// What makes a power of the model of a site.
 #[derive(Clone)]

@@ -23,6 +23,18 @@ pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> 
     }
 }
 
+/// What to write instead of a large number of factors.
+pub(crate) const IN_LOOPS: &str = "give a const generic for the number of equal sites, `struct Chain<const N: usize>` and `[SO<3>; N]`: then they are stepped in loops, however many they are";
+
+/// The length of a product `[…; N]`: a size, but that more sites than are written out have another way.
+pub(super) fn length(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic> {
+    size(expr, generics).map_err(|error| match expr {
+        Expr::Lit(literal) if matches!(&literal.lit, Lit::Int(number) if number.base10_parse::<usize>().is_ok_and(|value| value > LARGEST)) => error
+            .help(IN_LOOPS),
+        _ => error,
+    })
+}
+
 /// The size that an expression stands for: a number between one and the limit.
 pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic> {
     match expr {

@@ -6,7 +6,7 @@ use syn::{Generics, Type};
 
 use super::groups::{Names, group, suggestion, unknown_group};
 use super::quaternion;
-use super::sizes::{LEAVES, size};
+use super::sizes::{IN_LOOPS, LEAVES, length};
 use super::vectors::{Vectors, arguments, hint, last_segment, vectors};
 use super::{Space, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
@@ -90,7 +90,7 @@ fn read_structure<'t, L: Copy>(
             (parts.len() == tuple.elems.len()).then_some(Structure::Tuple(parts))
         }
         Type::Array(array) => {
-            let length = size(&array.len, generics).map_err(|error| diagnostics.push(error)).ok()?;
+            let length = length(&array.len, generics).map_err(|error| diagnostics.push(error)).ok()?;
             let first = leaves.len();
             let part = read_structure(&array.elem, generics, leaf, leaves, diagnostics)?;
             let element: Vec<(L, &'t Type)> = leaves[first..].to_vec();
@@ -116,6 +116,7 @@ fn read_structure<'t, L: Copy>(
 
 fn too_many(ty: &Type, count: usize) -> Diagnostic {
     Diagnostic::new(Place::of(ty), format!("`{}` has {count} factors, more than {LEAVES}", spell_type(ty)))
+        .help(IN_LOOPS)
         .note("the code of a step is written out at compile time and grows with the number of factors")
 }
 

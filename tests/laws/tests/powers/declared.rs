@@ -170,3 +170,17 @@ twice!(molecules_of_arms, molecules, |random: &mut Random| {
     let mu: [Vector6<f64>; 4] = std::array::from_fn(|_| random.vector());
     (Looped::<4> { mass, inertia, arm, stiffness }, Unrolled { mass, inertia, arm, stiffness }, q, mu)
 });
+
+/// The compiler says what it chose: rings and chains gather, sums over pairs add up, and each of both stands in a test of this file.
+#[test]
+fn gradients_are_gathered_where_few_terms_read_a_site() {
+    const GATHERED: &str = "the gradient of a site is gathered from the terms that read it";
+    const ADDED: &str = "what a term has for its sites is added there";
+    for (derivation, chosen) in [
+        (ring_of_spins::Looped::<4>::DERIVATION, GATHERED),
+        (open_chain::Looped::<4>::DERIVATION, GATHERED),
+        (attracting_bodies::Looped::<4>::DERIVATION, ADDED),
+    ] {
+        assert!(derivation.contains(chosen), "{derivation}");
+    }
+}
