@@ -32,7 +32,7 @@ fn numbers_of_body<T: Real>(r: &Matrix3<T>, pi: &Vector3<T>) -> Vec<f64> {
 
 /// A body of which nothing but its own rotation is known, with each list of dials.
 macro_rules! bodies {
-    ($($module:ident, $name:literal, {$($dials:tt)*};)*) => {
+    ($(#[$documentation:meta])* $list:ident: $($module:ident, $name:literal, {$($dials:tt)*};)*) => {
         $(pub mod $module {
             use super::*;
 
@@ -65,13 +65,15 @@ macro_rules! bodies {
             }
         })*
 
-        /// The free body.
-        pub fn bodies() -> Vec<Dial> {
+        $(#[$documentation])*
+        pub fn $list() -> Vec<Dial> {
             vec![$(dial!($name, "free body", $module::Body<Counted<f64>>, $module::Body<Counted<f32>>, beside $module::Body<DoubleDouble>)),*]
         }
     };
 }
 bodies! {
+    /// The free body.
+    bodies:
     body_moser_veselov, "moser_veselov", { discretization = moser_veselov };
     body_cayley, "cayley", { discretization = cayley };
     body_exponential, "exponential", { discretization = exponential };
@@ -79,6 +81,16 @@ bodies! {
     body_exact, "exact", { discretization = exact };
     body_collocated, "order = 16", { order = 16 };
     body_compensated, "compensated", { discretization = moser_veselov, summation = compensated };
+}
+
+bodies! {
+    /// The free body by Cayley's map, with the dials of how its equation is solved.
+    solves:
+    solved_by_newton, "newton", { discretization = cayley, solver = newton };
+    solved_by_fixed_point, "fixed_point", { discretization = cayley, solver = fixed_point };
+    solved_to_tolerance, "tolerance = 1e-6", { discretization = cayley, tolerance = 1e-6 };
+    solved_in_four, "iterations = 4", { discretization = cayley, iterations = 4 };
+    solved_in_exponentials, "chart = exponential", { discretization = moser_veselov, chart = exponential };
 }
 
 macro_rules! tops {
@@ -122,7 +134,7 @@ macro_rules! tops {
 
         /// The heavy top.
         pub fn tops() -> Vec<Dial> {
-            vec![$(dial!($name, "heavy top", $module::Top<Counted<f64>>, $module::Top<Counted<f32>>, alone)),*]
+            vec![$(dial!($name, "heavy top", $module::Top<Counted<f64>>, $module::Top<Counted<f32>>, beside $module::Top<DoubleDouble>)),*]
         }
     };
 }
@@ -177,7 +189,7 @@ macro_rules! pendulums {
 
         /// The spherical pendulum.
         pub fn pendulums() -> Vec<Dial> {
-            vec![$(dial!($name, "spherical pendulum", $module::Pendulum<Counted<f64>>, $module::Pendulum<Counted<f32>>, alone)),*]
+            vec![$(dial!($name, "spherical pendulum", $module::Pendulum<Counted<f64>>, $module::Pendulum<Counted<f32>>, beside $module::Pendulum<DoubleDouble>)),*]
         }
     };
 }

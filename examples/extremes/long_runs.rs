@@ -1,8 +1,8 @@
 //! How errors of rounding grow over many steps.
 
 use crate::declarations::{bodies, pendulums, tops};
-use crate::map::{SCALARS, size};
-use crate::probe::{Dial, Drift, Setup};
+use crate::map::{Map, SCALARS, size};
+use crate::probe::{Cell, Dial, Drift, Setup};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
 use clebsch_examples::scene::{Failure, say};
@@ -10,6 +10,7 @@ use clebsch_examples::table::aligned;
 use rayon::prelude::*;
 use std::path::Path;
 
+const SECTION: &str = "long run";
 const COLOURS: [RGBColor; 7] = [BLUE, GREEN, ORANGE, RED, PURPLE, TEAL, INK];
 
 /// What is let run for long.
@@ -33,7 +34,7 @@ fn growth(drifts: &[Drift], of: fn(&Drift) -> f64) -> f64 {
 }
 
 /// Runs all of them, to `steps` steps.
-pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result<(), Failure> {
+pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result<(), Failure> {
     let decades = (3..).map(|power| 10_u64.pow(power)).take_while(|&count| count <= steps);
     let marks: Vec<u64> = decades.flat_map(|count| [count, 3 * count]).filter(|&count| count <= steps).collect();
     let dials = dials();
@@ -55,6 +56,10 @@ pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result
                 row.push(drifts.last().map_or(String::new(), |last| size(of(last))));
                 row.push(format!("{:.1}", growth(drifts, of)));
             }
+            for &Drift { steps, energy, momentum, constraint } in drifts {
+                let cell = Cell { energy, momentum, constraint, ..Cell::of(Ok(()), steps) };
+                map.add(SECTION, dial, scalar, "root mean squares", &cell)?;
+            }
             claim(claims, dial, name, scalar, drifts);
             rows.push(row);
         }
@@ -64,18 +69,22 @@ pub fn explore(claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result
     Ok(())
 }
 
-/// Momenta and constraints stay below one rounding a step, all of the same sign.
+/// Momenta go like random roundings, ε √steps; constraints do not grow; energies are those of the scheme, or go as momenta do.
 fn claim(claims: &mut Claims, dial: &Dial, name: &str, scalar: usize, drifts: &[Drift]) {
     let Some(last) = drifts.last() else { return };
     let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
-    let bound = epsilon * last.steps as f64;
-    claims.at_most(
-        &format!("long runs, {name}, {}, {}", dial.scene, dial.name),
-        last.momentum.max(last.constraint),
-        bound,
-        "momenta and constraint, at most ε a step",
-    );
+    let of = format!("long runs, {name}, {}, {}", dial.scene, dial.name);
+    let bound = epsilon * (last.steps as f64).sqrt();
+    claims.at_most(&format!("{of}: momenta"), last.momentum, bound, "ε √steps");
+    claims.at_most(&format!("{of}: constraint"), last.constraint, 16.0 * epsilon, "16 ε, after any number of steps");
+    if last.steps >= LONG {
+        let grows = growth(drifts, |drift| drift.energy);
+        claims.at_most(&format!("{of}: exponent of the energy's error"), grows, 0.75, "√steps or less");
+    }
 }
+
+/// Steps from which on exponents are those of growth, and not of where the runs began.
+const LONG: u64 = 10_000_000;
 
 fn draw(dials: &[Dial], runs: &[Vec<Drift>], scalar: &str, folder: Option<&Path>) -> Result<(), Failure> {
     let name = format!("extremes_drift_{scalar}");

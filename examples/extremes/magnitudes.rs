@@ -135,13 +135,13 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
             rows.push(row);
         }
         say(aligned(rows.iter()));
-        let least = [100, 8][scalar];
-        for unit in Unit::ALL {
-            let name = format!("magnitudes, {name}: {}", ["mass", "length", "time"][unit as usize]);
+        // 10^±150 and 10^±18 of mass and time; the square of a length is a moment of inertia, and so 10^±17 in `f32`
+        let least = [[500, 500, 500], [60, 56, 60]][scalar];
+        for (unit, (narrowest, least)) in ["mass", "length", "time"].into_iter().zip(narrowest.into_iter().zip(least)) {
             claims.holds(
-                &name,
-                narrowest[unit as usize] >= least,
-                &format!("the same but for rounding over 2^±{}", narrowest[unit as usize]),
+                &format!("magnitudes, {name}: {unit}"),
+                narrowest >= least,
+                &format!("the same but for rounding over 2^±{narrowest}, at least 2^±{least}"),
             );
         }
     }

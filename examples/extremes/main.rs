@@ -1,7 +1,7 @@
 //! The map of the edge: what happens where step sizes, bodies, units, starts and potentials are extreme, in both number types.
 //!
 //! Each section runs scenes with their dials over one quantity and prints a table. What must never happen is claimed: a result that is not finite, work
-//! beyond its bound, a momentum or a constraint that leaves rounding.
+//! beyond its bound, a momentum or a constraint that leaves rounding, a bound that is not where the docs say.
 
 mod declarations;
 mod inertia;
@@ -39,6 +39,9 @@ struct Flags {
     /// Random states of each scene, shared by its dials and types [default: 100000000]
     #[arg(long, value_name = "N", value_parser = count)]
     states: Option<u64>,
+    /// Random bodies whose longest step is looked for [default: 300]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    bodies: Option<u32>,
     /// Write all cells to FILE: section, scene, dial, scalar, value, outcome, steps, iterations, residual, energy, momentum, constraint, error
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -73,7 +76,7 @@ impl Flags {
 
     /// Random bodies whose bound is looked for.
     fn bodies(&self) -> u32 {
-        if self.full { 10_000 } else { 300 }
+        self.bodies.unwrap_or(if self.full { 10_000 } else { 300 })
     }
 }
 
@@ -98,13 +101,13 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
         starts::explore(&mut map, &mut claims)?;
     }
     if flags.includes(Section::Potentials) {
-        potentials::explore(&mut claims)?;
+        potentials::explore(&mut map, &mut claims)?;
     }
     if flags.includes(Section::RandomStates) {
-        random_states::explore(&mut claims, flags.states())?;
+        random_states::explore(&mut map, &mut claims, flags.states())?;
     }
     if flags.includes(Section::LongRuns) {
-        long_runs::explore(&mut claims, flags.steps(), folder)?;
+        long_runs::explore(&mut map, &mut claims, flags.steps(), folder)?;
     }
     say(format_args!(
         "{} runs, {} to their end, the others refused with an error that says why\n",

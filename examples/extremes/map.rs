@@ -44,11 +44,26 @@ impl<'a> Map<'a> {
     /// # Errors
     /// [`Failure::File`]
     pub fn add(&mut self, section: &str, dial: &Dial, scalar: usize, value: &str, cell: &Cell) -> Result<(), Failure> {
+        self.add_run(section, (dial.scene, dial.name), SCALARS[scalar], value, cell)
+    }
+
+    /// The same of a run that is not a dial's.
+    ///
+    /// # Errors
+    /// [`Failure::File`]
+    pub fn add_run(
+        &mut self,
+        section: &str,
+        (scene, name): (&str, &str),
+        scalar: &str,
+        value: &str,
+        cell: &Cell,
+    ) -> Result<(), Failure> {
         self.cells += 1;
         self.ended += u64::from(cell.outcome.is_ok());
         self.hidden += u64::from(cell.hides_nan());
         let Cell { steps, iterations, residual, energy, momentum, constraint, precise, .. } = cell;
-        let (scene, name, scalar, outcome) = (dial.scene, dial.name.replace(',', ""), SCALARS[scalar], outcome(cell));
+        let (name, value, outcome) = (name.replace(',', ""), value.replace(',', ""), outcome(cell));
         self.line(&format!(
             "{section},{scene},{name},{scalar},{value},{outcome},{steps},{iterations},{residual:e},{energy:e},{momentum:e},{constraint:e},{precise:e}"
         ))

@@ -88,7 +88,7 @@ pub struct Cell {
     pub steps: u64,
     /// The most iterations of one step.
     pub iterations: u32,
-    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of steps of second order: by how much the equation of a step is missed.
+    /// The largest |F⁻ℓd(q, F) − N|, over momenta, by how much the equation of a step is missed; NaN where steps are composed or collocated, and have none.
     pub residual: f64,
     /// Largest relative change of the energy.
     pub energy: f64,
@@ -103,6 +103,11 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// What is not measured, of a run that ended like this.
+    pub fn of(outcome: Result<(), Error>, steps: u64) -> Self {
+        Self { steps, ..Self::new(outcome, f64::NAN) }
+    }
+
     /// Before any step: `measured` stands for what is measured in steps.
     fn new(outcome: Result<(), Error>, measured: f64) -> Self {
         Self {
@@ -178,15 +183,12 @@ pub struct Sample {
     pub others: u64,
     /// Numbers that are not finite, handed out as results.
     pub hidden: u64,
-    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of one in a hundred steps with h|ω| below a thousandth.
+    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of one in a hundred steps with h|ω| below one.
     pub missed: f64,
 }
 
-/// The dial of a declaration that is generic over its scalar, run [`alone`] or [`beside`] 31 digits.
+/// The dial of a declaration that is generic over its scalar, run [`beside`] 31 digits.
 macro_rules! dial {
-    ($name:literal, $scene:literal, $double:ty, $single:ty, alone) => {
-        $crate::probe::dial!(@ $name, $scene, $double, $single, [$crate::probe::alone::<$double>, $crate::probe::alone::<$single>])
-    };
     ($name:literal, $scene:literal, $double:ty, $single:ty, beside $precise:ty) => {
         $crate::probe::dial!(@ $name, $scene, $double, $single,
             [$crate::probe::beside::<$double, $precise>, $crate::probe::beside::<$single, $precise>])
@@ -213,11 +215,6 @@ pub fn one_step<S: Scene>(setup: &Setup) -> Result<u32, Error> {
     let start = S::start(setup, &stepper)?;
     let (next, iterations) = iterations(|| stepper.step(&start));
     next.map(|_| iterations)
-}
-
-/// A run of S alone: what is not compared is not compiled in 31 digits either.
-pub fn alone<S: Scene>(setup: &Setup, steps: u64, _: bool) -> Cell {
-    run::<S>(setup, steps)
 }
 
 /// A run of S, and of P in 31 digits beside it.
@@ -273,7 +270,8 @@ struct Watch {
 
 impl Watch {
     fn new<S: Scene>(stepper: &Stepper<S>, start: &State<S>) -> Self {
-        let cell = Cell::new(Ok(()), 0.0);
+        let mut cell = Cell::new(Ok(()), 0.0);
+        cell.residual = if has_equation::<S>() { 0.0 } else { f64::NAN };
         let size = start.momentum().max_abs().to_f64();
         let energy = stepper.energy(start).to_f64();
         Self { cell, energy, conserved: S::conserved(stepper, start), size: if size > 0.0 { size } else { 1.0 } }
@@ -294,19 +292,26 @@ impl Watch {
             raise(&mut self.cell.momentum, (now - then).abs() / self.size);
         }
         raise(&mut self.cell.constraint, stepper.system().orbit_defect(state.configuration()).to_f64());
-        if S::ORDER == 2 {
-            raise(&mut self.cell.residual, residual(stepper, state));
+        if has_equation::<S>()
+            && let Some(missed) = residual(stepper, state)
+        {
+            raise(&mut self.cell.residual, missed);
         }
     }
 }
 
-/// |F⁻ℓd(q, F) − N| for the F that the next step finds, over the larger one of |N| and |F⁺ℓd(q, F)|; 0 where it finds none.
-fn residual<S: Scene>(stepper: &Stepper<S>, state: &State<S>) -> f64 {
+/// Whether a step is that of one equation F⁻ℓd(q, F) = N.
+fn has_equation<S: Scene>() -> bool {
+    S::ORDER == 2
+}
+
+/// |F⁻ℓd(q, F) − N| for the F that the next step finds, over the larger one of |N| and |F⁺ℓd(q, F)|; `None` where it finds none.
+fn residual<S: Scene>(stepper: &Stepper<S>, state: &State<S>) -> Option<f64> {
     let (q, n) = (state.configuration(), state.momentum());
-    let Ok(f) = stepper.inverse_legendre(q, n) else { return 0.0 };
+    let f = stepper.inverse_legendre(q, n).ok()?;
     let found = stepper.legendre(q, &f);
     let size = n.max_abs().to_f64().max(stepper.legendre_next(q, &f).max_abs().to_f64());
-    if size == 0.0 { 0.0 } else { found.zip_map(n, |found, n| found - n).max_abs().to_f64() / size }
+    Some(if size == 0.0 { 0.0 } else { found.zip_map(n, |found, n| found - n).max_abs().to_f64() / size })
 }
 
 /// The largest difference, of configurations (of the order of one), and of the momentum over its size.
@@ -358,8 +363,8 @@ pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Samp
     let (mut random, size) = (Random::new(seed), setup.momentum.norm());
     for number in 0..states {
         let part = 10.0_f64.powf(random.between(-8.0, 1.0));
-        let momentum = random.direction() * (size * part);
-        let Ok(start) = S::start(&Setup { momentum, ..setup.clone() }, &stepper) else {
+        let setup = Setup { momentum: random.direction() * (size * part), ..setup.clone() };
+        let Ok(start) = S::start(&setup, &stepper) else {
             sample.others += 1;
             continue;
         };
@@ -370,8 +375,8 @@ pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Samp
                 sample.iterations[count.min(63) as usize] += 1;
                 sample.most = sample.most.max(count);
                 sample.hidden += u64::from(!is_finite(&next));
-                if number % 100 == 0 && S::ORDER == 2 && part < 1e-3 {
-                    sample.missed = sample.missed.max(residual(&stepper, &start));
+                if number % 100 == 0 && has_equation::<S>() && setup.h * setup.velocity().norm() < 1.0 {
+                    sample.missed = sample.missed.max(residual(&stepper, &start).unwrap_or(0.0));
                 }
                 continue;
             }

@@ -1,6 +1,6 @@
 //! Step sizes, from such that hardly move anything to such that have no solution.
 
-use crate::declarations::{bodies, pendulums, tops};
+use crate::declarations::{bodies, pendulums, solves, tops};
 use crate::map::{Map, SCALARS, outcome, size};
 use crate::probe::{Cell, Dial, Setup};
 use crate::random::Random;
@@ -49,9 +49,12 @@ pub fn explore(
     folder: Option<&Path>,
     bodies_count: u32,
 ) -> Result<(), Failure> {
-    for dials in [bodies(), tops(), pendulums()] {
+    for (dials, is_drawn) in [(bodies(), true), (solves(), false), (tops(), true), (pendulums(), true)] {
         for scalar in 0..SCALARS.len() {
-            table(map, &dials, scalar, folder)?;
+            let curves = table(map, claims, &dials, scalar)?;
+            if is_drawn && scalar == 0 {
+                draw(&dials, curves, folder)?;
+            }
         }
     }
     bounds(claims, bodies_count);
@@ -66,31 +69,68 @@ fn at(angle: f64) -> Setup {
     Setup { h, ..setup }
 }
 
-fn table(map: &mut Map<'_>, dials: &[Dial], scalar: usize, folder: Option<&Path>) -> Result<(), Failure> {
+/// Prints the table of one scene, and gives the energy errors of each dial by h|ω|.
+fn table(
+    map: &mut Map<'_>,
+    claims: &mut Claims,
+    dials: &[Dial],
+    scalar: usize,
+) -> Result<Vec<Vec<(f64, f64)>>, Failure> {
     let scene = dials[0].scene;
     say(format_args!(
-        "Step size: {scene}, {}, {STEPS} steps. Most iterations of a step, largest relative error of the energy; or why a step was refused.\n",
+        "Step size: {scene}, {}, {STEPS} steps. Most iterations of a step, largest relative error of the energy; or why a step was refused. Below, the largest of all runs up to h|ω| = π that came to their end.\n",
         SCALARS[scalar]
     ));
     let mut rows = vec![heading("h|ω|", dials)];
     let mut curves: Vec<Vec<(f64, f64)>> = vec![Vec::new(); dials.len()];
+    let mut worst = vec![Worst([f64::NAN; 4]); dials.len()];
     for angle in ANGLES {
         let mut row = vec![format!("{angle:.3e}")];
-        for (dial, curve) in dials.iter().zip(&mut curves) {
+        for ((dial, curve), worst) in dials.iter().zip(&mut curves).zip(&mut worst) {
             let cell = dial.run[scalar](&at(angle), STEPS, angle > 1e-7);
             map.add(SECTION, dial, scalar, &format!("{angle:e}"), &cell)?;
             if cell.outcome.is_ok() {
                 curve.push((angle, cell.energy.max(1e-17)));
             }
+            if cell.outcome.is_ok() && angle < PI {
+                worst.add(&cell);
+            }
             row.push(text(&cell));
         }
         rows.push(row);
     }
-    say(aligned(rows.iter()));
-    if scalar == 0 {
-        draw(dials, curves, folder)?;
+    for (quantity, name) in ["residual", "momenta", "constraint", "off 31 digits"].into_iter().enumerate() {
+        rows.push(
+            std::iter::once(format!("most: {name}")).chain(worst.iter().map(|worst| worst.text(quantity))).collect(),
+        );
     }
-    Ok(())
+    say(aligned(rows.iter()));
+    let of = format!("step sizes, {scene}, {}", SCALARS[scalar]);
+    let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
+    let exact = dials.iter().zip(&worst).filter(|(dial, _)| !dial.name.starts_with("tolerance"));
+    // not measured is NaN, and does not count
+    let most = |quantity: usize| exact.clone().map(|(_, worst)| worst.0[quantity]).fold(0.0, f64::max);
+    claims.at_most(&format!("{of}: residual"), most(0), 64.0 * epsilon, "64 ε of the momenta, up to h|ω| = π");
+    claims.at_most(&format!("{of}: momenta"), most(1), 4.0 * STEPS as f64 * epsilon, "4 ε a step");
+    claims.at_most(&format!("{of}: constraint"), most(2), 64.0 * epsilon, "64 ε");
+    Ok(curves)
+}
+
+/// The largest residual, change of momenta, constraint and difference from 31 digits of runs that came to their end; NaN where none is measured.
+#[derive(Clone, Copy)]
+struct Worst([f64; 4]);
+
+impl Worst {
+    fn text(&self, quantity: usize) -> String {
+        let most = self.0[quantity];
+        if most.is_nan() { "-".to_owned() } else { size(most) }
+    }
+
+    fn add(&mut self, cell: &Cell) {
+        for (most, x) in self.0.iter_mut().zip([cell.residual, cell.momentum, cell.constraint, cell.precise]) {
+            *most = most.max(x);
+        }
+    }
 }
 
 /// The names of dials under a first word.
@@ -185,6 +225,16 @@ fn bounds(claims: &mut Claims, count: u32) {
                 0.999..=1.001,
                 4,
                 "1 about principal axes, more about others",
+            ),
+            "projection" => claims.holds(
+                "bound of h|ω|: projection",
+                limits.first().is_none_or(|least| *least > 0.2) && limits.last().is_some_and(|most| *most < 0.52),
+                "½ about principal axes, 0.2 at least about others",
+            ),
+            "order = 16" => claims.holds(
+                "bound of h|ω|: order = 16",
+                limits.first().is_none_or(|least| *least > 0.8),
+                "sweeps contract up to 0.8 at least",
             ),
             "exponential" | "exact" => claims.holds(
                 &format!("bound of h|ω|: {}", dial.name),

@@ -83,6 +83,15 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         None
     }
 
+    /// Whether ρ has poles in the chart, as where det(I + F) vanishes.
+    ///
+    /// `false` by the provided method. Beside a pole a correction is as small as the distance to it, while the residual is as large as its inverse: where there
+    /// are any, what is found is compared with the residual at the start too.
+    #[inline]
+    fn has_poles() -> bool {
+        false
+    }
+
     /// The sign of det Dρ which every solution on the branch has; `None` where it is singular.
     ///
     /// The provided method makes one linearisation, at ξ = 0 and μ = 0. It is asked for in every solve: answer from a constant where one is at
@@ -122,6 +131,9 @@ pub fn orientation<T: Scalar, const M: usize, const N: usize>(
 
 /// Newton steps that are tried before the path is followed. Each at least halves the correction and most square it.
 const QUICK: u32 = 12;
+
+/// How many times as large as that of the predictor a residual may be, where ρ has poles.
+const FARTHEST: f64 = 1024.0;
 
 /// How many of `most` iterations may be made after `spent` others.
 #[inline]
@@ -184,6 +196,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     let visible = larger(T::EPSILON, negligible);
     let mut predicted = size(&start);
     let (mut before, mut residual_before) = (predicted, xi);
+    let mut farthest = T::zero();
     while made < most {
         T::iterated();
         made += 1;
@@ -191,6 +204,13 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         let Some((correction, orientation)) = E::correct(&jacobian, &residual) else { break };
         if orientation != branch {
             open = open & orientation.agrees::<T>(branch);
+            if !open.any() {
+                break;
+            }
+        }
+        if E::has_poles() {
+            farthest = if made == 1 { T::from_f64(FARTHEST) * size(&residual) } else { farthest };
+            open = open & size(&residual).at_most(farthest);
             if !open.any() {
                 break;
             }

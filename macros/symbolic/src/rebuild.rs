@@ -85,6 +85,20 @@ impl<'g> Expr<'g> {
         self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), Node::Inverse(_)))
     }
 
+    /// Whether it divides by what depends on one of these symbols, or takes the inverse of a matrix that does: where that vanishes it has a pole.
+    pub fn has_poles_in(self, symbols: &[Expr<'g>]) -> bool {
+        let depends = |expr: Expr<'g>| symbols.iter().any(|symbol| expr.depends_on(*symbol));
+        let divides = |term: &Term| {
+            let mut divisors = term.scalars.iter().filter(|(_, exponent)| exponent.numerator() < 0);
+            divisors.any(|(scalar, _)| depends(self.graph.expr(*scalar)))
+        };
+        self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
+            Node::Inverse(matrix) => depends(self.graph.expr(*matrix)),
+            Node::Sum(terms) => terms.iter().any(divides),
+            _ => false,
+        })
+    }
+
     /// Whether a root, an elementary function, a power series or a method of the user's occurs.
     pub fn has_functions(self) -> bool {
         let fractional =

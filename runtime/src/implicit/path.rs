@@ -90,11 +90,11 @@ impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_,
             let (now, seen) = (size(&correction), T::EPSILON * size(&xi));
             let ratio = now / before;
             if ratio <= half {
-                if now * ratio * ratio <= seen * T::from_ratio(1, 4) {
+                if now * ratio * ratio <= seen * T::from_ratio(1, 4) && self.is_small(&residual, T::one()) {
                     return Some(xi);
                 }
             } else {
-                if now <= seen || self.is_round_off(&residual, terms, T::one()) {
+                if now <= seen && self.is_small(&residual, T::one()) || self.is_round_off(&residual, terms, T::one()) {
                     return Some(xi);
                 }
                 if !is_much_smaller(&residual, &residual_before) {

@@ -365,3 +365,53 @@ proptest! {
         prop_assert!(speed < 1.31 || result.is_err(), "{:?}", result);
     }
 }
+
+/// ξ/(1 − ξ²) = μ, with a pole at 1 and a predictor of its own.
+struct Pole {
+    start: f64,
+}
+
+impl Equation<f64, 1> for Pole {
+    type Terms = f64;
+    type Jacobian = SMatrix<f64, 1, 1>;
+
+    fn prepare(&self, target: &Vector1<f64>) -> f64 {
+        target.x
+    }
+
+    fn predict(&self, _: &Vector1<f64>) -> Vector1<f64> {
+        Vector1::new(self.start)
+    }
+
+    fn linearize(&self, target: &f64, xi: &Vector1<f64>) -> (Vector1<f64>, SMatrix<f64, 1, 1>) {
+        let (x, rest) = (xi.x, (1.0 - xi.x) * (1.0 + xi.x));
+        (Vector1::new(x / rest - target), SMatrix::<f64, 1, 1>::new((1.0 + x * x) / (rest * rest)))
+    }
+
+    fn has_poles() -> bool {
+        true
+    }
+}
+
+/// Newton's step from some starts ends in the last place beside the pole, where the next one is not seen: no solution all the same.
+#[test]
+fn a_pole_is_no_solution() {
+    let target = Vector1::new(-3.0);
+    let next = |x: f64| {
+        let (residual, slope) = Pole { start: x }.linearize(&target.x, &Vector1::new(x));
+        x - residual.x / slope[(0, 0)]
+    };
+    // where Newton's step to the left goes over 1, for ξ beyond it
+    let (mut low, mut high) = (1.0 + 1e-6, 3.0);
+    assert!(next(low) > 1.0 && next(high) < 1.0, "{} {}", next(low), next(high));
+    for _ in 0..200 {
+        let middle = low + (high - low) / 2.0;
+        if next(middle) > 1.0 { low = middle } else { high = middle }
+    }
+    let expected = (1.0 - 37.0_f64.sqrt()) / 6.0;
+    for start in [low, high, low - 1e-15, high + 1e-15, 0.0] {
+        assert!(start == 0.0 || (next(start) - 1.0).abs() < 1e-14, "{}", next(start));
+        let found = solve(&Pole { start }, &target).expect("the branch goes on for ever");
+        assert!((found.x - expected).abs() < 1e-15, "{start}: {} for {expected}", found.x);
+    }
+}

@@ -249,10 +249,10 @@ fn parameters<S: Scene>(report: &mut Report, mu: S::Momentum) {
         for (entry, value) in (0..count).flat_map(|entry| BROKEN.map(|value| (entry, value))) {
             let system = S::ordinary().with_field(field, entry, value);
             let place = format!("{field}[{entry}] = {value:e}");
-            // fields of tuples have names too
+            // fields of tuples are called as they are read
             let named = match field {
-                "0" => "field_0",
-                "1" => "field_1",
+                "0" => "self.0",
+                "1" => "self.1",
                 other => other,
             };
             match S::NAME == "Harmonics" && field == "coefficients" {

@@ -425,7 +425,9 @@ impl Generator<'_> {
         if self.pick(6) == 0 {
             self.made.dials.push("isotropy = free");
         }
-        if self.pick(8) == 0 {
+        // in which Cayley's velocities have poles
+        let has_poles = matches!(self.made.kinetic, Kinetic::Lagrangian(_, Discretization::Cayley));
+        if self.pick(8) == 0 && !has_poles {
             self.made.dials.push("chart = exponential");
         }
     }

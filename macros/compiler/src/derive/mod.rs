@@ -233,6 +233,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         false => collocation::collocation(&sources(1), &energy, potential_energy, &generator, is_free)?,
     };
     closed_form::adopt_sine(&mut symbols, &mut substeps);
+    symbols::check_poles(&model, &symbols, &substeps)?;
     tolerance::check(&model, &substeps, collocation.is_some())?;
     let formulas = Formulas {
         splitting,

@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
+use super::{Equation, Solution, Substep};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{ChartChoice, Discretization, Kinetic, Model};
 
@@ -182,7 +183,7 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
         Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
         Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => None,
     };
-    match (discretization, model.chart) {
+    match (discretization, model.chart.as_ref().map(|chart| chart.value)) {
         (Some(Discretization::Exponential), _) | (_, Some(ChartChoice::Exponential)) => Chart::Exponential,
         (_, Some(ChartChoice::Cayley)) => Chart::Cayley,
         (Some(Discretization::Cayley), None) if factor.group.has_cayley_chart(model.graph) => Chart::Cayley,
@@ -190,10 +191,34 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
     }
 }
 
+/// An equation has no poles in a chart that the user has chosen where it has none in Cayley's.
+pub(super) fn check_poles(
+    model: &Model<'_>,
+    symbols: &Symbols<'_>,
+    substeps: &[Substep<'_>],
+) -> Result<(), Diagnostics> {
+    let chosen = model.chart.as_ref().filter(|chart| chart.value == ChartChoice::Exponential);
+    let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
+    let is_curable = |equation: &&Equation<'_>| {
+        let mut groups = equation.factors.iter().map(|&k| model.factors[k].group);
+        equation.solution == Solution::Newton && groups.all(|group| group.has_cayley_chart(model.graph))
+    };
+    let mut equations = substeps.iter().flat_map(|substep| &substep.equations).filter(is_curable);
+    match chosen.filter(|_| equations.any(|equation| equation.residual.has_poles_in(&coordinates))) {
+        None => Ok(()),
+        Some(chosen) => {
+            let error =
+                Diagnostic::new(chosen.span, "the momentum equation of this step has poles in the exponential chart");
+            let error = error.help("leave out `chart`: then Cayley's is chosen, in which it has none");
+            Err(error.note("it divides by what vanishes where F turns by π, and beside that what is computed has lost its digits").into())
+        }
+    }
+}
+
 /// Every factor has to have the chart that the user has chosen.
 pub(super) fn check_chart(model: &Model<'_>) -> Result<(), Diagnostics> {
     let missing = model.factors.iter().find(|factor| {
-        model.chart == Some(ChartChoice::Cayley)
+        model.chart.as_ref().is_some_and(|chart| chart.value == ChartChoice::Cayley)
             && !factor.group.is_translation()
             && !factor.group.has_cayley_chart(model.graph)
     });

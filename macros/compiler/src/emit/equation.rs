@@ -262,6 +262,14 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
+        let poles = solve.has_poles.then(|| {
+            quote! {
+                #[inline]
+                fn has_poles() -> ::core::primitive::bool {
+                    true
+                }
+            }
+        });
         let limit = self.model.iterations.as_ref().map(|iterations| {
             let most = Literal::u32_unsuffixed(iterations.value);
             quote! {
@@ -303,6 +311,7 @@ impl<'g> Emitter<'_, 'g> {
 
                 #correct
                 #orientation
+                #poles
                 #tolerance
                 #limit
             }

@@ -97,6 +97,8 @@ pub struct Solve {
     pub is_inertial: bool,
     /// Whether the equation depends on the configuration, on the time or on the input.
     pub moves: bool,
+    /// Whether ρ has poles in the chart, near which no correction is seen.
+    pub has_poles: bool,
     /// Whether it depends on the input.
     pub reads_input: bool,
 }
@@ -351,6 +353,10 @@ fn solve<'g>(
         linearize,
         is_inertial: equation.is_inertial,
         moves: equation.moves,
+        has_poles: {
+            let blocks = formulas.symbols.blocks.iter().map(|block| block.coordinates);
+            equation.residual.has_poles_in(&blocks.collect::<Vec<_>>())
+        },
         reads_input: formulas.model.inputs.iter().any(|leaf| equation.residual.depends_on(leaf.symbol)),
     };
     let (momenta, coordinates) = solve.read(formulas);

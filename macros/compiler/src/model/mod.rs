@@ -143,7 +143,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         summation: dials.summation.clone(),
         code: dials.code.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
-        chart: dials.chart.as_ref().map(|chart| chart.value),
+        chart: dials.chart.clone(),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
         emit: dials.emit,
         spans: closures::spans(declaration),

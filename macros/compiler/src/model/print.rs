@@ -81,8 +81,8 @@ impl fmt::Display for Model<'_> {
         if let Some(code) = &self.code {
             writeln!(f, "  code       {}", code.value)?;
         }
-        if let Some(chart) = self.chart {
-            writeln!(f, "  chart      {chart}")?;
+        if let Some(chart) = &self.chart {
+            writeln!(f, "  chart      {}", chart.value)?;
         }
         match self.is_steered() {
             true => Ok(()),

@@ -55,7 +55,7 @@ pub struct Model<'g> {
     /// What becomes of motions of the group that move no configuration.
     pub isotropy: Isotropy,
     /// The chart that the user chooses.
-    pub chart: Option<ChartChoice>,
+    pub chart: Option<Located<ChartChoice>>,
     /// The solver that the user chooses.
     pub solver: Option<Solver>,
     /// The part of a step by which its implicit equations, or the series of free rotations between kicks, may be missed; `None` for

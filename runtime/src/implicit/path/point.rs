@@ -96,8 +96,12 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     ///
     /// Compared with s μ too: where the Jacobian grows without bound within the last place of ξ, any residual looks like rounding.
     pub fn is_round_off(&self, residual: &SVector<T, M>, terms: T, s: T) -> bool {
-        let residual = size(residual);
-        residual <= T::from_f64(8.0) * T::EPSILON * terms && residual <= self.weight * s.abs() * T::from_ratio(1, 16)
+        size(residual) <= T::from_f64(8.0) * T::EPSILON * terms && self.is_small(residual, s)
+    }
+
+    /// Whether a residual is small beside s μ, as it is not beside a pole of ρ, where corrections are as small as the distance to it.
+    pub fn is_small(&self, residual: &SVector<T, M>, s: T) -> bool {
+        size(residual) <= self.weight * s.abs() * T::from_ratio(1, 16)
     }
 
     /// Distance of a point from the identity, in units of the scale and of s.
@@ -136,7 +140,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
             let (now, seen) = (self.distance(&correction, change), T::EPSILON * self.distance(&xi, moving));
             let ratio = now / before;
             // The first is compared with the length of the step, from which the next correction cannot be told.
-            if now <= seen || !is_first && ratio <= half && now * ratio * ratio <= seen {
+            let is_found = now <= seen || !is_first && ratio <= half && now * ratio * ratio <= seen;
+            if is_found && self.is_small(&at.residual, s) {
                 return self.arrive(xi, s, parameter, from);
             }
             if ratio > half && self.is_round_off(&at.residual, terms, s) {

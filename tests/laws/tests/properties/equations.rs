@@ -5,7 +5,7 @@ use clebsch::__private as private;
 use clebsch::Error;
 use clebsch::implicit::{self, Equation, LinearEquation};
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use private::{Composed, Orientation, VelocityEquation};
 use proptest::prelude::*;
 
@@ -45,6 +45,31 @@ impl<const MOST: u32> Equation<f64, 3> for Cubic<MOST> {
 
     fn limit() -> Option<u32> {
         (MOST > 0).then_some(MOST)
+    }
+}
+
+/// ξ/(1 − ξ²) = μ, whose branch from 0 ends at the poles ±1 for μ = ±∞; predicted anywhere.
+struct Pole(f64);
+
+impl Equation<f64, 1> for Pole {
+    type Terms = f64;
+    type Jacobian = SMatrix<f64, 1, 1>;
+
+    fn prepare(&self, target: &SVector<f64, 1>) -> f64 {
+        target.x
+    }
+
+    fn predict(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
+        SVector::from([self.0])
+    }
+
+    fn linearize(&self, target: &f64, xi: &SVector<f64, 1>) -> (SVector<f64, 1>, SMatrix<f64, 1, 1>) {
+        let (x, rest) = (xi.x, (1.0 - xi.x) * (1.0 + xi.x));
+        (SVector::from([x / rest - target]), SMatrix::from([[(1.0 + x * x) / (rest * rest)]]))
+    }
+
+    fn has_poles() -> bool {
+        true
     }
 }
 
@@ -180,6 +205,15 @@ proptest! {
         prop_assert!((jacobian * correction - mu).amax() <= rounding(&mu));
         prop_assert_eq!((sign, equation.orientation(), implicit::orientation(&equation)), (Orientation::POSITIVE, Some(Orientation::POSITIVE), Ok(Orientation::POSITIVE)));
         prop_assert_eq!(<Cubic<0> as Equation<f64, 3>>::tolerance(), f64::EPSILON / 4.0);
+    }
+
+    /// Wherever the predictor is, but beside a pole itself, what is found solves the equation.
+    #[test]
+    fn poles_are_no_solutions(mu in -50.0_f64..50.0, start in prop_oneof![-0.99_f64..0.99, 1.01_f64..1.5, -1.5_f64..-1.01]) {
+        prop_assert!(<Pole as Equation<f64, 1>>::has_poles());
+        let xi = implicit::solve(&Pole(start), &SVector::from([mu]))?.x;
+        let missed = (xi / ((1.0 - xi) * (1.0 + xi)) - mu).abs();
+        prop_assert!(missed <= 1e-11 * (1.0 + mu * mu), "{} at {}", missed, xi);
     }
 
     /// With two iterations at most a step is solved, or is said not to be.

@@ -22,6 +22,17 @@ pub struct Ring<const N: usize> {
     pub field: Vector3<f64>,
 }
 
+/// Bodies on springs, one for each pair: what a term has for its sites is added there.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: [Translation<3>; N], x: [Vector3; N]| (0..N).map(|i| x[i] + a[i]),
+    cost      = |h, a| (0..N).map(|i| a[i].norm_squared()).sum() / (2 * h),
+    potential = |x| self.stiffness / 2 * (0..N).map(|i| (i + 1..N).map(|j| (x[i] - x[j]).norm_squared()).sum()).sum(),
+)]
+pub struct Springs<const N: usize> {
+    pub stiffness: f64,
+}
+
 type Spins = [Vector3<f64>; N];
 
 fn rings() -> BoxedStrategy<Ring<N>> {
@@ -76,9 +87,7 @@ proptest! {
     #[test]
     fn kicks_are_gradients(ring in rings(), (q, _) in spins(), along in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0, weight in -1.0_f64..1.0) {
         let slope = ring.slope(t, &q);
-        let mut twice = slope;
-        ring.add_gradient(t, &q, &mut twice);
-        prop_assert!(apart(&twice, &slope.map(|slope| 2.0 * slope)) < 1e-14);
+        prop_assert_eq!(slope, std::array::from_fn(|i| ring.gradient_at(t, &q, i)));
         let moved = |e: f64| ring.potential_of_sites(t, &std::array::from_fn(|i| q[i] + e * along[i]));
         // a quadratic potential has no error of third order
         let difference = (moved(1e-3) - moved(-1e-3)) / 2e-3;
@@ -87,13 +96,32 @@ proptest! {
         let kick = ring.power_kick(t, &q, weight);
         let by_map: Spins = ring.momenta_of(&q, &slope.map(|slope| weight * slope));
         prop_assert!(apart(&kick, &by_map) < 1e-14);
+        prop_assert_eq!(kick, std::array::from_fn(|i| ring.kick_of_site(i, &q[i], &slope[i], weight)));
         let (mut gradient, mut again, mut momenta) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::y(); N]);
         let sum = ring.kick_into(t, &q, weight, &mut gradient, &mut again, &mut momenta);
-        prop_assert_eq!((gradient, again), (slope, kick));
+        // gathered gradients are not kept
+        prop_assert_eq!((gradient, again), ([Vector3::x(); N], kick));
         prop_assert!(apart(&momenta, &kick.map(|kick| kick + Vector3::y())) < 1e-15);
-        prop_assert!((sum - q.iter().chain(&momenta).map(Vector3::sum).sum::<f64>()).abs() < 1e-13);
+        // points on spheres are finite wherever their momenta are
+        prop_assert!((sum - momenta.iter().map(Vector3::sum).sum::<f64>()).abs() < 1e-13);
         prop_assert_eq!(ring.power_stagger(weight, t, &q, -0.5, -0.5), [Vector3::zeros(); N]);
         prop_assert!(apart(&ring.power_stagger(weight, t, &q, 0.0, -1.0), &kick.map(|kick| -0.5 * kick)) < 1e-15);
+    }
+
+    /// Of springs between all pairs: k(N x_i − Σ x_j) on each, added to what is there; gathered nowhere.
+    #[test]
+    fn what_terms_have_is_added_up(stiffness in 0.1_f64..2.0, x in prop::array::uniform5(vector::<3>(1.0)), weight in -1.0_f64..1.0) {
+        let springs = Springs::<N> { stiffness };
+        let all: Vector3<f64> = x.iter().sum();
+        let expected: Spins = x.map(|x| stiffness * (N as f64 * x - all));
+        let mut added = [Vector3::z(); N];
+        springs.add_gradient(0.0, &x, &mut added);
+        prop_assert!(apart(&added, &expected.map(|slope| slope + Vector3::z())) < 1e-13);
+        prop_assert_eq!(springs.gradient_at(0.0, &x, 1), Vector3::zeros());
+        let (mut gradient, mut kick, mut momenta) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::y(); N]);
+        let sum = springs.kick_into(0.0, &x, weight, &mut gradient, &mut kick, &mut momenta);
+        prop_assert_eq!((gradient, kick), (springs.slope(0.0, &x), springs.power_kick(0.0, &x, weight)));
+        prop_assert!((sum - x.iter().chain(&momenta).map(Vector3::sum).sum::<f64>()).abs() < 1e-13);
     }
 
     /// Kick, move, kick; the transforms of both ends; and the same on T*Q.
