@@ -10,7 +10,6 @@ use clebsch_examples::table::aligned;
 use nalgebra::Vector3;
 
 const SECTION: &str = "inertia";
-const STEPS: u64 = 1000;
 /// h|ω|
 const ANGLE: f64 = 0.05;
 /// Principal moments.
@@ -35,11 +34,11 @@ const SHAPES: [(&str, [f64; 3]); 17] = [
 ];
 
 /// A table for each scalar type.
-pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
+pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64) -> Result<(), Failure> {
     let dials: Vec<Dial> = bodies().into_iter().filter(|dial| dial.name != "compensated").collect();
     for (scalar, name) in SCALARS.into_iter().enumerate() {
         say(format_args!(
-            "Inertia: free body, {name}, {STEPS} steps of h|ω| = {ANGLE}, ω of equal size along all axes. Most iterations, and the largest difference from the same steps in 31 digits.\n"
+            "Inertia: free body, {name}, {steps} steps of h|ω| = {ANGLE}, ω of equal size along all axes. Most iterations, and the largest difference from the same steps in 31 digits.\n"
         ));
         let (mut rows, mut errors, mut momenta) = (vec![heading("moments", &dials)], Vec::new(), Vec::new());
         for (shape, moments) in SHAPES {
@@ -47,7 +46,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
             for dial in &dials {
                 let setup = Setup { moments, ..Setup::ordinary() }.with_velocity(Vector3::repeat(1.0));
                 let h = ANGLE / setup.velocity().norm();
-                let cell = dial.run[scalar](&Setup { h, ..setup }, STEPS, true);
+                let cell = dial.run[scalar](&Setup { h, ..setup }, steps, true);
                 map.add(SECTION, dial, scalar, shape, &cell)?;
                 row.push(match cell.outcome {
                     Ok(()) => format!("{} it, {}", cell.iterations, size(cell.precise)),
@@ -62,7 +61,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
         }
         say(aligned(rows.iter()));
         let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
-        let steps = STEPS as f64;
+        let steps = steps as f64;
         claims.at_most(
             &format!("inertia, {name}: spatial momentum"),
             largest(momenta),

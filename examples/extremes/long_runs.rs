@@ -69,13 +69,13 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64, folder: Optio
     Ok(())
 }
 
-/// Momenta go like random roundings, ε √steps; constraints do not grow; energies are those of the scheme, or go as momenta do.
+/// Momenta go like random roundings, 2 ε √steps; constraints do not grow; energies are those of the scheme, or go as momenta do.
 fn claim(claims: &mut Claims, dial: &Dial, name: &str, scalar: usize, drifts: &[Drift]) {
     let Some(last) = drifts.last() else { return };
     let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
     let of = format!("long runs, {name}, {}, {}", dial.scene, dial.name);
-    let bound = epsilon * (last.steps as f64).sqrt();
-    claims.at_most(&format!("{of}: momenta"), last.momentum, bound, "ε √steps");
+    let bound = 2.0 * epsilon * (last.steps as f64).sqrt();
+    claims.at_most(&format!("{of}: momenta"), last.momentum, bound, "2 ε √steps");
     claims.at_most(&format!("{of}: constraint"), last.constraint, 16.0 * epsilon, "16 ε, after any number of steps");
     if last.steps >= LONG {
         let grows = growth(drifts, |drift| drift.energy);

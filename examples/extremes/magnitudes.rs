@@ -12,7 +12,6 @@ use clebsch_examples::table::aligned;
 use std::f64::consts::LOG10_2;
 
 const SECTION: &str = "magnitude";
-const STEPS: u64 = 50;
 
 /// The unit that changes.
 #[derive(Clone, Copy, PartialEq)]
@@ -92,12 +91,18 @@ impl Reach {
     }
 }
 
-fn reach(map: &mut Map<'_>, dial: &Dial, scalar: usize, unit: Unit, sign: i32, end: i32) -> Result<Reach, Failure> {
-    let ordinary = dial.run[scalar](&Setup::ordinary(), STEPS, false);
+fn reach(
+    map: &mut Map<'_>,
+    (dial, scalar): (&Dial, usize),
+    steps: u64,
+    unit: Unit,
+    (sign, end): (i32, i32),
+) -> Result<Reach, Failure> {
+    let ordinary = dial.run[scalar](&Setup::ordinary(), steps, false);
     let rounding = 1e3 * [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
     let (mut same, mut near) = (0, 0);
     for k in (4..=end).step_by(4) {
-        let cell = dial.run[scalar](&unit.scaled(sign * k), STEPS, false);
+        let cell = dial.run[scalar](&unit.scaled(sign * k), steps, false);
         let value = format!("{} 2^{}", ["mass", "length", "time"][unit as usize], sign * k);
         map.add(SECTION, dial, scalar, &value, &cell)?;
         let difference = difference(&cell, &ordinary, unit.of_momentum(sign * k));
@@ -116,19 +121,19 @@ fn reach(map: &mut Map<'_>, dial: &Dial, scalar: usize, unit: Unit, sign: i32, e
 }
 
 /// The ranges of all dials.
-pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
+pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64) -> Result<(), Failure> {
     for (scalar, name) in SCALARS.into_iter().enumerate() {
         let end = [1000, 120][scalar];
         say(format_args!(
-            "Magnitudes, {name}: the powers of ten of the unit over which {STEPS} steps are the same but for rounding, and what happens next, below and above; where all bits are the same over less, how far\n"
+            "Magnitudes, {name}: the powers of ten of the unit over which {steps} steps are the same but for rounding, and what happens next, below and above; where all bits are the same over less, how far\n"
         ));
         let mut rows = vec![["", "mass", "length", "time"].map(str::to_owned).to_vec()];
         let mut narrowest = [i32::MAX; 3];
         for dial in [bodies(), tops(), pendulums()].concat() {
             let mut row = vec![format!("{}, {}", dial.scene, dial.name)];
             for unit in Unit::ALL {
-                let below = reach(map, &dial, scalar, unit, -1, end)?;
-                let above = reach(map, &dial, scalar, unit, 1, end)?;
+                let below = reach(map, (&dial, scalar), steps, unit, (-1, end))?;
+                let above = reach(map, (&dial, scalar), steps, unit, (1, end))?;
                 narrowest[unit as usize] = narrowest[unit as usize].min(below.near).min(above.near);
                 row.push(format!("{} … {}", below.text("-"), above.text("")));
             }

@@ -30,6 +30,9 @@ struct Flags {
     /// A thousand million random states of each scene and steps of each long run: hours
     #[arg(long)]
     full: bool,
+    /// A tenth of the work, and less: seconds
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
     /// One section alone
     #[arg(long, value_name = "NAME")]
     section: Option<Section>,
@@ -67,16 +70,21 @@ impl Flags {
     }
 
     fn steps(&self) -> u64 {
-        self.steps.unwrap_or(if self.full { 1_000_000_000 } else { 100_000_000 })
+        self.steps.unwrap_or(self.chosen([100_000, 100_000_000, 1_000_000_000]))
     }
 
     fn states(&self) -> u64 {
-        self.states.unwrap_or(if self.full { 1_000_000_000 } else { 100_000_000 })
+        self.states.unwrap_or(self.chosen([100_000, 100_000_000, 1_000_000_000]))
+    }
+
+    /// What is for `quick`, for neither, for `full`.
+    fn chosen(&self, of: [u64; 3]) -> u64 {
+        of[if self.quick { 0 } else { 1 + usize::from(self.full) }]
     }
 
     /// Random bodies whose bound is looked for.
     fn bodies(&self) -> u32 {
-        self.bodies.unwrap_or(if self.full { 10_000 } else { 300 })
+        self.bodies.unwrap_or(self.chosen([5, 300, 10_000]) as u32)
     }
 }
 
@@ -89,16 +97,16 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut claims = Claims::new();
     let folder = flags.figures.as_deref();
     if flags.includes(Section::StepSizes) {
-        step_sizes::explore(&mut map, &mut claims, folder, flags.bodies())?;
+        step_sizes::explore(&mut map, &mut claims, folder, (flags.chosen([10, 200, 200]), flags.bodies()))?;
     }
     if flags.includes(Section::Inertia) {
-        inertia::explore(&mut map, &mut claims)?;
+        inertia::explore(&mut map, &mut claims, flags.chosen([5, 1000, 1000]))?;
     }
     if flags.includes(Section::Magnitudes) {
-        magnitudes::explore(&mut map, &mut claims)?;
+        magnitudes::explore(&mut map, &mut claims, flags.chosen([2, 50, 50]))?;
     }
     if flags.includes(Section::Starts) {
-        starts::explore(&mut map, &mut claims)?;
+        starts::explore(&mut map, &mut claims, flags.chosen([100, 20_000, 20_000]))?;
     }
     if flags.includes(Section::Potentials) {
         potentials::explore(&mut map, &mut claims)?;

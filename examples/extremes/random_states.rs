@@ -12,12 +12,13 @@ use rayon::prelude::*;
 
 /// States of one body.
 const STATES: u64 = 10_000;
-/// Most iterations of a solve: 12 by Newton's method, then those along the path, of which the last step may take 8 more. A step of order 16 makes at
+/// Most iterations of a solve: 12 by Newton's method, then those along the path, of which the last point may take 4 more. A step of order 16 makes at
 /// most 64 sweeps.
-const ITERATIONS: u32 = 12 + LINEARIZATIONS + 8;
+const ITERATIONS: u32 = 12 + LINEARIZATIONS + 4;
 
-/// How far F⁻ℓd(q, F) may be from N, in ε: a rounding of F turns what is of size J/h.
-const MISSED: f64 = 2000.0;
+/// How far F⁻ℓd(q, F) may be from N, in ε, with needles of a ratio of 1000: a rounding of F turns what is of size J/h. `projection` is solved by fixed points, which stop
+/// further off next to its end.
+const MISSED: [f64; 2] = [10_000.0, 200_000.0];
 
 /// Steps that are tried to tell the longest one that has a solution.
 const TRIALS: u32 = 32;
@@ -72,7 +73,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, states: u64) -> Result<()
         "missed",
     ];
     let mut rows = vec![headings.map(str::to_owned).to_vec()];
-    let (mut most, mut most_refused, mut hidden, mut missed) = (0, 0, 0, 0.0_f64);
+    let (mut most, mut most_refused, mut hidden, mut missed) = (0, 0, 0, [0.0_f64; 2]);
     for (&(scalar, dial), sample) in kinds.iter().zip(&samples) {
         let name = format!("{}, {}, {}", dial.scene, dial.name, SCALARS[scalar]);
         let below = |most: usize| sample.iterations.iter().take(most + 1).sum::<u64>();
@@ -95,7 +96,8 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, states: u64) -> Result<()
         let refused = format!("{} refused", sample.too_long + sample.not_converged);
         map.add_run("random states", (dial.scene, dial.name), SCALARS[scalar], &refused, &cell)?;
         let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
-        missed = missed.max(sample.missed / epsilon);
+        let kind = usize::from(dial.name == "projection");
+        missed[kind] = missed[kind].max(sample.missed / epsilon);
         most = most.max(sample.most);
         most_refused = most_refused.max(sample.most_refused);
         hidden += sample.hidden;
@@ -113,12 +115,10 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, states: u64) -> Result<()
         f64::from((TRIALS + 2) * ITERATIONS),
         "those of the step, made twice for the error, and of the trials for the longest one that would do",
     );
-    claims.at_most(
-        "random states: equations missed below h|ω| = 1, in ε",
-        missed,
-        MISSED,
-        "one step in a hundred, over momenta",
-    );
+    for ((name, missed), most) in ["all but projection", "projection"].into_iter().zip(missed).zip(MISSED) {
+        let claim = format!("random states: equations missed below h|ω| = 1, in ε, {name}");
+        claims.at_most(&claim, missed, most, "one step in a hundred, over momenta");
+    }
     claims.at_most("random states: numbers that are not finite", hidden as f64, 0.0, "in steps that were made");
     Ok(())
 }

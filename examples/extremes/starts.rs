@@ -10,7 +10,6 @@ use clebsch_examples::table::aligned;
 use nalgebra::{Matrix3, Vector3};
 
 const SECTION: &str = "start";
-const STEPS: u64 = 20_000;
 
 fn turned(angle: f64) -> Matrix3<f64> {
     let (sine, cosine) = angle.sin_cos();
@@ -62,13 +61,13 @@ fn off(by: f64) -> (String, Setup) {
 }
 
 /// Tables of the three scenes.
-pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
+pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64) -> Result<(), Failure> {
     let offsets = [1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-3].map(off);
     let starts =
         [of_bodies(), of_tops(), of_tops()].map(|starts| starts.into_iter().chain(offsets.clone()).collect::<Vec<_>>());
     for (dials, starts) in [bodies(), tops(), pendulums()].into_iter().zip(starts) {
         for scalar in 0..SCALARS.len() {
-            table(map, claims, &dials, &starts, scalar)?;
+            table(map, claims, (&dials, &starts), scalar, steps)?;
         }
     }
     Ok(())
@@ -77,26 +76,29 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
 fn table(
     map: &mut Map<'_>,
     claims: &mut Claims,
-    dials: &[Dial],
-    starts: &[(String, Setup)],
+    (dials, starts): (&[Dial], &[(String, Setup)]),
     scalar: usize,
+    steps: u64,
 ) -> Result<(), Failure> {
     let name = SCALARS[scalar];
     say(format_args!(
-        "Starts: {}, {name}, {STEPS} steps. Most iterations, the change of conserved momenta over |π|, and the largest defect of the configuration\n",
+        "Starts: {}, {name}, {steps} steps. Most iterations, the change of conserved momenta over |π|, and the largest defect of the configuration\n",
         dials[0].scene
     ));
     let mut rows = vec![heading("start", dials)];
-    let mut unfinished = Vec::new();
+    let (mut unfinished, mut moved) = (Vec::new(), 0.0_f64);
     for (start, setup) in starts {
         let mut row = vec![start.clone()];
         for dial in dials {
-            let cell = dial.run[scalar](setup, STEPS, false);
+            let cell = dial.run[scalar](setup, steps, false);
             map.add(SECTION, dial, scalar, start, &cell)?;
             row.push(match cell.outcome {
                 Ok(()) => format!("{} it, {}, {}", cell.iterations, size(cell.momentum), size(cell.constraint)),
                 Err(_) => outcome(&cell),
             });
+            if is_equilibrium(start) {
+                moved = moved.max(momentum_moved(setup, &cell));
+            }
             if cell.outcome.is_err() && !is_off(start, &cell) {
                 unfinished.push(format!("{start}, {}", dial.name));
             }
@@ -105,6 +107,13 @@ fn table(
     }
     say(aligned(rows.iter()));
     let all = format!("starts, {}, {name}", dials[0].scene);
+    let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
+    claims.at_most(
+        &format!("{all}: equilibria"),
+        moved,
+        epsilon,
+        "change of the momentum; hanging is π but for its last place",
+    );
     claims.holds(
         &all,
         unfinished.is_empty(),
@@ -115,6 +124,18 @@ fn table(
         },
     );
     Ok(())
+}
+
+/// Whether the momentum in the body frame stays: at rest where nothing pulls, and about principal axes.
+fn is_equilibrium(start: &str) -> bool {
+    matches!(start, "at rest" | "at rest, hanging" | "at rest, upright") || start.starts_with("about the")
+}
+
+/// By how much the momentum has changed in the end.
+fn momentum_moved(setup: &Setup, cell: &Cell) -> f64 {
+    let end = cell.last.len().saturating_sub(3);
+    let changes = cell.last[end..].iter().zip(&setup.momentum).map(|(x, y)| (x - y).abs());
+    changes.fold(0.0, f64::max)
 }
 
 /// Whether the start was refused, as it is off its space.

@@ -44,6 +44,9 @@ pub trait Clebsch {
     /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms; 16 collocates Hamilton's equations, and the
     /// transforms are those of the step of second order that is declared beside.
     const ORDER: u32;
+    /// Whether a step is the free motion itself, without an error in h and with nothing that acts: then h and N count by their product alone, and the longest
+    /// step with a momentum is known without trying. `false` as provided.
+    const IS_FREE_MOTION: bool = false;
     /// The derivation in words and formulas, with operation counts and what was left out and why.
     const DERIVATION: &'static str;
 

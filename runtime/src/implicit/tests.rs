@@ -300,13 +300,16 @@ fn stiff_monotone_equations_are_solved() {
     }
 }
 
+/// 12 by Newton's method, those along the path with 4 for its last point, one for the error, and one for the sign at the identity in each of both.
+const MOST: u32 = 12 + LINEARIZATIONS + 4 + 1 + 2;
+
 /// tanh ξ = m has ξ going to infinity as m goes to 1.
 #[test]
 fn paths_that_leave_the_chart_end() {
     let tanh = |m: f64, x: f64| (Scalar::tanh(x) - m, 1.0 / Scalar::cosh(x) / Scalar::cosh(x));
     assert!((curve(0.999, tanh).0.expect("below 1") - 3.800_201_167_250_2).abs() < 1e-9);
     let (result, linearizations) = curve(1.5, tanh);
-    assert!(result.is_err() && linearizations <= LINEARIZATIONS + 16, "{result:?} {linearizations}");
+    assert!(result.is_err() && linearizations <= MOST, "{result:?} {linearizations}");
 }
 
 #[test]
@@ -321,7 +324,7 @@ fn work_is_bounded_whatever_the_equation() {
     for equation in wild {
         for m in [1e-3, 1.0, 1e3] {
             let (result, linearizations) = curve(m, equation);
-            assert!(linearizations <= LINEARIZATIONS + 32, "{result:?} after {linearizations}");
+            assert!(linearizations <= MOST, "{result:?} after {linearizations}");
         }
     }
 }

@@ -61,8 +61,9 @@ impl<S: Clebsch> Stepper<S> {
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
             Error::Unsolvable { solvable_fraction, .. } => {
                 let h = self.h.lane(lane).to_f64();
-                if size_of::<S::Constants>() > CONSTANTS * S::Scalar::LANES {
-                    return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step: None };
+                if S::IS_FREE_MOTION || size_of::<S::Constants>() > CONSTANTS * S::Scalar::LANES {
+                    let solvable_step = S::IS_FREE_MOTION.then_some(h * solvable_fraction);
+                    return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };
                 }
                 let tried = |h: f64| match self.system.constants(S::Scalar::from_f64(h)) {
                     Ok(constants) => stepped(&constants),

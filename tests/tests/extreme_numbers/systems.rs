@@ -137,6 +137,8 @@ scenes! {
     a_body_in_four_dimensions: rigid_body4::RigidBody4 { j_d: four() }, Matrix4::identity(), 0.1;
     a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
     a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
+    a_projected_body: projected_body::ProjectedBody { inertia: inertia() }, turned(), 0.05;
+    a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: center() }, turned(), 0.05;
     a_top_of_sixth_order: sixth_order_top::SixthOrderTop { inertia: inertia(), weight: 1.3, center: center() }, turned(), 0.05;
     a_spatial_body: spatial_body::SpatialBody { mass_matrix: four(), gravity: 9.81 }, placed(), 0.05;
     a_geodesic_of_the_sphere: sphere_geodesic::SphereGeodesic { }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.1;

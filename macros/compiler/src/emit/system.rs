@@ -22,6 +22,11 @@ impl Emitter<'_, '_> {
         let private = &self.paths.private;
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
+        let free_motion = self.program.formulas.is_exact.then(|| {
+            quote!(
+                const IS_FREE_MOTION: ::core::primitive::bool = true;
+            )
+        });
         let constants_type = self.constants_of_steps();
         let derivation = super::derivation(self.program);
         let (constants, formulas, dynamics, checks) =
@@ -41,6 +46,7 @@ impl Emitter<'_, '_> {
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
+                #free_motion
                 const DERIVATION: &'static ::core::primitive::str = #derivation;
 
                 #constants
