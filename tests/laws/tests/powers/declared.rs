@@ -91,6 +91,28 @@ twice!(open_chain, chain, |random: &mut Random| {
     (Looped::<4> { mass, first, second, field, pinned }, Unrolled { mass, first, second, field, pinned }, q, mu)
 });
 
+macro_rules! glass {
+    ($name:ident, [$($generics:tt)*], $n:tt) => {
+        /// A ring whose couplings differ, to the second neighbour, each stronger than that before; the entry of the field is that of another site.
+        #[derive(Clebsch, Clone, Debug)]
+        #[clebsch(
+            action    = |F: [SO<3>; $n], q: [Unit<Vector3>; $n]| (0..$n).map(|i| F[i] * q[i]),
+            cost      = |h, F| (0..$n).map(|i| (F[i] - I).norm_squared() / (4 * h)).sum(),
+            potential = |q| (0..$n).map(|i| (i + 1) * self.coupling[(i + 1) % $n] * q[i].dot(&q[(i + 2) % $n]).powi(2)).sum()
+                - (0..$n).map(|i| self.field.dot(&q[i])).sum(),
+        )]
+        pub struct $name $($generics)* {
+            pub coupling: [f64; $n],
+            pub field: Vector3<f64>,
+        }
+    };
+}
+twice!(spin_glass, glass, |random: &mut Random| {
+    let (coupling, field): ([f64; 4], _) = (std::array::from_fn(|_| random.number()), random.vector());
+    let (q, mu) = spins(random);
+    (Looped::<4> { coupling, field }, Unrolled { coupling, field }, q, mu)
+});
+
 macro_rules! bodies {
     ($name:ident, [$($generics:tt)*], $n:tt) => {
         /// Bodies that attract each other, each with its own mass: a sum over all pairs.
@@ -179,6 +201,7 @@ fn gradients_are_gathered_where_few_terms_read_a_site() {
     for (derivation, chosen) in [
         (ring_of_spins::Looped::<4>::DERIVATION, GATHERED),
         (open_chain::Looped::<4>::DERIVATION, GATHERED),
+        (spin_glass::Looped::<4>::DERIVATION, GATHERED),
         (attracting_bodies::Looped::<4>::DERIVATION, ADDED),
     ] {
         assert!(derivation.contains(chosen), "{derivation}");
