@@ -191,26 +191,26 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
     }
 }
 
-/// An equation has no poles in a chart that the user has chosen where it has none in Cayley's.
+/// Velocities by Cayley's map have poles in the exponential chart, which Cayley's own has not.
 pub(super) fn check_poles(
     model: &Model<'_>,
     symbols: &Symbols<'_>,
     substeps: &[Substep<'_>],
 ) -> Result<(), Diagnostics> {
-    let chosen = model.chart.as_ref().filter(|chart| chart.value == ChartChoice::Exponential);
+    let by_cayley = matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Cayley, .. });
+    let chosen = model.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
     let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
-    let is_curable = |equation: &&Equation<'_>| {
-        let mut groups = equation.factors.iter().map(|&k| model.factors[k].group);
-        equation.solution == Solution::Newton && groups.all(|group| group.has_cayley_chart(model.graph))
-    };
-    let mut equations = substeps.iter().flat_map(|substep| &substep.equations).filter(is_curable);
-    match chosen.filter(|_| equations.any(|equation| equation.residual.has_poles_in(&coordinates))) {
+    let has_poles =
+        |equation: &Equation<'_>| equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates);
+    match chosen.filter(|_| substeps.iter().flat_map(|substep| &substep.equations).any(has_poles)) {
         None => Ok(()),
         Some(chosen) => {
-            let error =
-                Diagnostic::new(chosen.span, "the momentum equation of this step has poles in the exponential chart");
+            let text = "the momentum equation of this step has poles in the exponential chart";
+            let error = Diagnostic::new(chosen.span, text);
             let error = error.help("leave out `chart`: then Cayley's is chosen, in which it has none");
-            Err(error.note("it divides by what vanishes where F turns by π, and beside that what is computed has lost its digits").into())
+            let note =
+                "it divides by what vanishes where F turns by π, and beside that what is computed has lost its digits";
+            Err(error.note(note).into())
         }
     }
 }
