@@ -16,9 +16,9 @@ const STATES: u64 = 10_000;
 /// most 64 sweeps.
 const ITERATIONS: u32 = 12 + LINEARIZATIONS + 4;
 
-/// How far F⁻ℓd(q, F) may be from N, in ε, with needles of a ratio of 1000: a rounding of F turns what is of size J/h. `projection` is solved by fixed points, which stop
-/// further off next to its end.
-const MISSED: [f64; 2] = [10_000.0, 200_000.0];
+/// How far F⁻ℓd(q, F) may be from N, in ε: a solution is taken where ρ is within 8ε|Dρ||ξ|, and |Dρ||ξ| is up to a thousand times |N| with needles of that ratio. Fixed
+/// points end at rounding of Σ⁻¹ρ, which is further off where Dρ is nearly singular, next to the end of `projection`: a ceiling, not derived.
+const MISSED: [f64; 2] = [8000.0, 200_000.0];
 
 /// Steps that are tried to tell the longest one that has a solution.
 const TRIALS: u32 = 32;

@@ -7,8 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use clebsch_symbolic::Graph;
 use clebsch_symbolic::work::{self, Exhausted};
 use proc_macro2::{Span, TokenStream, TokenTree};
-
-use syn::Type;
+use syn::{Expr, Type};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
@@ -100,7 +99,10 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
     let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
     let is_lagrangian = matches!(declaration.kinetic, Kinetic::Lagrangian(_));
     let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
-    let is_product = declaration.action.arguments.iter().any(|argument| matches!(argument.ty, Some(Type::Array(_))));
+    // with a const generic it is in loops already
+    let is_written_out = |ty: &Type| matches!(ty, Type::Array(array) if matches!(array.len, Expr::Lit(_)));
+    let mut types = declaration.action.arguments.iter().filter_map(|argument| argument.ty.as_ref());
+    let is_product = types.any(is_written_out);
     let rows = [
         (is_product, crate::model::IN_LOOPS),
         (dials.emit.tangent, "leave `tangent` out of `emit`: it takes second derivatives of everything"),

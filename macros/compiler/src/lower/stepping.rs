@@ -93,8 +93,6 @@ pub struct Solve {
     pub residual: Option<Kernel>,
     /// ρ(x) and Dρ(x); of a linear equation −ρ(0) and Dρ.
     pub linearize: Kernel,
-    /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in.
-    pub is_inertial: bool,
     /// Whether the equation depends on the configuration, on the time or on the input.
     pub moves: bool,
     /// Whether ρ has poles in the chart, near which no correction is seen.
@@ -351,7 +349,6 @@ fn solve<'g>(
         sine_squared,
         residual,
         linearize,
-        is_inertial: equation.is_inertial,
         moves: equation.moves,
         has_poles: {
             let blocks = formulas.symbols.blocks.iter().map(|block| block.coordinates);
