@@ -57,7 +57,7 @@ macro_rules! bodies {
                     at_attitude(setup, stepper)
                 }
                 fn numbers(state: &State<Self>) -> Vec<f64> {
-                    numbers_of_body(state.configuration(), state.momentum())
+                    numbers_of_body(state.configuration(), &state.momentum())
                 }
                 fn conserved(stepper: &Stepper<Self>, state: &State<Self>) -> [f64; 3] {
                     stepper.conserved(state).values().map(|value| value.to_f64())
@@ -124,7 +124,7 @@ macro_rules! tops {
                     at_attitude(setup, stepper)
                 }
                 fn numbers(state: &State<Self>) -> Vec<f64> {
-                    numbers_of_body(state.configuration(), state.momentum())
+                    numbers_of_body(state.configuration(), &state.momentum())
                 }
                 fn conserved(stepper: &Stepper<Self>, state: &State<Self>) -> [f64; 3] {
                     [stepper.conserved(state).values()[0].to_f64(), 0.0, 0.0]

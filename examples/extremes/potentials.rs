@@ -103,7 +103,7 @@ fn revolve<S: Attracted>(nearest: f64) -> Result<[f64; 2], Error> {
     let mut errors = [0.0_f64; 2];
     for _ in 0..2000 {
         state = stepper.step(&state)?;
-        let now = state.configuration().cross(state.momentum()).z;
+        let now = state.configuration().cross(&state.momentum()).z;
         let found = [(2.0 * stepper.energy(&state) + 1.0).abs(), (now - spin).abs()];
         for (error, found) in errors.iter_mut().zip(found) {
             *error = if found <= *error { *error } else { found };

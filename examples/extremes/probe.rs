@@ -308,10 +308,10 @@ fn has_equation<S: Scene>() -> bool {
 /// |F⁻ℓd(q, F) − N| for the F that the next step finds, over the larger one of |N| and |F⁺ℓd(q, F)|; `None` where it finds none.
 fn residual<S: Scene>(stepper: &Stepper<S>, state: &State<S>) -> Option<f64> {
     let (q, n) = (state.configuration(), state.momentum());
-    let f = stepper.inverse_legendre(q, n).ok()?;
+    let f = stepper.inverse_legendre(q, &n).ok()?;
     let found = stepper.legendre(q, &f);
     let size = n.max_abs().to_f64().max(stepper.legendre_next(q, &f).max_abs().to_f64());
-    Some(if size == 0.0 { 0.0 } else { found.zip_map(n, |found, n| found - n).max_abs().to_f64() / size })
+    Some(if size == 0.0 { 0.0 } else { found.zip_map(&n, |found, n| found - n).max_abs().to_f64() / size })
 }
 
 /// The largest difference, of configurations (of the order of one), and of the momentum over its size.

@@ -108,8 +108,8 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut watch = Watch::new(flags, &q, &velocity);
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (q, momentum) = (state.configuration(), state.momentum());
-        csv.row(step, time, by_rows(q).chain(by_rows(momentum)))?;
-        watch.observe(step, time, q, momentum, stepper.energy(state), &stepper.conserved(state));
+        csv.row(step, time, by_rows(q).chain(by_rows(&momentum)))?;
+        watch.observe(step, time, q, &momentum, stepper.energy(state), &stepper.conserved(state));
         Ok(())
     })?;
 

@@ -106,10 +106,10 @@ where
     let mut watch = Watch::new(flags);
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (attitude, momentum) = (state.configuration(), state.momentum());
-        csv.row(step, time, by_rows(attitude).chain(by_rows(momentum)))?;
+        csv.row(step, time, by_rows(attitude).chain(by_rows(&momentum)))?;
         let (energy, potential) = (stepper.energy(state), stepper.potential_at(0.0, attitude));
-        let sample = Sample::new(time, attitude, momentum, energy, potential);
-        watch.observe(step, attitude, momentum, sample, stepper.system().orbit_defect(attitude));
+        let sample = Sample::new(time, attitude, &momentum, energy, potential);
+        watch.observe(step, attitude, &momentum, sample, stepper.system().orbit_defect(attitude));
         Ok(())
     })?;
 

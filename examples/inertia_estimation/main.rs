@@ -218,7 +218,7 @@ fn write<S: Spacecraft>(flags: &Flags, estimator: &Estimator<S>, estimate: &Unkn
     let mut csv = Csv::create(&flags.run, &columns)?;
     let (stepper, start) = estimator.start(estimate, flags.run.step_size)?;
     integrate(&flags.run, &stepper, start, |step, time, state| {
-        csv.row(step, time, by_rows(state.configuration()).chain(by_rows(state.momentum())))
+        csv.row(step, time, by_rows(state.configuration()).chain(by_rows(&state.momentum())))
     })?;
     csv.finish()
 }

@@ -73,7 +73,7 @@ fn fly(problem: &Problem, plan: &Plan, surprise: &Surprise, feedback: bool) -> R
     let mut state = stepper.state(problem.start.0, problem.start.1)?;
     let mut flight = Flight { off: Vec::new(), angle: 0.0, velocity: 0.0 };
     for (step, stage) in (1..).zip(&plan.stages) {
-        let mut place: Place = (*state.configuration(), *state.momentum());
+        let mut place: Place = (*state.configuration(), state.momentum());
         if step == plan.stages.len() / 4 {
             let push = attitude(&place).tr_mul(&surprise.gust) * mass;
             let mut linear = place.1.fixed_rows_mut::<3>(3);
@@ -85,7 +85,7 @@ fn fly(problem: &Problem, plan: &Plan, surprise: &Surprise, feedback: bool) -> R
         let thrusts = thrusts.map(|thrust| thrust.clamp(0.0, problem.vehicle.top));
         state = stepper.step_with(&state, &thrusts).map_err(|error| Failure::Step { step: step as u64, error })?;
     }
-    let place: Place = (*state.configuration(), *state.momentum());
+    let place: Place = (*state.configuration(), state.momentum());
     flight.off.push((position(&place) - position(&plan.end)).norm());
     flight.angle = Rotation3::from_matrix_unchecked(attitude(&plan.end).tr_mul(&attitude(&place))).angle();
     flight.velocity = velocity(&place, mass).norm();

@@ -131,7 +131,7 @@ fn start(stepper: &Stepper<SpinFrame>, exact: &ClosedForm) -> Result<State<SpinF
 
 /// The field that the particle sees: its body momentum.
 fn seen(state: &State<SpinFrame>) -> Field {
-    Field::of(&(SpinFrame::momentum_matrix(state.momentum()).transpose() * -2.0))
+    Field::of(&(SpinFrame::momentum_matrix(&state.momentum()).transpose() * -2.0))
 }
 
 fn main() -> ExitCode {

@@ -81,7 +81,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut csv = Csv::create(&flags.run, &columns.split(' ').collect::<Vec<_>>())?;
     let mut watch = Watch::new(flags);
     integrate(&flags.run, &stepper, start, |step, time, state| {
-        let (attitude, momentum) = (state.configuration(), stepper.momentum_matrix(state.momentum()));
+        let (attitude, momentum) = (state.configuration(), stepper.momentum_matrix(&state.momentum()));
         csv.row(step, time, by_rows(attitude).chain(PLANES.map(|plane| momentum[plane])))?;
         watch.observe(step, time, attitude, &momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         Ok(())

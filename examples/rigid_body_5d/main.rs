@@ -88,7 +88,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut watch = Watch::new(flags);
     let mut end = start;
     integrate(&flags.run, &stepper, start, |step, time, state| {
-        let (attitude, momentum) = (state.configuration(), stepper.momentum_matrix(state.momentum()));
+        let (attitude, momentum) = (state.configuration(), stepper.momentum_matrix(&state.momentum()));
         csv.row(step, time, by_rows(attitude).chain(PLANES.map(|plane| momentum[plane])))?;
         watch.observe(step, time, attitude, &momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         end = *state;
@@ -145,7 +145,7 @@ fn claim_order(flags: &Flags, body: &RigidBody5, claims: &mut Claims) -> Result<
     let start_of = euler::pack(&Matrix5::identity(), &m);
     let exact = reference::solve(euler::field(flags.j_d), start_of, flags.run.time(steps), rate);
     let errors = refined(body, &flags.run, steps, |stepper| start(stepper, flags))?.map(|end| {
-        let reached = euler::pack(end.configuration(), &RigidBody5::momentum_matrix(end.momentum()));
+        let reached = euler::pack(end.configuration(), &RigidBody5::momentum_matrix(&end.momentum()));
         (reached - exact.end).amax() / exact.end.amax()
     });
     let convergence = Convergence { errors, reference: exact.error / exact.end.amax(), steps };

@@ -86,7 +86,7 @@ where
     let mut csv = Csv::create(&flags.run, &columns(N).iter().map(String::as_str).collect::<Vec<_>>())?;
     let mut watch = Watch::new(&flags.run, &start);
     integrate(&flags.run, &stepper, state, |step, time, state| {
-        let (attitude, momentum) = (state.configuration(), S::momentum_matrix(state.momentum()));
+        let (attitude, momentum) = (state.configuration(), S::momentum_matrix(&state.momentum()));
         csv.row(step, time, by_rows(attitude).chain(planes(N).map(|plane| momentum[plane])))?;
         watch.observe(step, time, attitude, &momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         Ok(())
@@ -128,7 +128,7 @@ where
     let unknowns = euler::pack::<N, U>(&SMatrix::identity(), &start.momentum);
     let exact = reference::solve(euler::field(start.j_d), unknowns, run.time(steps), start.rate());
     let errors = refined(body, run, steps, |stepper| stepper.state(SMatrix::identity(), components))?.map(|end| {
-        let reached = euler::pack::<N, U>(end.configuration(), &S::momentum_matrix(end.momentum()));
+        let reached = euler::pack::<N, U>(end.configuration(), &S::momentum_matrix(&end.momentum()));
         (reached - exact.end).amax() / exact.end.amax()
     });
     let convergence = Convergence { errors, reference: exact.error / exact.end.amax(), steps };

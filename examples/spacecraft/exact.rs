@@ -48,7 +48,7 @@ pub fn pitch<S: Spacecraft>(
     let mut crossings = Crossings::default();
     for (step, state) in (0..=run.steps).zip(stepper.trajectory(stepper.state(pose, momentum)?)) {
         let state = state.map_err(|error| Failure::Step { step, error })?;
-        let tilt = Tilt::new(&equations, &orientation, circle, state.configuration(), state.momentum());
+        let tilt = Tilt::new(&equations, &orientation, circle, state.configuration(), &state.momentum());
         crossings.observe(run.time(step), tilt.angles.z);
     }
     let m = amplitude.sin().powi(2);
@@ -182,8 +182,8 @@ pub fn exchange<S: Spacecraft>(
         let (pose, momentum) = (state.configuration(), state.momentum());
         let now = stepper.conserved(&state);
         defect = (0..3).fold(defect, |defect, index| defect.max((now[index] - total[index]).abs()));
-        exchanged = exchanged.max((spin(pose, momentum) - first).norm());
-        let (linear, angular) = halves(momentum);
+        exchanged = exchanged.max((spin(pose, &momentum) - first).norm());
+        let (linear, angular) = halves(&momentum);
         scale = scale.max(pose.0.norm() * linear.norm() + angular.norm());
     }
     claims.round_off("a body of J = 0.01 m r² keeps orbit and spin together", defect, steps, scale);

@@ -155,9 +155,9 @@ fn run<S: Spacecraft>(system: impl Fn(&Body) -> S, flags: &Flags) -> Result<Clai
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (pose, momentum) = (state.configuration(), state.momentum());
         let configuration = by_rows(&pose.0).chain(by_rows(&pose.1));
-        csv.row(step, time, configuration.chain(by_rows(momentum)))?;
+        csv.row(step, time, configuration.chain(by_rows(&momentum)))?;
         let energies = (stepper.energy(state), stepper.potential_at(0.0, pose));
-        watch.observe(step, time, pose, momentum, energies, &stepper.conserved(state));
+        watch.observe(step, time, pose, &momentum, energies, &stepper.conserved(state));
         watch.observe_orbit(stepper.system().orbit_defect(pose));
         Ok(())
     })?;

@@ -75,7 +75,7 @@ fn case<S: Spacecraft>(
     let (mut tilt, mut largest) = (first, first.angles.norm());
     for step in 1..=steps {
         state = stepper.step(&state).map_err(|error| Failure::Step { step, error })?;
-        tilt = Tilt::new(&equations, orientation, circle, state.configuration(), state.momentum());
+        tilt = Tilt::new(&equations, orientation, circle, state.configuration(), &state.momentum());
         largest = largest.max(tilt.angles.norm());
     }
     let grown = |tilt: &Tilt| linear.growing_part(&mode, tilt, n);

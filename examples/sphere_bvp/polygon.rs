@@ -38,7 +38,7 @@ impl Defects {
         let mut defects = Self { action: (extremal.action() / action - 1.0).abs(), ..Self::default() };
         for (k, state) in extremal.states().enumerate() {
             let (s, q) = (k as f64 / steps as f64, state.configuration());
-            let matrix: SMatrix<f64, D, D> = S::momentum_matrix(state.momentum()).into();
+            let matrix: SMatrix<f64, D, D> = S::momentum_matrix(&state.momentum()).into();
             let closed = circle.tangent(s) * circle.speed(steps, h);
             let moved = (state.momentum() - extremal.momentum()).norm() * h;
             defects.points = defects.points.max((q - circle.point(s)).norm());

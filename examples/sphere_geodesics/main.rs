@@ -187,7 +187,7 @@ where
         let q = state.configuration();
         // the matrix has D² numbers, which only the file is worth
         if flags.run.csv.is_some() {
-            let matrix: SMatrix<f64, D, D> = stepper.momentum_matrix(state.momentum()).into();
+            let matrix: SMatrix<f64, D, D> = stepper.momentum_matrix(&state.momentum()).into();
             // M = ½ (w qᵀ − q wᵀ) as a matrix of the trace pairing
             csv.row(step, time, by_rows(q).chain(by_rows(&(matrix * q * 2.0))))?;
         }

@@ -98,9 +98,9 @@ where
     let mut watch = Watch::new(flags);
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (q, n) = (state.configuration(), state.momentum());
-        csv.row(step, time, by_rows(q).chain(by_rows(n)))?;
+        csv.row(step, time, by_rows(q).chain(by_rows(&n)))?;
         let (energy, potential) = (stepper.energy(state), stepper.potential_at(0.0, q));
-        watch.observe(step, Sample { time, q: *q, n: *n, energy, potential }, stepper.system().orbit_defect(q));
+        watch.observe(step, Sample { time, q: *q, n, energy, potential }, stepper.system().orbit_defect(q));
         Ok(())
     })?;
 

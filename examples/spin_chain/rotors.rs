@@ -37,7 +37,7 @@ pub fn claim<S: Spins<EIGHT>>(flags: &Flags, claims: &mut Claims) -> Result<(), 
     let exact = solve(|y| field(flags, y), joined(&q, &mu), flags.run.time(steps), rate);
     let start = (std::array::from_fn(|i| q[i]), std::array::from_fn(|i| mu[i]));
     let ends = refined(&flags.ring::<S, EIGHT>(), &flags.run, steps, |stepper| stepper.state(start.0, start.1))?;
-    let error = |end: State<S>| (joined(end.configuration(), end.momentum()) - exact.end).amax();
+    let error = |end: State<S>| (joined(end.configuration(), &end.momentum()) - exact.end).amax();
     let convergence = Convergence { errors: ends.map(error), reference: exact.error, steps };
     convergence.claim(
         flags.run.order,

@@ -82,8 +82,8 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut watch = Watch::new(&flags.run, &moments, &momentum);
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (attitude, momentum) = (state.configuration(), state.momentum());
-        csv.row(step, time, by_rows(attitude).chain(by_rows(momentum)))?;
-        watch.observe(step, time, attitude, momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
+        csv.row(step, time, by_rows(attitude).chain(by_rows(&momentum)))?;
+        watch.observe(step, time, attitude, &momentum, stepper.energy(state), stepper.system().orbit_defect(attitude));
         Ok(())
     })?;
 

@@ -145,9 +145,9 @@ where
     integrate(&flags.run, &stepper, start, |step, time, state| {
         let (pose, momentum) = (state.configuration(), state.momentum());
         let (rotation, position) = (pose.fixed_view::<3, 3>(0, 0), pose.fixed_view::<3, 1>(0, 3));
-        csv.row(step, time, by_rows(&rotation.into()).chain(by_rows(&position.into())).chain(by_rows(momentum)))?;
+        csv.row(step, time, by_rows(&rotation.into()).chain(by_rows(&position.into())).chain(by_rows(&momentum)))?;
         let energies = (stepper.energy(state), stepper.potential_at(0.0, pose));
-        watch.observe(step, time, pose, momentum, energies, &stepper.conserved(state));
+        watch.observe(step, time, pose, &momentum, energies, &stepper.conserved(state));
         watch.observe_orbit(stepper.system().orbit_defect(pose));
         Ok(())
     })?;
@@ -201,6 +201,6 @@ where
     let ends = refined(vehicle, &flags.run, steps, |stepper| stepper.state(pose, momentum))?;
     let exact = kirchhoff.motion(&pose, &momentum, flags.run.time(steps), watch.rate());
     let scale = exact.end.amax();
-    let errors = ends.map(|end| (kirchhoff::state(end.configuration(), end.momentum()) - exact.end).amax() / scale);
+    let errors = ends.map(|end| (kirchhoff::state(end.configuration(), &end.momentum()) - exact.end).amax() / scale);
     Ok(Convergence { errors, reference: exact.error / scale, steps })
 }

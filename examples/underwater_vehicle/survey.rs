@@ -115,13 +115,13 @@ where
 
     let (pose, momentum) = steady.tilted(TILT);
     let mut state = stepper.state(pose, momentum)?;
-    let (tilt, rate) = tilt(kirchhoff, state.configuration(), state.momentum());
+    let (tilt, rate) = tilt(kirchhoff, state.configuration(), &state.momentum());
     let (start, mut largest) = (tilt.modulus(), tilt.modulus());
     let growing = oscillation.growing_part(tilt, rate);
     let mut grown = growing;
     for step in 1..=steps {
         state = stepper.step(&state).map_err(|error| Failure::Step { step, error })?;
-        let (tilt, rate) = self::tilt(kirchhoff, state.configuration(), state.momentum());
+        let (tilt, rate) = self::tilt(kirchhoff, state.configuration(), &state.momentum());
         largest = largest.max(tilt.modulus());
         grown = oscillation.growing_part(tilt, rate);
     }

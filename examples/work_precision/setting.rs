@@ -133,7 +133,7 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
     fn read(&self, stepper: &Stepper<S>, state: &State<S>) -> SVector<f64, N> {
         match self.is_synchronized {
             true => (self.flat)(state.configuration(), &stepper.synchronized(state)),
-            false => (self.flat)(state.configuration(), state.momentum()),
+            false => (self.flat)(state.configuration(), &state.momentum()),
         }
     }
 }

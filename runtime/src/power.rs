@@ -232,7 +232,8 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
         self.at_site(constants, i, |site, constants| {
             let impulse = site.impulse(constants, t, q, n);
-            site.step(constants, t, q, n, &impulse, &()).map(|(q, n, _)| (q, n))
+            let (q, held, _) = site.step(constants, t, q, &Self::Site::held(q, n), &impulse, &())?;
+            Ok((q, Self::Site::momentum_held(&q, &held)))
         })
     }
 

@@ -6,6 +6,7 @@ use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// What is written of a state: the numbers of its time, of q and N, what its next step takes from the last, and the step size that this is for.
+/// Of the momentum it is what the state holds.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "State")]
 struct Record<Time, Configuration, Momentum, Impulse, Scalar> {
@@ -20,12 +21,12 @@ impl<S: Clebsch> Serialize for State<S>
 where
     S::Time: Serialize,
     S::Configuration: Serialize,
-    S::Momentum: Serialize,
+    S::Held: Serialize,
     S::Impulse: Serialize,
     S::Scalar: Serialize,
 {
     fn serialize<W: Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
-        let Self { time, configuration, momentum, impulse, h } = self;
+        let Self { time, configuration, held: momentum, impulse, h } = self;
         Record { time, configuration, momentum, impulse, step_size: h }.serialize(writer)
     }
 }
@@ -37,13 +38,13 @@ impl<'de, S: Clebsch> Deserialize<'de> for SavedState<S>
 where
     S::Time: Deserialize<'de>,
     S::Configuration: Deserialize<'de>,
-    S::Momentum: Deserialize<'de>,
+    S::Held: Deserialize<'de>,
     S::Impulse: Deserialize<'de>,
     S::Scalar: Deserialize<'de>,
 {
     fn deserialize<R: Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
         let Record { time, configuration, momentum, impulse, step_size: h } = Record::deserialize(reader)?;
-        Ok(Self(State { time, configuration, momentum, impulse, h }))
+        Ok(Self(State { time, configuration, held: momentum, impulse, h }))
     }
 }
 
@@ -93,7 +94,7 @@ impl<S: Clebsch> Stepper<S> {
     pub fn resume(&self, saved: SavedState<S>) -> Result<State<S>, Error> {
         let SavedState(state) = saved;
         check_configuration(&self.system, &state.configuration)?;
-        check_momentum(&self.system, &state.configuration, &state.momentum)?;
+        check_momentum(&self.system, &state.configuration, &state.momentum())?;
         if !state.time.now().is_finite() {
             return Err(Error::NotFinite { name: "the time" });
         }

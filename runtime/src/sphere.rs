@@ -3,7 +3,7 @@
 //! w is the velocity times the inertia, perpendicular to q. What rounding leaves of it along q is taken off at each kick: without that
 //! the errors of q·w and of |q| grow exponentially.
 
-use crate::matrices::skew_times;
+use crate::matrices::{skew_outer, skew_times};
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
@@ -11,63 +11,131 @@ use nalgebra::SVector;
 #[inline]
 pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu: &SVector<T, M>) -> SVector<T, N> {
     let missing = T::one() - q.dot(q);
-    perpendicular(q, &skew_times(mu, q)) * (T::one() + missing)
+    perpendicular(q, skew_times(mu, q)) * (T::one() + missing)
 }
 
-/// w + g without what of it is along q.
+/// The components of M = wqᵀ − qwᵀ.
 #[inline]
-pub fn pushed<T: Scalar, const N: usize>(
+pub fn momentum_of_tangent<T: Scalar, const N: usize, const M: usize>(
     q: &SVector<T, N>,
     w: &SVector<T, N>,
-    gradient: &SVector<T, N>,
-) -> SVector<T, N> {
-    perpendicular(q, &(w + gradient))
+) -> SVector<T, M> {
+    skew_outer(w, q)
+}
+
+/// Adds `weight` g to w, and takes off what of it is along q.
+#[inline]
+pub fn push<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>, gradient: &SVector<T, N>, weight: T) {
+    w.zip_apply(gradient, |w, g| *w += g * weight);
+    straighten(q, w);
+}
+
+/// Takes off w what of it is along q.
+#[inline]
+fn straighten<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>) {
+    let along = q.dot(w);
+    w.zip_apply(q, |w, q| *w -= q * along);
 }
 
 /// w without what of it is along q.
 #[inline]
-pub fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &SVector<T, N>) -> SVector<T, N> {
-    let along = q.dot(w);
-    w.zip_map(q, |w, q| w - q * along)
+fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, mut w: SVector<T, N>) -> SVector<T, N> {
+    straighten(q, &mut w);
+    w
 }
 
 /// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), and w longer by as much as q is shorter: the momentum
 /// wqᵀ − qwᵀ stays.
 #[inline]
-#[allow(clippy::type_complexity, reason = "the point and its w")]
-pub fn on_sphere<T: Scalar, const N: usize>(q: SVector<T, N>, w: SVector<T, N>) -> (SVector<T, N>, SVector<T, N>) {
-    let missing = T::one() - q.dot(&q);
+fn mend<T: Scalar, const N: usize>(q: &mut SVector<T, N>, w: &mut SVector<T, N>) {
+    let missing = T::one() - q.dot(q);
     let is_off = (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs());
-    if !is_off.any() {
-        return (q, w);
+    if is_off.any() {
+        let half = missing * T::from_ratio(1, 2);
+        q.apply(|x| *x = T::select(is_off, *x + *x * half, *x));
+        w.apply(|x| *x = T::select(is_off, *x - *x * half, *x));
     }
-    let half = missing * T::from_ratio(1, 2);
-    (q.map(|x| T::select(is_off, x + x * half, x)), w.map(|x| T::select(is_off, x - x * half, x)))
 }
 
 /// q⁺ = cq + aw and w⁺ = cw − a|w|²q with c = √(1 − a²|w|²), along a great circle by the angle with the sine a|w|; a is h/κ, κ the inertia.
-/// Lanes without a solution are NaN.
+/// Lanes without a solution are NaN. Rounding is taken off the length of q⁺.
 ///
 /// # Errors
 /// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the fraction of the momentum for which it would;
-/// [`Error::NotFinite`].
+/// [`Error::NotFinite`]. Nothing has moved then.
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, example B.
 #[inline]
-#[allow(clippy::type_complexity, reason = "the point and its w")]
-pub fn great_circle<T: Scalar, const N: usize>(
+pub fn turn_great_circle<T: Scalar, const N: usize>(
+    a: T,
+    q: &mut SVector<T, N>,
+    w: &mut SVector<T, N>,
+) -> Result<(), Error> {
+    let back = (*w * a).dot(w);
+    let cosine = cosine_of(a * back)?;
+    for (q, w) in q.iter_mut().zip(w.iter_mut()) {
+        (*q, *w) = (*q * cosine + *w * a, *w * cosine - *q * back);
+    }
+    mend(q, w);
+    Ok(())
+}
+
+/// √(1 − sin²θ), NaN in lanes where there is none.
+///
+/// # Errors
+/// Those of [`turn_great_circle`].
+#[inline]
+fn cosine_of<T: Scalar>(sine_squared: T) -> Result<T, Error> {
+    match sine_squared.below(T::one()).any() {
+        true => Ok((T::one() - sine_squared).sqrt()),
+        false => Err(crate::element::beyond_right_angle(sine_squared)),
+    }
+}
+
+/// The same of a point that nothing pushes, whose momentum M = vuᵀ − uvᵀ stays, with w = Mq: q stays in the plane of u and v, what rounding puts beside it
+/// shrinks by c in each step. A point that knows its q and w alone meets the same rounding on each round, and its plane turns away like the number of steps.
+///
+/// # Errors
+/// As [`turn_great_circle`].
+#[inline]
+pub fn turn_freely<T: Scalar, const N: usize>(
+    a: T,
+    (u, v): &(SVector<T, N>, SVector<T, N>),
+    q: &mut SVector<T, N>,
+) -> Result<(), Error> {
+    let (along, across) = (u.dot(q), v.dot(q));
+    let mut w = v.zip_map(u, |v, u| v * along - u * across);
+    let cosine = cosine_of(a * (w * a).dot(&w))?;
+    q.zip_apply(&w, |q, w| *q = *q * cosine + w * a);
+    mend(q, &mut w);
+    Ok(())
+}
+
+/// q and p, both turned by F with the momentum M = pqᵀ − qpᵀ, along a great circle of a sphere of any radius: the plane of q and p turns by the angle with the
+/// sine a|M|, a is h/κ, κ the inertia. What p has along q stays along q. Lanes without a solution are NaN.
+///
+/// ```text
+/// p = βq + w, w ⊥ q:    q⁺ = cq + a|q|²w,    p⁺ = βq⁺ + cw − a|w|²q,    c² = 1 − a²|q|²|w|²
+/// ```
+///
+/// # Errors
+/// As [`great_circle`].
+///
+/// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorem 1 and example B.
+#[inline]
+#[allow(clippy::type_complexity, reason = "the point and its covector")]
+pub fn turned_in_plane<T: Scalar, const N: usize>(
     a: T,
     q: &SVector<T, N>,
-    w: &SVector<T, N>,
+    p: &SVector<T, N>,
 ) -> Result<(SVector<T, N>, SVector<T, N>), Error> {
-    let turn = w * a;
-    let square = turn.dot(&turn);
-    let exists = square.below(T::one());
-    if !exists.any() {
-        return Err(crate::element::beyond_right_angle(square));
-    }
-    // NaN where the root is
-    let cosine = (T::one() - square).sqrt();
-    let back = turn.dot(w);
-    Ok((q.zip_map(&turn, |q, turn| q * cosine + turn), w.zip_map(q, |w, q| w * cosine - q * back)))
+    let square = q.dot(q);
+    let along = q.dot(p) / square;
+    let w = p.zip_map(q, |p, q| p - q * along);
+    let turn = w * (a * square);
+    let back = a * w.dot(&w);
+    let cosine = cosine_of(a * square * back)?;
+    let next = q.zip_map(&turn, |q, turn| q * cosine + turn);
+    let covector = w.zip_map(q, |w, q| w * cosine - q * back);
+    Ok((next, covector.zip_map(&next, |w, q| w + q * along)))
 }

@@ -13,7 +13,8 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 pub struct State<S: Clebsch> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
-    pub(crate) momentum: S::Momentum,
+    /// N, or what stands for it.
+    pub(crate) held: S::Held,
     pub(crate) impulse: S::Impulse,
     /// The step size that the impulse is for.
     pub(crate) h: S::Scalar,
@@ -27,40 +28,42 @@ impl<S: Clebsch> State<S> {
     }
 
     /// The momentum N in the basis that [`group`](crate::group) documents.
+    ///
+    /// A state of a point on a large sphere, which is turned in (q, w), makes its components here, n(n − 1)/2 of them.
     #[inline]
-    pub fn momentum(&self) -> &S::Momentum {
-        &self.momentum
+    pub fn momentum(&self) -> S::Momentum {
+        S::momentum_held(&self.configuration, &self.held)
     }
 
     /// (q, N)
     #[inline]
     pub fn into_parts(self) -> (S::Configuration, S::Momentum) {
-        (self.configuration, self.momentum)
+        (self.configuration, self.momentum())
     }
 
     /// (q, N) of the body in lane `lane`, where the scalar has lanes.
     #[inline]
     pub fn lane(&self, lane: usize) -> Body<S> {
-        (self.configuration.lane(lane), self.momentum.lane(lane))
+        (self.configuration.lane(lane), self.momentum().lane(lane))
     }
 
     /// The lanes in which all of it is finite.
     #[inline]
     pub(crate) fn finite(&self) -> <S::Scalar as Scalar>::Mask {
-        self.configuration.finite() & self.momentum.finite() & Scalar::finite(self.time.now())
+        self.configuration.finite() & self.held.finite() & Scalar::finite(self.time.now())
     }
 
     /// Whether all of it is finite in all lanes.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        self.configuration.is_finite() & self.momentum.is_finite() & Scalar::is_finite(self.time.now())
+        self.configuration.is_finite() & self.held.is_finite() & Scalar::is_finite(self.time.now())
     }
 
     /// Takes lane `lane` of another state.
     pub(crate) fn take_lane(&mut self, lane: usize, other: &Self) {
         self.time.take_lane(lane, &other.time);
         self.configuration.set_lane(lane, &other.configuration.lane(lane));
-        self.momentum.set_lane(lane, &other.momentum.lane(lane));
+        self.held.set_lane(lane, &other.held.lane(lane));
         self.impulse.set_lane(lane, &other.impulse.lane(lane));
         self.h.set_lane(lane, &Space::lane(&other.h, lane));
     }
@@ -91,7 +94,7 @@ impl<S: Clebsch> Clone for State<S> {
 
 impl<S: Clebsch> PartialEq for State<S> {
     fn eq(&self, other: &Self) -> bool {
-        self.time == other.time && self.configuration == other.configuration && self.momentum == other.momentum
+        self.time == other.time && self.configuration == other.configuration && self.held == other.held
     }
 }
 
@@ -99,7 +102,7 @@ impl<S: Clebsch> Debug for State<S> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut state = f.debug_struct("State");
         show_time::<S>(&mut state, &self.time);
-        state.field("configuration", &self.configuration).field("momentum", &self.momentum).finish()
+        state.field("configuration", &self.configuration).field("momentum", &self.momentum()).finish()
     }
 }
 

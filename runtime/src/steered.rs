@@ -39,8 +39,8 @@ where
     (S::Configuration, S::Momentum): Space<S::Scalar>,
 {
     let impulse = system.impulse(constants, t, q, mu);
-    let (q, mu, _) = system.step(constants, t, q, mu, &impulse, u)?;
-    check_reached((q, mu))
+    let (q, held, _) = system.step(constants, t, q, &S::held(q, mu), &impulse, u)?;
+    check_reached((q, S::momentum_held(&q, &held)))
 }
 
 /// The shortest η with GᵀG η = Gᵀ(q⁺ − q).

@@ -110,16 +110,16 @@ impl<S: Clebsch> Stepper<S> {
     /// take the lanes one by one, or step after step, to know the others and how far each came.
     #[inline]
     pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
-        let State { time, configuration, momentum, .. } = state;
+        let State { time, configuration, held, .. } = state;
         let (impulse, none) = (self.impulse_of(state), S::Input::origin());
         let advanced =
-            self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, momentum, &impulse, &none);
-        let (configuration, momentum, impulse) = match advanced {
+            self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, held, &impulse, &none);
+        let (configuration, held, impulse) = match advanced {
             Ok(next) => next,
             Err(error) => return Err(self.refused_after(state, steps, error)),
         };
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
-        let next = State { time, configuration, momentum, impulse, h: self.h };
+        let next = State { time, configuration, held, impulse, h: self.h };
         if !next.is_finite() {
             let error = self.beyond(&next);
             return Err(self.refused_after(state, steps, error));
@@ -156,10 +156,10 @@ impl<S: Clebsch> Stepper<S> {
     /// Those of [`attempt`](Self::attempt).
     #[inline(always)]
     pub(crate) fn attempt_with(&self, state: &State<S>, impulse: &S::Impulse, u: &S::Input) -> Result<State<S>, Error> {
-        let State { time, configuration, momentum, .. } = state;
-        match self.system.step(&self.constants, time.now(), configuration, momentum, impulse, u) {
-            Ok((configuration, momentum, impulse)) => {
-                Ok(State { time: time.after_step(self.h), configuration, momentum, impulse, h: self.h })
+        let State { time, configuration, held, .. } = state;
+        match self.system.step(&self.constants, time.now(), configuration, held, impulse, u) {
+            Ok((configuration, held, impulse)) => {
+                Ok(State { time: time.after_step(self.h), configuration, held, impulse, h: self.h })
             }
             Err(error) => Err(error),
         }
@@ -190,8 +190,8 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Impulse>() == 0 || state.h == self.h {
             return state.impulse;
         }
-        let State { time, configuration, momentum, impulse, .. } = state;
-        let anew = self.system.impulse_after(&self.constants, time.now(), configuration, momentum, impulse);
+        let State { time, configuration, impulse, .. } = state;
+        let anew = self.system.impulse_after(&self.constants, time.now(), configuration, &state.momentum(), impulse);
         if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
     }
 
@@ -234,7 +234,7 @@ impl<S: Clebsch> Stepper<S> {
     /// Hessian Σ; +∞ where no velocity has this momentum.
     #[inline]
     pub fn kinetic_energy(&self, state: &State<S>) -> S::Scalar {
-        self.system.kinetic_energy(&self.constants, state.time.now(), &state.configuration, &state.momentum)
+        self.system.kinetic_energy(&self.constants, state.time.now(), &state.configuration, &state.momentum())
     }
 
     /// The step size h, seconds in SI units.
@@ -269,7 +269,8 @@ impl<S: Clebsch> Stepper<S> {
             let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
             return Err(Error::NotFinite { name });
         }
-        Ok(State { time: S::Time::at(t), configuration: q, momentum: mu, impulse, h: self.h })
+        let held = S::held(&q, &mu);
+        Ok(State { time: S::Time::at(t), configuration: q, held, impulse, h: self.h })
     }
 
     fn checked_cotangent_state(
@@ -390,6 +391,6 @@ impl<S: Conserves> Stepper<S> {
     /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
     #[inline]
     pub fn conserved(&self, state: &State<S>) -> S::Conserved {
-        self.system.conserved(&state.configuration, &state.momentum)
+        self.system.conserved(&state.configuration, &state.momentum())
     }
 }

@@ -27,6 +27,9 @@ pub trait Clebsch {
     type Momentum: Space<Self::Scalar>;
     /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
     type MomentumMatrix: Space<Self::Scalar>;
+    /// What a state holds of its momentum from step to step: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers in
+    /// place of n(n − 1)/2.
+    type Held: Space<Self::Scalar>;
     /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps; `()` where
     /// there is none. With `summation = compensated`, that and what rounding has taken off q and N.
     type Impulse: Space<Self::Scalar>;
@@ -89,6 +92,12 @@ pub trait Clebsch {
         mu: &Self::Momentum,
     ) -> Result<Self::Element, Error>;
 
+    /// What a state at q with the momentum μ holds of it.
+    fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Held;
+
+    /// The momentum of a state at q that holds this of it; the inverse of [`held`](Self::held) on 𝔤_q^⊥.
+    fn momentum_held(q: &Self::Configuration, held: &Self::Held) -> Self::Momentum;
+
     /// The kick at q and the time t of q, shared by the end of one step and the start of the next, or what the free motion with the momentum μ
     /// keeps.
     fn impulse(
@@ -124,7 +133,7 @@ pub trait Clebsch {
     }
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, given the impulse
-    /// at q and the input of its forces; returns the impulse at q⁺ too.
+    /// at q and the input of its forces; returns the impulse at q⁺ too. What it takes and gives of momenta is what states hold.
     ///
     /// # Errors
     /// As [`inverse_legendre`](Self::inverse_legendre).
@@ -134,10 +143,10 @@ pub trait Clebsch {
         constants: &Self::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
-        mu: &Self::Momentum,
+        mu: &Self::Held,
         impulse: &Self::Impulse,
         u: &Self::Input,
-    ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error>;
+    ) -> Result<(Self::Configuration, Self::Held, Self::Impulse), Error>;
 
     /// `steps` steps of size `h` from the time t, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts,
     /// both may be made at once.
@@ -152,10 +161,10 @@ pub trait Clebsch {
         (t, h): (Self::Scalar, Self::Scalar),
         steps: usize,
         q: &Self::Configuration,
-        mu: &Self::Momentum,
+        mu: &Self::Held,
         impulse: &Self::Impulse,
         u: &Self::Input,
-    ) -> Result<(Self::Configuration, Self::Momentum, Self::Impulse), Error> {
+    ) -> Result<(Self::Configuration, Self::Held, Self::Impulse), Error> {
         let (mut state, mut clock) = ((*q, *mu, *impulse), Clock::at(t));
         for _ in 0..steps {
             let (q, mu, impulse) = &state;

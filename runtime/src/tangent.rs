@@ -178,7 +178,7 @@ where
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent), and [`Error::NotFinite`] where the input is not.
     pub fn step_tangent_with(&self, state: &State<S>, u: &S::Input) -> Result<(State<S>, Tangent<T, M>), Error> {
-        let (mut q, mut mu) = (*state.configuration(), *state.momentum());
+        let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let mut tangent = Tangent::identity();
         for number in 0..S::EDGES {
             let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(|error| self.told(state, u, error))?;
@@ -216,7 +216,8 @@ where
         let time = state.time.after_step(self.step_size());
         // of the same size, but at another configuration: what does not depend on either stays
         let impulse = self.system().impulse_after(self.constants(), time.now(), &q, &mu, &state.impulse);
-        let next = State { time, configuration: q, momentum: mu, impulse, h: self.step_size() };
+        let held = S::held(&q, &mu);
+        let next = State { time, configuration: q, held, impulse, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
     }
 
@@ -255,7 +256,7 @@ where
     where
         S: Sensitive<M, P>,
     {
-        let (mut q, mut mu) = (*state.configuration(), *state.momentum());
+        let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let (mut tangent, mut sensitivity) = (Tangent::identity(), Sensitivity::zero());
         for number in 0..S::EDGES {
             let t = state.time.now();

@@ -150,7 +150,7 @@ fn four_dimensional_body_keeps_its_spatial_momentum() {
     let (r, mu): (_, Vector6<f64>) = (random.attitude::<4>(), random.vector());
     let spatial = r * skew::<4, 6>(&mu) * r.transpose();
     let drifts = watch(&stepper, (r, mu), ["spatial momentum", "orthogonality"], |state| {
-        let (r, m) = (state.configuration(), skew::<4, 6>(state.momentum()));
+        let (r, m) = (state.configuration(), skew::<4, 6>(&state.momentum()));
         [(r * m * r.transpose() - spatial).amax(), orthogonality(r)]
     });
     drifts.assert_round_off("body in four dimensions");
@@ -166,7 +166,7 @@ fn neumann_stays_on_its_orbit() {
     let w = random.vector::<4>();
     let mu: Vector6<f64> = components(&((w * q.transpose() - q * w.transpose()) / 2.0));
     let drifts = watch(&stepper, (q, mu), ["|q| − 1", "isotropy"], |state| {
-        let m = skew::<4, 6>(state.momentum());
+        let m = skew::<4, 6>(&state.momentum());
         // the matrix wqᵀ − qwᵀ with w = mq, which M is for momenta of motions
         let w = m * state.configuration();
         let rebuilt = w * state.configuration().transpose() - state.configuration() * w.transpose();
@@ -188,8 +188,8 @@ fn two_bodies_keep_linear_and_angular_momentum() {
     let start = angular(&x, &mu);
     let drifts = watch(&stepper, (x, mu), ["linear momentum", "angular momentum"], |state| {
         let mu = state.momentum();
-        let linear = parts(mu).0 + parts(mu).1;
-        [linear.amax(), (angular(state.configuration(), mu) - start).amax()]
+        let linear = parts(&mu).0 + parts(&mu).1;
+        [linear.amax(), (angular(state.configuration(), &mu) - start).amax()]
     });
     drifts.assert_round_off("two bodies");
     assert_band("two bodies", &stepper, (x, mu), 1e-4);

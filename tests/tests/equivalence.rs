@@ -60,7 +60,7 @@ fn left_action_and_right_action_by_the_inverse_give_the_same_motion() {
     for (right, left) in right.trajectory(starts.0).zip(left.trajectory(starts.1)).take(200) {
         let (right, left) = (right.expect("a step"), left.expect("a step"));
         assert_near(right.configuration(), left.configuration(), NEAR, "R");
-        assert_near(right.momentum(), &-left.momentum(), NEAR, "π");
+        assert_near(&right.momentum(), &-left.momentum(), NEAR, "π");
     }
 
     let left = SphericalPendulum { mass: 1.0, length: 1.0, gravity: 9.81 }.stepper(H).expect("a pendulum");
@@ -70,7 +70,7 @@ fn left_action_and_right_action_by_the_inverse_give_the_same_motion() {
     for (left, right) in left.trajectory(starts.0).zip(right.trajectory(starts.1)).take(200) {
         let (left, right) = (left.expect("a step"), right.expect("a step"));
         assert_near(left.configuration(), right.configuration(), NEAR, "q");
-        assert_near(left.momentum(), &-right.momentum(), NEAR, "N");
+        assert_near(&left.momentum(), &-right.momentum(), NEAR, "N");
     }
 }
 
@@ -86,7 +86,7 @@ fn moser_veselov_lagrangian_is_the_cost_of_the_mass_matrix() {
     for (cost, lagrangian) in cost.trajectory(starts.0).zip(lagrangian.trajectory(starts.1)).take(200) {
         let (cost, lagrangian) = (cost.expect("a step"), lagrangian.expect("a step"));
         assert_near(cost.configuration(), lagrangian.configuration(), 1e-13, "R");
-        assert_near(cost.momentum(), lagrangian.momentum(), 1e-13, "π");
+        assert_near(&cost.momentum(), &lagrangian.momentum(), 1e-13, "π");
     }
 }
 
@@ -114,7 +114,7 @@ fn moser_veselov_lagrangian_in_four_dimensions() {
     for (cost, lagrangian) in cost.trajectory(starts.0).zip(lagrangian.trajectory(starts.1)).take(100) {
         let (cost, lagrangian) = (cost.expect("a step"), lagrangian.expect("a step"));
         assert_near(cost.configuration(), lagrangian.configuration(), 1e-13, "R");
-        assert_near(cost.momentum(), lagrangian.momentum(), 1e-13, "μ");
+        assert_near(&cost.momentum(), &lagrangian.momentum(), 1e-13, "μ");
     }
 }
 
@@ -146,7 +146,7 @@ fn moser_veselov_lagrangian_keeps_its_potential() {
     for (apart, whole) in apart.trajectory(starts.0).zip(whole.trajectory(starts.1)).take(200) {
         let (apart, whole) = (apart.expect("a step"), whole.expect("a step"));
         assert_near(apart.configuration(), whole.configuration(), NEAR, "R");
-        assert_near(apart.momentum(), whole.momentum(), NEAR, "π");
+        assert_near(&apart.momentum(), &whole.momentum(), NEAR, "π");
     }
 }
 
@@ -231,7 +231,7 @@ fn generic_body_over_both_scalars() {
     assert_near(states.0.configuration(), states.1.configuration(), NEAR, "f64 declared and generic");
     // 200 steps of the unit round-off 6e-8, grown linearly
     assert_near(&states.2.configuration().cast(), states.1.configuration(), 1e-4, "f32");
-    assert_near(&states.2.momentum().cast(), states.1.momentum(), 1e-4, "f32");
+    assert_near(&states.2.momentum().cast(), &states.1.momentum(), 1e-4, "f32");
 }
 
 /// Half of V in the cost, at the start of the step, and half as a potential of order 1, at its end: that is order 2.
@@ -265,6 +265,6 @@ fn potential_inside_of_the_cost() {
     for (whole, split) in whole.trajectory(starts.0).zip(split.trajectory(starts.1)).take(200) {
         let (whole, split) = (whole.expect("a step"), split.expect("a step"));
         assert_near(whole.configuration(), split.configuration(), NEAR, "R");
-        assert_near(whole.momentum(), split.momentum(), NEAR, "π");
+        assert_near(&whole.momentum(), &split.momentum(), NEAR, "π");
     }
 }

@@ -32,7 +32,7 @@ fn assert_order<S: Clebsch<Scalar = f64> + Clone>(
         for _ in 0..steps {
             state = stepper.step(&state).expect("a solvable step");
         }
-        error(state.configuration(), state.momentum())
+        error(state.configuration(), &state.momentum())
     };
     let errors = [64, 128, 256, 512].map(at);
     let measured = order(&errors);

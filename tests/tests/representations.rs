@@ -41,7 +41,7 @@ fn both_representations<
         state = stepper.step(&state).expect("a solvable step");
         assert_near(upstairs.configuration(), state.configuration(), NEAR, name);
         let momentum = stepper.momentum_map(upstairs.configuration(), upstairs.covector());
-        assert_near(&momentum, state.momentum(), NEAR, name);
+        assert_near(&momentum, &state.momentum(), NEAR, name);
     }
 }
 
@@ -86,12 +86,12 @@ fn both_theorems_on_products() {
         upstairs = stepper.step_symmetric(&upstairs).expect("a step");
         state = stepper.step(&state).expect("a step");
         assert_near(&upstairs.configuration()[1], &state.configuration()[1], NEAR, "the second body");
-        assert_near(&stepper.momentum_map(upstairs.configuration(), upstairs.covector()), state.momentum(), NEAR, "p");
+        assert_near(&stepper.momentum_map(upstairs.configuration(), upstairs.covector()), &state.momentum(), NEAR, "p");
         sided_upstairs = sided.step_symmetric(&sided_upstairs).expect("a step");
         sided_state = sided.step(&sided_state).expect("a step");
         assert_near(&sided_upstairs.configuration().0, &sided_state.configuration().0, NEAR, "the right factor");
         assert_near(&sided_upstairs.configuration().1, &sided_state.configuration().1, NEAR, "the left factor");
         let momentum = sided.momentum_map(sided_upstairs.configuration(), sided_upstairs.covector());
-        assert_near(&momentum, sided_state.momentum(), NEAR, "both momenta");
+        assert_near(&momentum, &sided_state.momentum(), NEAR, "both momenta");
     }
 }

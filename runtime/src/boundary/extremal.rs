@@ -86,7 +86,8 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
         let Stepper { system, h, constants } = self.stepper;
         let t = time_after::<S, M>(self.time, *h, steps);
         let impulse = system.impulse(constants, t, &configuration, &momentum);
-        Some(State { time: S::Time::at(t), configuration, momentum, impulse, h: *h })
+        let held = S::held(&configuration, &momentum);
+        Some(State { time: S::Time::at(t), configuration, held, impulse, h: *h })
     }
 }
 

@@ -48,10 +48,10 @@ impl<S: Clebsch> Chunk<S> {
         // the impulse has been made by this stepper
         if let Ok(next) = stepper.attempt_with(&self.state, &self.state.impulse, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
-            let finite = (next.configuration.sum() + next.momentum.sum() + next.time.now()).finite();
+            let finite = (next.configuration.sum() + next.held.sum() + next.time.now()).finite();
             if finite.bits() & self.live == self.live {
-                let State { time, configuration, momentum, impulse, h: _ } = next;
-                self.state = State { time, configuration, momentum, impulse, h: self.state.h };
+                let State { time, configuration, held, impulse, h: _ } = next;
+                self.state = State { time, configuration, held, impulse, h: self.state.h };
                 return;
             }
         }
@@ -70,7 +70,7 @@ impl<S: Clebsch> Chunk<S> {
                 self.failed.push(Failed { lane, step, error, state: self.state });
                 self.live &= !(1 << lane);
             }
-            next.momentum.set_lane(lane, &undefined::<S>().lane(lane));
+            next.held.set_lane(lane, &undefined::<S>().lane(lane));
         }
         next.time = self.state.time.after_step(stepper.h);
         self.state = next;
@@ -123,6 +123,6 @@ fn refused<S: Clebsch>(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Option<(usiz
 }
 
 /// Momenta that are no numbers.
-fn undefined<S: Clebsch>() -> S::Momentum {
-    S::Momentum::filled(S::Scalar::zero() / S::Scalar::zero())
+fn undefined<S: Clebsch>() -> S::Held {
+    S::Held::filled(S::Scalar::zero() / S::Scalar::zero())
 }

@@ -23,8 +23,8 @@ impl<S: Clebsch> Stepper<S> {
     #[cold]
     pub fn failure(&self, state: &State<S>, lane: usize) -> Option<Error> {
         let mut alone = *state;
-        alone.momentum = S::Momentum::filled(S::Scalar::zero() / S::Scalar::zero());
-        alone.momentum.set_lane(lane, &state.momentum.lane(lane));
+        alone.held = S::Held::filled(S::Scalar::zero() / S::Scalar::zero());
+        alone.held.set_lane(lane, &state.held.lane(lane));
         // nothing is known of their motions
         alone.impulse = S::Impulse::filled(S::Scalar::zero());
         alone.impulse.set_lane(lane, &state.impulse.lane(lane));

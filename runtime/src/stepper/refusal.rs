@@ -21,11 +21,11 @@ impl<S: Clebsch> Stepper<S> {
     #[cold]
     #[inline(never)]
     pub(crate) fn refusal(&self, state: &State<S>, u: &S::Input, lane: usize, error: Error) -> Error {
-        let State { time, configuration, momentum, impulse, .. } = state;
+        let State { time, configuration, held, impulse, .. } = state;
         self.explained(lane, error, |constants| {
             let t = time.now();
-            let kick = self.system.impulse_after(constants, t, configuration, momentum, impulse);
-            let (q, mu, _) = self.system.step(constants, t, configuration, momentum, &kick, u)?;
+            let kick = self.system.impulse_after(constants, t, configuration, &state.momentum(), impulse);
+            let (q, mu, _) = self.system.step(constants, t, configuration, held, &kick, u)?;
             Ok((q.finite() & mu.finite()).lane(lane))
         })
     }

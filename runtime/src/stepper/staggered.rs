@@ -51,7 +51,7 @@ impl<S: Clebsch> Stepper<S> {
     #[inline]
     pub fn synchronized(&self, state: &State<S>) -> S::Momentum {
         let ahead = self.system.stagger(self.h, state.time.now(), &state.configuration);
-        state.momentum.zip_map(&ahead, |momentum, ahead| momentum - ahead)
+        state.momentum().zip_map(&ahead, |momentum, ahead| momentum - ahead)
     }
 
     /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order

@@ -119,12 +119,12 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
         let signed = if self.h < S::Scalar::zero() { -h } else { h };
         let (whole, half) = (self.system.stepper(signed)?, self.system.stepper(signed / number(2))?);
         let (mut a, mut b) = (*start, *start);
-        let (mut steps, mut difference, mut size) = (0, S::Scalar::zero(), start.momentum.max_abs());
+        let (mut steps, mut difference, mut size) = (0, S::Scalar::zero(), start.held.max_abs());
         while steps < STEPS[1] && number::<S::Scalar>(steps) * h < time {
             a = whole.step(&a)?;
             b = half.step(&half.step(&b)?)?;
             steps += 1;
-            size = larger(size, b.momentum.max_abs());
+            size = larger(size, b.held.max_abs());
             difference = larger(difference, apart(&a, &b, size));
         }
         let size = S::Scalar::one() + start.configuration.max_abs();
@@ -140,7 +140,7 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
 /// The larger one of |Δq| and |Δμ| over the size of momenta.
 fn apart<S: Clebsch<Scalar: Real>>(a: &State<S>, b: &State<S>, size: S::Scalar) -> S::Scalar {
     let turned = a.configuration.distance_squared(&b.configuration).sqrt();
-    let pushed = a.momentum.distance_squared(&b.momentum).sqrt();
+    let pushed = a.held.distance_squared(&b.held).sqrt();
     larger(turned, if size > S::Scalar::zero() { pushed / size } else { pushed })
 }
 

@@ -36,6 +36,7 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
+        type Held = Self::Momentum;
         type Input = ();
         type Impulse = SVector<f64, 3>;
         type Constants = Constants;
@@ -93,6 +94,16 @@ const _: () = {
         ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
             let d = increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q, mu)))?;
             Ok(::clebsch::__private::from_increment(&d))
+        }
+
+        #[inline]
+        fn held(_: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
+            *mu
+        }
+
+        #[inline]
+        fn momentum_held(_: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
+            *held
         }
 
         /// −(h/2) J(q, ∇V(t, q))

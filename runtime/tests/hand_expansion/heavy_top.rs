@@ -40,6 +40,7 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
+        type Held = Self::Momentum;
         type Input = ();
         type Impulse = SVector<f64, 3>;
         type Constants = Constants;
@@ -107,6 +108,16 @@ const _: () = {
             let kicked = mu + self.impulse(constants, t, r, mu);
             let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
             Ok(SMatrix::<f64, 3, 3>::identity() + increment(&c))
+        }
+
+        #[inline]
+        fn held(_: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
+            *mu
+        }
+
+        #[inline]
+        fn momentum_held(_: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
+            *held
         }
 
         /// −(h/2) J(R, ∇V) = (h/2)·weight·Γ × center, Γ = Rᵀe₃

@@ -88,12 +88,12 @@ where
         (whole.state(q, mu).expect("a state"), alone.state((), mu).expect("a state"));
     for _ in 0..100 {
         (a, b) = (whole.step(&a).expect("a step"), alone.step(&b).expect("a step"));
-        assert_near(a.momentum(), b.momentum(), 1e-13, S::NAME);
+        assert_near(&a.momentum(), &b.momentum(), 1e-13, S::NAME);
         assert!((whole.energy(&a) - alone.energy(&b)).abs() < 1e-12);
     }
     assert!((a.momentum() - mu).norm() > 1e-2, "{}: a momentum that rests shows nothing", S::NAME);
     let late = alone.advance(&alone.state((), mu).expect("a state"), 100).expect("steps");
-    assert_near(late.momentum(), b.momentum(), 1e-13, S::NAME);
+    assert_near(&late.momentum(), &b.momentum(), 1e-13, S::NAME);
 }
 
 #[test]
@@ -126,10 +126,10 @@ fn free_momenta_obey_moser_and_veselov() -> Result<(), Error> {
     let (h, inertia) = (0.1, Matrix3::new(1.4, 0.1, 0.0, 0.1, 2.0, -0.2, 0.0, -0.2, 2.6));
     let stepper = TumblingMomentum { inertia }.into_stepper(h)?;
     let start = stepper.state((), Vector3::new(0.3, 2.0, 0.6))?;
-    let (mut state, mut pi) = (start, *start.momentum());
+    let (mut state, mut pi) = (start, start.momentum());
     for _ in 0..100 {
         (state, pi) = (stepper.step(&state)?, body::drift(&inertia, h, &pi).transpose() * pi);
-        assert_near(state.momentum(), &pi, 1e-13, "π");
+        assert_near(&state.momentum(), &pi, 1e-13, "π");
     }
     for state in stepper.trajectory(start).take(100_000) {
         let state = state?;
@@ -171,7 +171,7 @@ fn momenta_alone_are_systems_like_others() -> Result<(), Error> {
     let whole = wheeled::whole::System { moments: moments(), damping: 0.3 }.into_stepper(0.05)?;
     let alone = wheeled::alone::System { moments: moments(), damping: 0.3 }.into_stepper(0.05)?;
     let (a, b) = (whole.step_with(&whole.state(r, pi)?, &torque)?, alone.step_with(&alone.state((), pi)?, &torque)?);
-    assert_near(a.momentum(), b.momentum(), 1e-15, "π under a torque");
+    assert_near(&a.momentum(), &b.momentum(), 1e-15, "π under a torque");
     assert!((alone.step(&alone.state((), pi)?)?.momentum() - b.momentum()).norm() > 1e-3);
 
     let lanes = sixth::alone::System { moments: moments().map(F64x4::from_f64) }.into_stepper(F64x4::from_f64(0.05))?;
@@ -179,7 +179,7 @@ fn momenta_alone_are_systems_like_others() -> Result<(), Error> {
     let momenta = [1.0, 0.5, -2.0, 0.0].map(|size| pi * size);
     let stepped = lanes.step(&lanes.state((), Vector3::side_by_side(|lane| momenta[lane]))?)?;
     for (lane, momentum) in momenta.into_iter().enumerate() {
-        assert_eq!(stepped.lane(lane).1, *one.step(&one.state((), momentum)?)?.momentum());
+        assert_eq!(stepped.lane(lane).1, one.step(&one.state((), momentum)?)?.momentum());
     }
 
     let upstairs = one.cotangent_state((), ())?;

@@ -23,7 +23,7 @@ fn assert_order<S: Clebsch<Scalar = f64> + Clone>(
         for _ in 0..steps {
             state = stepper.step_with(&state, input).expect("a solvable step");
         }
-        error(state.configuration(), state.momentum())
+        error(state.configuration(), &state.momentum())
     };
     let errors: Vec<f64> = counts.iter().map(at).collect();
     let measured = order(&errors);

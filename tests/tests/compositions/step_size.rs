@@ -53,7 +53,7 @@ fn assert_error<S: Clebsch<Scalar = f64, Input = ()> + Clone, const N: usize>(
             for _ in 0..steps as u64 {
                 state = stepper.step(&state).expect("a solvable step");
             }
-            error = error.max((flat(state.configuration(), state.momentum()) - exact).amax());
+            error = error.max((flat(state.configuration(), &state.momentum()) - exact).amax());
         }
         println!("{} of order {}: wished {wished:.0e}, h = {suggested:.2e}, error {error:.1e}", S::NAME, S::ORDER);
         assert!(error < RATIO * wished && error > wished / RATIO, "{} of order {}: {error:.1e}", S::NAME, S::ORDER);

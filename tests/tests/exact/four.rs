@@ -125,7 +125,7 @@ fn invariants_stay() {
     let state = stepper.state(r, mu).expect("a state");
     let end = stepper.advance(&state, 10_000).expect("steps");
     let spatial = |r: &Matrix4<f64>, mu: &Vector6<f64>| r * wedge(mu) * r.transpose();
-    let moved = spatial(end.configuration(), end.momentum()) - spatial(&r, &mu);
+    let moved = spatial(end.configuration(), &end.momentum()) - spatial(&r, &mu);
     assert!(moved.norm() < 1e-11, "{:e}", moved.norm());
     assert!((stepper.energy(&end) / stepper.energy(&state) - 1.0).abs() < 1e-12);
 }

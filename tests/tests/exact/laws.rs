@@ -28,7 +28,7 @@ fn derivative<S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = 
         let turn = nalgebra::Rotation3::new(y.fixed_rows::<3>(0).into_owned()).into_inner();
         let state = stepper.state(r * turn, pi + y.fixed_rows::<3>(3)).expect("a state");
         let next = stepper.step(&state).expect("a step");
-        (*next.configuration(), *next.momentum())
+        (*next.configuration(), next.momentum())
     };
     let (r_next, pi_next) = stepped(Vector6::zeros());
     let along = |i: usize, size: f64| {

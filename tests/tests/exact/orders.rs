@@ -27,9 +27,10 @@ fn assert_order<S: Clebsch<Scalar = f64> + Clone>(
             state = stepper.step(&state).expect("a solvable step");
         }
         let at_once = stepper.advance(&start, steps).expect("solvable steps");
-        let apart = error(at_once.configuration(), at_once.momentum()) - error(state.configuration(), state.momentum());
+        let apart =
+            error(at_once.configuration(), &at_once.momentum()) - error(state.configuration(), &state.momentum());
         assert!(apart.abs() < 1e-12, "{}: {steps} steps at once differ by {apart:e}", S::NAME);
-        error(state.configuration(), state.momentum())
+        error(state.configuration(), &state.momentum())
     };
     let errors: Vec<f64> = counts.iter().map(at).collect();
     let points: Vec<(f64, f64)> =
@@ -191,7 +192,7 @@ fn a_free_body_is_exact_at_any_step_size() {
             for _ in 0..steps {
                 state = stepper.step(&state).expect("a step");
             }
-            let error = off(state.configuration(), state.momentum(), &exact);
+            let error = off(state.configuration(), &state.momentum(), &exact);
             assert!(error < 1e-12, "{steps} steps from {pi:?}: {error:e}");
         }
     }

@@ -97,7 +97,7 @@ where
             }
             let (q, mu) = next.lane(lane);
             assert_eq!(bits(&q), bits(single.configuration()), "step {step}, lane {lane}: configuration");
-            assert_eq!(bits(&mu), bits(single.momentum()), "step {step}, lane {lane}: momentum");
+            assert_eq!(bits(&mu), bits(&single.momentum()), "step {step}, lane {lane}: momentum");
         }
         state = next;
     }

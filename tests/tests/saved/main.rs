@@ -33,7 +33,7 @@ fn steps<S: Clebsch>(stepper: &Stepper<S>, start: State<S>) -> Result<State<S>, 
 /// Writes the state after some steps, reads it, and goes on with it and without.
 fn goes_on<S>(stepper: &Stepper<S>, start: State<S>) -> Result<(), Error>
 where
-    S: Clebsch<Time: Kept, Configuration: Kept, Momentum: Kept, Impulse: Kept, Scalar: Kept>,
+    S: Clebsch<Time: Kept, Configuration: Kept, Held: Kept, Impulse: Kept, Scalar: Kept>,
 {
     let state = steps(stepper, start)?;
     let exact = steps(stepper, state)?;

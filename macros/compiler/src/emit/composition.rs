@@ -72,10 +72,10 @@ impl Emitter<'_, '_> {
     fn great_circles_taken(&self) -> TokenStream {
         let (private, step) = (&self.paths.private, &self.names.step);
         match self.program.formulas.stages() {
-            None => quote!(#step::euler_poincare_steps(&#step { system: self, constants }, 1, q, mu)),
+            None => quote!(#step::euler_poincare_steps(&#step { system: self, constants }, 1, q, mu, impulse)),
             Some(_) => quote! {
-                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, _)| {
-                    #step::euler_poincare_steps(&#step { system: self, constants }, 1, &q, &mu)
+                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, impulse)| {
+                    #step::euler_poincare_steps(&#step { system: self, constants }, 1, &q, &mu, &impulse)
                 })
             },
         }
@@ -116,7 +116,7 @@ impl Emitter<'_, '_> {
             }
             None if self.follows_great_circles() && self.program.formulas.stages().is_none() => (
                 "Several steps in (q, w).",
-                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu)),
+                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu, impulse)),
             ),
             None if self.keeps_motions() => (
                 "Several steps of one motion.",
@@ -133,10 +133,10 @@ impl Emitter<'_, '_> {
                 (t, _): (#scalar, #scalar),
                 steps: ::core::primitive::usize,
                 q: &Self::Configuration,
-                mu: &Self::Momentum,
+                mu: &Self::Held,
                 impulse: &Self::Impulse,
                 u: &Self::Input,
-            ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
+            ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
                 #taken
             }
         }

@@ -53,11 +53,15 @@ fn form(program: &Program<'_>) -> String {
         }
         (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
     };
-    let in_plane = match program.form.keeps_matrices() && program.formulas.follows_great_circles() {
-        true => {
-            "Steps are made in q and w ⊥ q, with the momentum M = wqᵀ − qwᵀ: q⁺ = cq + aw, w⁺ = cw − a|w|²q, a = h/κ, c² = 1 − a²|w|².\n"
+    let is_pushed = program.formulas.substeps.iter().any(|substep| substep.start.is_some() || substep.end.is_some());
+    let in_plane = match (program.turns_in_plane(), is_pushed) {
+        (true, true) => {
+            "Steps are made in q and w ⊥ q, which a state holds in place of its momentum M = wqᵀ − qwᵀ: q⁺ = cq + aw, w⁺ = cw − a|w|²q, a = h/κ, c² = 1 − a²|w|².\n"
         }
-        false => "",
+        (true, false) => {
+            "A state holds two vectors of the plane in which it turns in place of its momentum M = vuᵀ − uvᵀ, which stays: q⁺ = cq + aw, w = Mq, a = h/κ, c² = 1 − a²|w|².\n"
+        }
+        (false, _) => "",
     };
     format!(
         "{in_plane}{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}.\n"

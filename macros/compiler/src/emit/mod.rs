@@ -259,11 +259,18 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.paths.matrix(self.dimension(), 1)
     }
 
+    /// What a state holds of its momentum: w of a point in (q, w), the two vectors of its plane where nothing pushes it.
+    fn held_type(&self) -> TokenStream {
+        let configuration = self.configuration_type();
+        match self.follows_great_circles() {
+            true if self.is_free_on_great_circles() => quote!((#configuration, #configuration)),
+            true => configuration,
+            false => self.momentum_type(),
+        }
+    }
+
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
-        if self.follows_great_circles() {
-            return false;
-        }
         let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts - 1]);
         let (start, end) = (
             &self.program.formulas.substeps[0].start,
@@ -278,15 +285,22 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether steps are made in (q, w).
     fn follows_great_circles(&self) -> bool {
-        self.program.form.keeps_matrices() && self.program.formulas.follows_great_circles()
+        self.program.turns_in_plane()
     }
 
     fn impulse_type(&self) -> TokenStream {
         match self.shares_impulse() {
-            true => self.momentum_type(),
+            // of a point in (q, w) it is the gradient
+            true => self.held_type(),
             false if self.keeps_motions() => self.kept_type(),
             false => quote!(()),
         }
+    }
+
+    /// Whether steps are made in (q, w) and nothing pushes.
+    fn is_free_on_great_circles(&self) -> bool {
+        let step = &self.program.steps[0];
+        self.follows_great_circles() && step.start_gradient.is_none() && step.end_gradient.is_none()
     }
 
     fn constants_generics(&self) -> (TokenStream, TokenStream) {

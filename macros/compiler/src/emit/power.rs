@@ -145,6 +145,7 @@ impl<'g> Emitter<'_, 'g> {
                 type Element = [#element; #length];
                 type Momentum = [#momentum; #length];
                 type MomentumMatrix = [#element; #length];
+                type Held = [#momentum; #length];
                 type Impulse = #impulse;
                 type Input = ();
                 type Time = #time;
@@ -188,6 +189,16 @@ impl<'g> Emitter<'_, 'g> {
                     mu: &Self::Momentum,
                 ) -> ::core::result::Result<Self::Element, #krate::Error> {
                     #private::Power::power_inverse_legendre(self, constants, t, q, mu, #start)
+                }
+                /// What a state holds of its momentum.
+                #[inline]
+                fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
+                    *mu
+                }
+                /// The momentum of which a state holds this.
+                #[inline]
+                fn momentum_held(q: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
+                    *held
                 }
                 /// The kick that the end of a step and the start of the next share.
                 fn impulse(

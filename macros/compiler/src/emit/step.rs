@@ -105,7 +105,7 @@ impl Emitter<'_, '_> {
         let start_gradient = start_gradient.map(|kernel| {
             gradient(name("start_gradient"), "∂U₀(q), the kick of the covector at the start of a step.", kernel)
         });
-        let end_gradient = step.end_gradient.as_ref();
+        let end_gradient = step.end_gradient.as_ref().filter(|_| !(step.end_is_start && self.follows_great_circles()));
         let end_gradient = end_gradient.map(|kernel| {
             gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel)
         });
@@ -239,6 +239,10 @@ impl Emitter<'_, '_> {
             &step.increment,
             Some(Nesting::Element),
         ));
+        // points on large spheres are turned in (q, w)
+        if self.follows_great_circles() {
+            return quote!(#increment);
+        }
         let advance = match &step.displace {
             Some(displace) => self.part(
                 match self.is_compensated() {
@@ -339,57 +343,111 @@ impl Emitter<'_, '_> {
     /// Steps along great circles in (q, w): kick, turn, kick, each in n numbers.
     fn along_great_circles(&self) -> TokenStream {
         let (krate, private) = (&self.paths.krate, &self.paths.private);
-        let (configuration, momentum, symmetric) = (self.configuration_type(), self.momentum_type(), self.symmetric());
-        let step = &self.program.steps[0];
-        let pushed = |name: &str| {
-            let name = format_ident!("{name}");
-            quote!(w = #private::pushed(&q, &w, &self.#name(&q));)
+        let (configuration, held, impulse) = (self.configuration_type(), self.held_type(), self.impulse_type());
+        let symmetric = self.symmetric_along_great_circles();
+        let [one, two] = [1.0, 2.0].map(|weight| quote!(#private::Scalar::from_f64(#weight)));
+        let push =
+            |gradient: TokenStream, weight: &TokenStream| quote!(#private::push(&q, &mut w, &#gradient, #weight););
+        let [start, end] = self.gradients_of_great_circles();
+        let turned = quote!(#private::turn_great_circle(a, &mut q, &mut w)?;);
+        let gradient = quote!(gradient = self.start_gradient(&q););
+        let (steps, left) = match (start, end) {
+            _ if self.shares_impulse() => {
+                let (half, whole) = (push(quote!(gradient), &one), push(quote!(gradient), &two));
+                // between two steps both kicks are one
+                let steps = quote! {
+                    let mut gradient = *impulse;
+                    if steps > 0 {
+                        #half
+                        for _ in 1..steps {
+                            #turned
+                            #gradient
+                            #whole
+                        }
+                        #turned
+                        #gradient
+                        #half
+                    }
+                };
+                (steps, quote!(gradient))
+            }
+            (start, end) => {
+                let [start, end] = [start, end].map(|name| name.map(|name| push(quote!(self.#name(&q)), &one)));
+                (quote!(for _ in 0..steps { #start #turned #end }), quote!(()))
+            }
         };
-        let start = step.start_gradient.as_ref().map(|_| "start_gradient");
-        let end = step.end_gradient.as_ref().map(|_| "end_gradient");
-        let (before, start, end) = match (start, end) {
-            // the same kick twice, its gradient made once
-            (Some(_), Some(_)) if step.end_is_start => (
-                Some(quote!(let mut gradient = self.start_gradient(&q);)),
-                Some(quote!(w = #private::pushed(&q, &w, &gradient);)),
-                Some(quote! {
-                    gradient = self.start_gradient(&q);
-                    w = #private::pushed(&q, &w, &gradient);
-                }),
-            ),
-            (None, None) => (None, None, Some(quote!(w = #private::perpendicular(&q, &w);))),
-            (start, end) => (None, start.map(pushed), end.map(pushed)),
-        };
-        // where nothing kicks, the momentum is that of the start to the bit
-        let momentum_after = match step.start_gradient.is_none() && step.end_gradient.is_none() {
-            true => quote!(*mu),
-            false => quote!(#krate::Clebsch::momentum_map(self.system, &q, &w)),
-        };
+        if self.is_free_on_great_circles() {
+            return quote! {
+                /// q ↦ q⁺, as many times as there are steps, with N = vuᵀ − uvᵀ, which stays.
+                ///
+                /// q⁺ = cq + aw with w = Nq, a = h/κ and c² = 1 − a²|w|².
+                #[inline]
+                fn euler_poincare_steps(
+                    &self,
+                    steps: ::core::primitive::usize,
+                    q: &#configuration,
+                    plane: &#held,
+                    impulse: &#impulse,
+                ) -> ::core::result::Result<(#configuration, #held, #impulse), #krate::Error> {
+                    let mut q = *q;
+                    let a = self.constants.step_size * self.constants.inertia_inverse;
+                    for _ in 0..steps {
+                        #private::turn_freely(a, plane, &mut q)?;
+                    }
+                    ::core::result::Result::Ok((q, *plane, ()))
+                }
+                #symmetric
+            };
+        }
         quote! {
-            /// (q, N) ↦ (q⁺, N⁺), as many times as there are steps.
+            /// (q, w) ↦ (q⁺, w⁺), as many times as there are steps, with N = wqᵀ − qwᵀ.
             ///
-            /// Between the first and the last N is wqᵀ − qwᵀ: w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁;
-            /// what is not perpendicular to q is taken off w in each step, which rounding makes necessary.
+            /// w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁; what is not perpendicular to q is taken off w in each
+            /// step, which rounding makes necessary.
+            #[inline]
             fn euler_poincare_steps(
                 &self,
                 steps: ::core::primitive::usize,
                 q: &#configuration,
-                mu: &#momentum,
-            ) -> ::core::result::Result<(#configuration, #momentum, ()), #krate::Error> {
-                let mut q = *q;
-                let mut w = #private::tangent(&q, mu);
+                w: &#held,
+                impulse: &#impulse,
+            ) -> ::core::result::Result<(#configuration, #held, #impulse), #krate::Error> {
+                let (mut q, mut w) = (*q, *w);
                 let a = self.constants.step_size * self.constants.inertia_inverse;
-                #before
-                for _ in 0..steps {
-                    #start
-                    (q, w) = #private::great_circle(a, &q, &w)?;
-                    #end
-                    (q, w) = #private::on_sphere(q, w);
-                }
-                ::core::result::Result::Ok((q, #momentum_after, ()))
+                #steps
+                ::core::result::Result::Ok((q, w, #left))
             }
             #symmetric
         }
+    }
+
+    /// A step along a great circle on T*Rⁿ, with what p has along q.
+    fn symmetric_along_great_circles(&self) -> TokenStream {
+        let (krate, private, configuration) = (&self.paths.krate, &self.paths.private, self.configuration_type());
+        let kicked = |name: Ident| quote!(let p = p + self.#name(&q););
+        let [start, end] = self.gradients_of_great_circles().map(|name| name.map(kicked));
+        quote! {
+            /// (q, p) ↦ (q⁺, p⁺), with the momentum J(q, p): both are turned in their plane.
+            fn symmetric(
+                &self,
+                q: &#configuration,
+                p: &#configuration,
+            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
+                let (q, p) = (*q, *p);
+                #start
+                let (q, p) = #private::turned_in_plane(self.constants.step_size * self.constants.inertia_inverse, &q, &p)?;
+                #end
+                ::core::result::Result::Ok((q, p))
+            }
+        }
+    }
+
+    /// The methods that give the gradients at the start and at the end of a step along a great circle; where both are the same, one stands for both.
+    fn gradients_of_great_circles(&self) -> [Option<Ident>; 2] {
+        let step = &self.program.steps[0];
+        let end = if step.end_is_start { "start_gradient" } else { "end_gradient" };
+        let named = |gradient: &Option<Kernel>, name: &str| gradient.as_ref().map(|_| format_ident!("{name}"));
+        [named(&step.start_gradient, "start_gradient"), named(&step.end_gradient, end)]
     }
 
     /// How a step is inlined: a short one always, as a call hands states through memory. What iterates is a call.

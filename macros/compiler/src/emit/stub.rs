@@ -77,6 +77,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             type Element = #element;
             type Momentum = #momentum;
             type MomentumMatrix = #element;
+            type Held = #momentum;
             type Impulse = ();
             type Input = #input;
             type Time = #time;
@@ -104,6 +105,8 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(inverse_legendre(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #element),
+        quote!(held(q: &#configuration, mu: &Self::Momentum) -> Self::Held),
+        quote!(momentum_held(q: &#configuration, held: &Self::Held) -> Self::Momentum),
         quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum)),
         quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &(), u: &Self::Input) -> #step),
         quote!(step_symmetric(&self, constants: &(), t: #scalar, q: &#configuration, p: &#configuration) -> #symmetric),

@@ -18,7 +18,7 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (impulse, input) = (self.left_type(), self.input_type());
+        let (impulse, input, held) = (self.left_type(), self.input_type(), self.held_type());
         let private = &self.paths.private;
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
@@ -39,6 +39,7 @@ impl Emitter<'_, '_> {
                 type Element = #element;
                 type Momentum = #momentum;
                 type MomentumMatrix = #element;
+                type Held = #held;
                 type Impulse = #impulse;
                 type Input = #input;
                 type Time = #time;
@@ -334,6 +335,7 @@ impl Emitter<'_, '_> {
 
     /// Steps, handed to the type `Step`.
     fn dynamics(&self) -> TokenStream {
+        let private = &self.paths.private;
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
         let time = self.time_argument();
         let (taken, several, taken_symmetric) = (self.step_taken(), self.steps_taken(), self.symmetric_step_taken());
@@ -341,6 +343,7 @@ impl Emitter<'_, '_> {
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let [whole, first] = self.whole_and_first();
         let impulse = match self.shares_impulse() {
+            true if self.follows_great_circles() => quote!(#step::start_gradient(&#step { system: self, #first }, q)),
             true => quote!(#step::#kick(&#step { system: self, #first }, #time q)),
             false if self.keeps_motions() => quote!(#step::kept_motions(&#step { system: self, #first }, mu)),
             false => quote!(()),
@@ -351,6 +354,13 @@ impl Emitter<'_, '_> {
             false => ("The kick that the end of a step and the start of the next share.", quote!(#[inline])),
         };
         let title = docs::lines(&[title.to_string()]);
+        let (holds, of_held) = match self.follows_great_circles() {
+            true if self.is_free_on_great_circles() => {
+                (quote!((*q, #private::tangent(q, mu))), quote!(#private::momentum_of_tangent(&held.0, &held.1)))
+            }
+            true => (quote!(#private::tangent(q, mu)), quote!(#private::momentum_of_tangent(q, held))),
+            false => (quote!(*mu), quote!(*held)),
+        };
         quote! {
             /// The group element that is connected to the identity and has this momentum.
             fn inverse_legendre(
@@ -361,6 +371,16 @@ impl Emitter<'_, '_> {
                 mu: &Self::Momentum,
             ) -> ::core::result::Result<Self::Element, #krate::Error> {
                 #step::inverse_legendre(&#step { system: self, #whole }, #time q, mu)
+            }
+            /// What a state holds of its momentum.
+            #[inline]
+            fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
+                #holds
+            }
+            /// The momentum of which a state holds this.
+            #[inline]
+            fn momentum_held(q: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
+                #of_held
             }
             #title
             #inline_of_impulse
@@ -381,10 +401,10 @@ impl Emitter<'_, '_> {
                 constants: &Self::Constants,
                 t: #scalar,
                 q: &Self::Configuration,
-                mu: &Self::Momentum,
+                mu: &Self::Held,
                 impulse: &Self::Impulse,
                 u: &Self::Input,
-            ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
+            ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
                 #taken
             }
             #several

@@ -422,6 +422,11 @@ fn inertia_inverse<'g>(formulas: &Formulas<'g>) -> Expr<'g> {
 }
 
 impl Program<'_> {
+    /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
+    pub fn turns_in_plane(&self) -> bool {
+        self.form.keeps_matrices() && self.formulas.follows_great_circles()
+    }
+
     /// The operations of all kernels together.
     pub fn cost(&self) -> Cost {
         self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).fold(Cost::default(), Cost::plus)

@@ -53,8 +53,9 @@ impl Program<'_> {
             ("inertia".into(), &self.inertia),
             ("momentum_matrix".into(), &self.momentum_matrix),
             ("momentum_components".into(), &self.momentum_components),
-            ("cotangent_lift".into(), &self.cotangent_lift),
         ];
+        let turns_in_plane = self.turns_in_plane();
+        kernels.extend((!turns_in_plane).then(|| ("cotangent_lift".to_string(), &self.cotangent_lift)));
         kernels.extend(self.velocity.iter().map(|kernel| ("velocity".to_string(), kernel)));
         kernels.extend(self.gyroscopic.iter().map(|kernel| ("gyroscopic".to_string(), kernel)));
         kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
@@ -124,6 +125,9 @@ impl Program<'_> {
                 kernels.push((named("increment"), &step.increment));
             }
             match &step.displace {
+                _ if turns_in_plane => {
+                    kernels.extend(step.start_gradient.iter().map(|kernel| (named("start_gradient"), kernel)));
+                }
                 Some(displace) => kernels.push((named("displace"), displace)),
                 None => kernels.push((named("advance"), &step.advance)),
             }

@@ -48,8 +48,8 @@ macro_rules! assert_tangent {
         let (next, tangent) = plain.step_tangent(&start).expect("a step");
         let start = dual.state($q.map(DualSVec64::<3>::from_f64), varied($mu)).expect("a state");
         let end = dual.step(&start).expect("a step");
-        assert_near(&end.momentum().map(|x| x.re), next.momentum(), 1e-14, "values");
-        assert_near(&gradients(end.momentum()), &tangent.momentum_by_momentum, 1e-12, "momenta");
+        assert_near(&end.momentum().map(|x| x.re), &next.momentum(), 1e-14, "values");
+        assert_near(&gradients(&end.momentum()), &tangent.momentum_by_momentum, 1e-12, "momenta");
         for j in 0..3 {
             let slope = end.configuration().map(|x| x.eps.0.map_or(0.0, |eps| eps[j]));
             let motion = vee(&(next.configuration().transpose() * slope));

@@ -68,12 +68,12 @@ where
             written = b.step_symmetric(&written).expect("a step on T*Q");
         }
         assert!(far(x.configuration(), &q) > 1e-3, "it moves");
-        near(far(x.configuration(), y.configuration()).max(far(x.momentum(), y.momentum())), "20 steps");
+        near(far(x.configuration(), y.configuration()).max(far(&x.momentum(), &y.momentum())), "20 steps");
         let there =
             far(upstairs.configuration(), written.configuration()).max(far(upstairs.covector(), written.covector()));
         near(there, "20 steps on T*Q");
         let together = b.advance(&b.state(q, mu).expect("a state"), 20).expect("20 steps");
-        near(far(together.configuration(), y.configuration()).max(far(together.momentum(), y.momentum())), "at once");
+        near(far(together.configuration(), y.configuration()).max(far(&together.momentum(), &y.momentum())), "at once");
     }
 }
 

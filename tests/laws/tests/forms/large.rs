@@ -141,7 +141,7 @@ fn all_kinds_of_numbers_are_stepped() {
             state = alone.step(&state).expect("a step");
             rough = single.step(&rough).expect("a step");
         }
-        assert_eq!(wide.lane(lane), (*state.configuration(), *state.momentum()));
+        assert_eq!(wide.lane(lane), (*state.configuration(), state.momentum()));
         assert!((rough.configuration().cast::<f64>() - state.configuration()).amax() < 1e-5);
     }
 
@@ -155,7 +155,7 @@ fn all_kinds_of_numbers_are_stepped() {
     for lane in 0..4 {
         let state = alone.state(start(lane), momentum(lane)).expect("a state");
         let state = alone.advance(&state, 20).expect("steps");
-        assert_eq!(wide.lane(lane), (*state.configuration(), *state.momentum()));
+        assert_eq!(wide.lane(lane), (*state.configuration(), state.momentum()));
     }
 }
 

@@ -91,7 +91,7 @@ fn centred_body() {
     for _ in 0..100 {
         (a, b) = (one.step(&a).expect("a step"), other.step(&b).expect("a step"));
         assert_near(a.configuration(), b.configuration(), 1e-11, "the same body");
-        assert_near(a.momentum(), b.momentum(), 1e-11, "the same body");
+        assert_near(&a.momentum(), &b.momentum(), 1e-11, "the same body");
     }
     // uncoupled: b = h M_v/m and the rotation of a free rigid body
     let free = CentredBody { gravity: 0.0, ..centred.clone() }.stepper(H).expect("a body");

@@ -48,12 +48,12 @@ fn opaque_potential() {
     for _ in 0..200 {
         (a, b) = (one.step(&a).expect("a step"), other.step(&b).expect("a step"));
         assert_near(a.configuration(), b.configuration(), NEAR, "x");
-        assert_near(a.momentum(), b.momentum(), NEAR, "p");
+        assert_near(&a.momentum(), &b.momentum(), NEAR, "p");
         assert!((one.energy(&a) - other.energy(&b)).abs() < NEAR, "the energy");
     }
     assert_reversible(&harmonics, x, p);
     let start = one.cotangent_state(x, p).expect("a state");
     let up = one.step_symmetric(&start).expect("a step");
     let state = one.step(&one.state(x, p).expect("a state")).expect("a step");
-    assert_near(up.covector(), state.momentum(), NEAR, "the symmetric representation");
+    assert_near(up.covector(), &state.momentum(), NEAR, "the symmetric representation");
 }

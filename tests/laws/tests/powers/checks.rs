@@ -74,7 +74,7 @@ pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
         written = b.step_symmetric(&written).expect("a step on T*Q");
     }
     assert!(far(x.configuration(), &q) > 1e-3, "it moves");
-    near(far(x.configuration(), y.configuration()).max(far(x.momentum(), y.momentum())), "20 steps");
+    near(far(x.configuration(), y.configuration()).max(far(&x.momentum(), &y.momentum())), "20 steps");
     let there =
         far(upstairs.configuration(), written.configuration()).max(far(upstairs.covector(), written.covector()));
     near(there, "20 steps on T*Q");

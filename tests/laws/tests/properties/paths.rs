@@ -23,10 +23,10 @@ fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, W
     let mut action = 0.0;
     for (k, node) in extremal.nodes().iter().enumerate() {
         let (state, next) = (&states[k], &states[k + 1]);
-        assert_eq!((node.configuration(), node.momentum()), (state.configuration(), state.momentum()));
+        assert_eq!((node.configuration(), *node.momentum()), (state.configuration(), state.momentum()));
         let stepped = stepper.step(state)?;
         assert_near(stepped.configuration(), next.configuration(), NEAR, "a step");
-        assert_near(stepped.momentum(), next.momentum(), NEAR, "a step");
+        assert_near(&stepped.momentum(), &next.momentum(), NEAR, "a step");
         let moved = stepper.system().advance(node.configuration(), node.increment());
         assert_near(&moved, next.configuration(), NEAR, "the increment");
         action += stepper
@@ -35,7 +35,7 @@ fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, W
             .lagrangian;
     }
     assert!((extremal.action() - action).abs() < NEAR, "{} is not {action}", extremal.action());
-    assert_eq!((states[0].momentum(), states[STEPS].momentum()), (extremal.momentum(), extremal.final_momentum()));
+    assert_eq!((states[0].momentum(), states[STEPS].momentum()), (*extremal.momentum(), *extremal.final_momentum()));
     assert_eq!(states[STEPS].configuration(), extremal.end());
     assert!(extremal.residual() < NEAR, "{:e}", extremal.residual());
     Ok(())

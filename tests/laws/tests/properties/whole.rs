@@ -2,16 +2,28 @@
 
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::{
-    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, great_circle,
-    invert_uniform, kinetic_energy_uniform, matrix_of, on_sphere, orientation_of_inertia, orientation_of_uniform,
-    perpendicular, projection, pushed, shifted, skew, skew_components, skew_outer, skew_times, tangent,
+    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, invert_uniform,
+    kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia, orientation_of_uniform, projection,
+    push, shifted, skew, skew_components, skew_outer, skew_times, tangent, turn_freely, turn_great_circle,
+    turned_in_plane,
 };
 use clebsch::num_dual::Dual64;
-use clebsch::{Error, F64x4, Space};
+use clebsch::{Clebsch, Error, F64x4, Space};
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
 
 type Square = SMatrix<f64, 5, 5>;
+
+/// C. Neumann's point on S⁷, stepped in (q, w).
+#[derive(Clebsch, Clone)]
+#[clebsch(
+    action    = |F: SO<8>, q: Unit<SVector<8>>| F * q,
+    cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    potential = |q| self.stiffness.dot(&q.component_mul(&q)) / 2,
+)]
+struct Neumann {
+    stiffness: SVector<f64, 8>,
+}
 
 fn square() -> BoxedStrategy<Square> {
     matrix(1.0)
@@ -137,20 +149,69 @@ proptest! {
     fn points_follow_great_circles(q in vector::<5>(1.0), w in vector::<5>(0.8), g in vector::<5>(1.0), a in 0.01_f64..0.5) {
         prop_assume!(q.norm() > 0.1 && w.norm() > 0.1);
         let q = q.normalize();
-        let w = perpendicular(&q, &w);
+        let mut w = w;
+        push(&q, &mut w, &g, 0.0);
         prop_assert!(q.dot(&w).abs() < 1e-15);
-        let momentum = |q: &SVector<f64, 5>, w: &SVector<f64, 5>| skew_outer::<f64, 5, 10>(w, q);
+        let momentum = |q: &SVector<f64, 5>, w: &SVector<f64, 5>| momentum_of_tangent::<f64, 5, 10>(q, w);
+        let matrix: Square = skew(&momentum(&q, &w));
+        prop_assert!((matrix - (w * q.transpose() - q * w.transpose())).amax() < 1e-15);
         prop_assert!((tangent(&q, &momentum(&q, &w)) - w).amax() < 1e-14);
-        prop_assert!((pushed(&q, &w, &g) - (w + g - q * q.dot(&g))).amax() < 1e-14);
-        let (next, turned) = great_circle(a, &q, &w)?;
+        let mut pushed = w;
+        push(&q, &mut pushed, &g, 0.5);
+        prop_assert!((pushed - (w + (g - q * q.dot(&g)) / 2.0)).amax() < 1e-14);
+        let (mut next, mut turned) = (q, w);
+        turn_great_circle(a, &mut next, &mut turned)?;
+        let mut freely = q;
+        turn_freely(a, &(q, w), &mut freely)?;
+        prop_assert!((freely - next).amax() < 1e-15);
         prop_assert!(near(next.norm(), 1.0) && next.dot(&turned).abs() < 1e-14);
         prop_assert!((momentum(&next, &turned) - momentum(&q, &w)).amax() < 1e-14);
         prop_assert!(near((next - q * next.dot(&q)).norm(), a * w.norm()), "by the angle with that sine");
-        let (long, short) = (next * (1.0 + 1e-10), turned);
-        let (mended, longer) = on_sphere(long, short);
+        let long = q * (1.0 + 1e-10);
+        let (mut mended, mut turned) = (long, w);
+        turn_great_circle(a, &mut mended, &mut turned)?;
         prop_assert!((mended.norm() - 1.0).abs() < 1e-15 * 4.0);
-        prop_assert!((momentum(&mended, &longer) - momentum(&long, &short)).amax() < 1e-14);
-        prop_assert!(matches!(great_circle(2.0 / w.norm(), &q, &w), Err(Error::Unsolvable { .. })), "too far");
+        prop_assert!((momentum(&mended, &turned) - momentum(&long, &w)).amax() < 1e-14);
+        let refused = turn_great_circle(2.0 / w.norm(), &mut mended, &mut turned);
+        prop_assert!(matches!(refused, Err(Error::Unsolvable { .. })), "too far");
+    }
+
+    /// On spheres of any radius, with covectors that have a part along q, by the matrix of the group element: I + aM + (aM)²/(1 + c).
+    #[test]
+    fn covectors_are_turned_in_their_plane(q in vector::<5>(2.0), p in vector::<5>(1.0), part in 0.01_f64..0.99) {
+        let m = p * q.transpose() - q * p.transpose();
+        let size = (m.norm_squared() / 2.0).sqrt();
+        prop_assume!(q.norm() > 0.1 && size > 0.01);
+        let a = part / size;
+        let f = Square::identity() + m * a + m * m * (a * a / (1.0 + (1.0 - part * part).sqrt()));
+        let (next, turned) = turned_in_plane(a, &q, &p)?;
+        prop_assert!((next - f * q).amax() < 1e-12 && (turned - f * p).amax() < 1e-12);
+        let fraction = 1.0 / (2.0 * size * a);
+        let refused = turned_in_plane(2.0 * a / part, &q, &p);
+        prop_assert!(matches!(refused, Err(Error::Unsolvable { solvable_fraction, .. }) if near(solvable_fraction, fraction * part)), "{:?}", refused);
+    }
+
+    /// What a state holds is the covector w ⊥ q with N = J(q, w), and the motion is that of the Legendre transforms.
+    #[test]
+    fn states_hold_what_they_step_in(stiffness in vector::<8>(2.0), q in vector::<8>(1.0), w in vector::<8>(1.0)) {
+        prop_assume!(q.norm() > 0.1);
+        let q = q.normalize();
+        let w = w - q * q.dot(&w);
+        let (h, stepper) = (0.05, Neumann { stiffness }.into_stepper(0.05)?);
+        let mu = stepper.momentum_map(&q, &w);
+        prop_assert!((Neumann::held(&q, &mu) - w).amax() < 1e-14);
+        prop_assert!((Neumann::momentum_held(&q, &w) - mu).amax() < 1e-14);
+        let start = stepper.state(q, mu)?;
+        prop_assert!((start.momentum() - mu).amax() < 1e-14);
+        let next = stepper.step(&start)?;
+        let f = stepper.inverse_legendre(&q, &mu)?;
+        prop_assert!((f * q - next.configuration()).amax() < 1e-13);
+        prop_assert!((stepper.system().legendre_next(h, 0.0, &q, &f) - next.momentum()).amax() < 1e-13);
+        let together = stepper.advance(&start, 5)?;
+        let one_by_one = (0..5).try_fold(start, |state, _| stepper.step(&state))?;
+        prop_assert!((together.configuration() - one_by_one.configuration()).amax() < 1e-13);
+        prop_assert!((together.momentum() - one_by_one.momentum()).amax() < 1e-13);
+        prop_assert_eq!(stepper.advance(&start, 0)?, start);
     }
 
     /// A projection in other units is the same, and so is the distance from it.

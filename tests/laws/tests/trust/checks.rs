@@ -54,7 +54,7 @@ fn run<S: OnItself>(system: &S, h: f64, (q, mu): (S::Q, S::Mu), steps: usize) ->
     let mut states = vec![(q, mu)];
     for _ in 0..steps {
         state = stepper.step(&state).expect("a solvable step");
-        states.push((*state.configuration(), *state.momentum()));
+        states.push((*state.configuration(), state.momentum()));
     }
     states
 }
@@ -118,7 +118,7 @@ pub fn representations_agree<S: OnItself>(system: &S, problem: &Precise, random:
         upstairs = stepper.step_symmetric(&upstairs).expect("a solvable step");
         state = stepper.step(&state).expect("a solvable step");
         let momentum = stepper.momentum_map(upstairs.configuration(), upstairs.covector());
-        let distance = far(upstairs.configuration(), state.configuration()).max(far(&momentum, state.momentum()));
+        let distance = far(upstairs.configuration(), state.configuration()).max(far(&momentum, &state.momentum()));
         assert!(distance < 1e-11, "{}: representations {distance:.1e} apart", S::NAME);
     }
 }
