@@ -11,7 +11,7 @@ mod sites;
 pub use sites::{SiteError, SiteStorage, Sites};
 
 use crate::space::larger;
-use crate::{Clebsch, Error, Scalar, Space};
+use crate::{Clebsch, Clock, Error, Scalar, Space, Time};
 use core::array::from_fn;
 
 /// The configuration of a site.
@@ -271,56 +271,93 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// # Errors
     /// Those of a step of a site.
     #[inline]
-    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_drift(
         &self,
         constants: &Constants<Self, N>,
         t: Self::Scalar,
+        steps: usize,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
     ) -> Result<Arrays<Self, N>, Error> {
         let (mut next, mut moved) = (*q, *mu);
-        self.drift_into(constants, t, q, mu, None, &mut next, &mut moved).map_err(|(_, error)| error)?;
+        let mut clock = Clock::at(t);
+        for _ in 0..steps {
+            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, None)?;
+            clock = clock.after_step(constants.h);
+        }
         Ok((next, moved))
     }
 
-    /// Half a kick, the move, half a kick.
+    /// Moves all sites with their momenta, and with `kick` beside them, where they stand.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[inline]
+    fn drift_in_place(
+        &self,
+        constants: &Constants<Self, N>,
+        t: Self::Scalar,
+        q: &mut [Point<Self, N>; N],
+        mu: &mut [SiteMomentum<Self, N>; N],
+        kick: Option<&[SiteMomentum<Self, N>; N]>,
+    ) -> Result<(), Error> {
+        for i in 0..N {
+            let n = match kick {
+                Some(kick) => plus(&mu[i], &kick[i]),
+                None => mu[i],
+            };
+            (q[i], mu[i]) = self.moved(constants, t, i, &q[i], &n)?;
+        }
+        Ok(())
+    }
+
+    /// As many steps, each half a kick, the move, half a kick.
     ///
     /// # Errors
     /// Those of a step of a site.
     #[inline]
     #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
-    fn power_step_of_second_order(
+    fn power_steps_of_second_order(
         &self,
         constants: &Constants<Self, N>,
         t: Self::Scalar,
+        steps: usize,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
         impulse: &[SiteMomentum<Self, N>; N],
     ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
-        let (mut next, mut momentum) = (*q, *mu);
-        self.drift_into(constants, t, q, mu, Some(impulse), &mut next, &mut momentum).map_err(|(_, error)| error)?;
-        let kick = self.power_kick(t + constants.h, &next, constants.part(-0.5));
-        momentum.iter_mut().zip(&kick).for_each(|(momentum, kick)| *momentum = plus(momentum, kick));
-        Ok((next, momentum, kick))
+        let (mut next, mut moved, mut kick) = (*q, *mu, *impulse);
+        let (mut gradient, mut clock) = ([Space::origin(); N], Clock::at(t));
+        for _ in 0..steps {
+            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, Some(&kick))?;
+            clock = clock.after_step(constants.h);
+            self.kick_into(clock.now(), &next, constants.part(-0.5), &mut gradient, &mut kick, &mut moved);
+        }
+        Ok((next, moved, kick))
     }
 
-    /// The move, and a whole kick.
+    /// As many steps, each the move, and a whole kick.
     ///
     /// # Errors
     /// Those of a step of a site.
     #[inline]
     #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
-    fn power_step_of_first_order(
+    fn power_steps_of_first_order(
         &self,
         constants: &Constants<Self, N>,
         t: Self::Scalar,
+        steps: usize,
         q: &[Point<Self, N>; N],
         mu: &[SiteMomentum<Self, N>; N],
     ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], ()), Error> {
-        let (next, moved) = self.power_drift(constants, t, q, mu)?;
-        let kick = self.power_kick(t + constants.h, &next, constants.part(-1.0));
-        Ok((next, from_fn(|i| plus(&moved[i], &kick[i])), ()))
+        let (mut next, mut moved, mut kick) = (*q, *mu, [Space::origin(); N]);
+        let (mut gradient, mut clock) = ([Space::origin(); N], Clock::at(t));
+        for _ in 0..steps {
+            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, None)?;
+            clock = clock.after_step(constants.h);
+            self.kick_into(clock.now(), &next, constants.part(-1.0), &mut gradient, &mut kick, &mut moved);
+        }
+        Ok((next, moved, ()))
     }
 
     /// F⁻ℓd, where the kick at the start has the weight `part` of a step.

@@ -139,8 +139,18 @@ fn main() {
     println!("Time of a step of one of N spins in a ring, ns; ratio to by hand. {} bytes a spin by `Sites`\n", 7 * 24);
     println!("{:>8} {:24} {:>8} {:>8} {:>6}", "N", "", "least", "median", "ratio");
     let growth = [
-        (4, rings::<4>(Some(&|steps| written_out(Ring4 { exchange: EXCHANGE, field: FIELD }, steps)))),
-        (16, rings::<16>(Some(&|steps| written_out(Ring16 { exchange: EXCHANGE, field: FIELD }, steps)))),
+        (
+            4,
+            rings::<4>(Some([&|steps| written_out(Ring4 { exchange: EXCHANGE, field: FIELD }, steps), &|steps| {
+                written_out_advanced(Ring4 { exchange: EXCHANGE, field: FIELD }, steps)
+            }])),
+        ),
+        (
+            16,
+            rings::<16>(Some([&|steps| written_out(Ring16 { exchange: EXCHANGE, field: FIELD }, steps), &|steps| {
+                written_out_advanced(Ring16 { exchange: EXCHANGE, field: FIELD }, steps)
+            }])),
+        ),
         (64, rings::<64>(None)),
         (1000, rings::<1000>(None)),
         (100_000, rings::<100_000>(None)),
@@ -174,8 +184,21 @@ where
     steps
 }
 
+/// The same by `advance`: a function of its own, as the two together would not be inlined.
+fn written_out_advanced<S, const M: usize, const N: usize>(ring: S, steps: u64) -> u64
+where
+    S: Clebsch<Scalar = f64, Configuration = [Vector3<f64>; N], Momentum = nalgebra::SVector<f64, M>> + Clone,
+{
+    let (q, mu) = spins(N);
+    let stepper = ring.stepper(H).expect("a ring");
+    let points: [Vector3<f64>; N] = std::array::from_fn(|i| q[i]);
+    let state = stepper.state(points, nalgebra::SVector::from_fn(|k, _| mu[k / 3][k % 3])).expect("a state");
+    std::hint::black_box(stepper.advance(&state, steps as usize).expect("steps"));
+    steps
+}
+
 /// Times all ways to step N spins; gives the time of a step by `Sites`.
-fn rings<const N: usize>(unrolled: Option<&dyn Fn(u64) -> u64>) -> f64 {
+fn rings<const N: usize>(unrolled: Option<[&dyn Fn(u64) -> u64; 2]>) -> f64 {
     let (q, mu) = spins(N);
     let ring = Ring::<N> { exchange: EXCHANGE, field: FIELD };
     let by_sites = RefCell::new(Sites::new(ring.clone(), H, SiteStorage::of(q.clone(), mu.clone())).expect("a ring"));
@@ -191,6 +214,12 @@ fn rings<const N: usize>(unrolled: Option<&dyn Fn(u64) -> u64>) -> f64 {
         }
         std::hint::black_box(state);
     };
+    let advanced = |steps: u64| {
+        let stepper = ring.stepper(H).expect("a ring");
+        let (q, mu): ([_; N], [_; N]) = (std::array::from_fn(|i| q[i]), std::array::from_fn(|i| mu[i]));
+        let state = stepper.state(q, mu).expect("a state");
+        std::hint::black_box(stepper.advance(&state, steps as usize).expect("steps"));
+    };
     let mut names = vec!["by hand", "Sites"];
     let mut contestants: Vec<Run<'_>> = vec![
         Box::new(|rounds| (0..rounds).for_each(|_| stepped())),
@@ -199,12 +228,16 @@ fn rings<const N: usize>(unrolled: Option<&dyn Fn(u64) -> u64>) -> f64 {
     if N <= 64 {
         names.push("array");
         contestants.push(Box::new(|rounds| in_array(rounds * steps)));
+        names.push("array, advance");
+        contestants.push(Box::new(|rounds| advanced(rounds * steps)));
     }
     if let Some(unrolled) = unrolled {
-        names.push("written out");
-        contestants.push(Box::new(move |rounds| {
-            unrolled(rounds * steps);
-        }));
+        for (name, unrolled) in ["written out", "written out, advance"].into_iter().zip(unrolled) {
+            names.push(name);
+            contestants.push(Box::new(move |rounds| {
+                unrolled(rounds * steps);
+            }));
+        }
     }
     report(N, &names, &interleaved(&contestants), steps as f64 * N as f64) * N as f64
 }

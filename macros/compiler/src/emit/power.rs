@@ -122,16 +122,19 @@ impl<'g> Emitter<'_, 'g> {
         let order = self.model.order.number();
         let derivation = super::derivation(self.program);
         let checks = self.checks_of_terms(power);
-        let (kick, step) = match (power.terms.is_empty(), is_second) {
+        let kick = is_second.then(|| quote!(#private::Power::power_kick(self, t, q, constants.part(-0.5))));
+        let stepped = |steps: TokenStream| match (power.terms.is_empty(), is_second) {
             (true, _) => {
-                (quote!(), quote!(#private::Power::power_drift(self, constants, t, q, mu).map(|(q, mu)| (q, mu, ()))))
+                quote!(#private::Power::power_drift(self, constants, t, #steps, q, mu).map(|(q, mu)| (q, mu, ())))
             }
-            (false, true) => (
-                quote!(#private::Power::power_kick(self, t, q, constants.part(-0.5))),
-                quote!(#private::Power::power_step_of_second_order(self, constants, t, q, mu, impulse)),
-            ),
-            (false, false) => (quote!(), quote!(#private::Power::power_step_of_first_order(self, constants, t, q, mu))),
+            (false, true) => {
+                quote!(#private::Power::power_steps_of_second_order(self, constants, t, #steps, q, mu, impulse))
+            }
+            (false, false) => {
+                quote!(#private::Power::power_steps_of_first_order(self, constants, t, #steps, q, mu))
+            }
         };
+        let (step, several) = (stepped(quote!(1)), stepped(quote!(steps)));
         let (start, end) = match (power.terms.is_empty(), is_second) {
             (true, _) => (quote!(0.0), quote!(0.0)),
             (false, true) => (quote!(-0.5), quote!(-0.5)),
@@ -222,11 +225,25 @@ impl<'g> Emitter<'_, 'g> {
                     constants: &Self::Constants,
                     t: #scalar,
                     q: &Self::Configuration,
-                    mu: &Self::Momentum,
+                    mu: &Self::Held,
                     impulse: &Self::Impulse,
                     u: &Self::Input,
-                ) -> ::core::result::Result<(Self::Configuration, Self::Momentum, Self::Impulse), #krate::Error> {
+                ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
                     #step
+                }
+                /// Several steps, in place.
+                #[inline]
+                fn steps(
+                    &self,
+                    constants: &Self::Constants,
+                    (t, _): (#scalar, #scalar),
+                    steps: ::core::primitive::usize,
+                    q: &Self::Configuration,
+                    mu: &Self::Held,
+                    impulse: &Self::Impulse,
+                    u: &Self::Input,
+                ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
+                    #several
                 }
                 /// One step of the discrete symmetric representation.
                 fn step_symmetric(
