@@ -33,7 +33,9 @@ pub use crate::parameters::{
     projection,
 };
 pub use crate::power::{Power, PowerConstants, wrapped};
-pub use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
+pub use crate::sphere::{
+    in_place, momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane,
+};
 pub use crate::splitting::{GRADIENT_4, GRADIENT_6, PLAIN_4, PLAIN_6, split};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,

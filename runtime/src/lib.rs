@@ -37,6 +37,7 @@
 //! |---|---|
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | step large states in place, on the heap if you like | [`Integrator`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
@@ -63,7 +64,7 @@
 //! |---|---|
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
-//! | `alloc` | `Ensemble`: many bodies, on the heap |
+//! | `alloc` | `Ensemble`: many bodies, on the heap; `Integrator::on_heap`: one large state there |
 //! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
@@ -156,6 +157,7 @@ mod free_rotation;
 mod free_rotation_4d;
 pub mod group;
 pub mod implicit;
+mod integrator;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod linear;
@@ -195,6 +197,7 @@ pub use double_double::DoubleDouble;
 #[cfg(feature = "alloc")]
 pub use ensemble::{Ensemble, Failure};
 pub use error::Error;
+pub use integrator::Integrator;
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;

@@ -336,6 +336,27 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         Ok((next, moved, kick))
     }
 
+    /// A step into the place of another state: the move, with `kick` beside the momenta, and the kick after it, with this part of a step.
+    ///
+    /// # Errors
+    /// Those of a step of a site.
+    #[inline]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments, reason = "two states, and what is between")]
+    fn power_step_into(
+        &self,
+        constants: &Constants<Self, N>,
+        t: Self::Scalar,
+        (q, mu, kick): (&[Point<Self, N>; N], &[SiteMomentum<Self, N>; N], Option<&[SiteMomentum<Self, N>; N]>),
+        part: f64,
+        (next, moved): (&mut [Point<Self, N>; N], &mut [SiteMomentum<Self, N>; N]),
+        left: &mut [SiteMomentum<Self, N>; N],
+    ) -> Result<(), Error> {
+        self.drift_into(constants, t, q, mu, kick, next, moved).map_err(|(_, error)| error)?;
+        let mut gradient = [Space::origin(); N];
+        self.kick_into(t + constants.h, next, constants.part(part), &mut gradient, left, moved);
+        Ok(())
+    }
+
     /// As many steps, each the move, and a whole kick.
     ///
     /// # Errors

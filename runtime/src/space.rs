@@ -137,7 +137,8 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
 
     #[inline]
     fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
-        self.iter().fold(true, |all, &x| all & visit(x))
+        // a slice, for the compiler does not see that the entries of a matrix stand side by side
+        self.as_slice().iter().fold(true, |all, &x| all & visit(x))
     }
     #[inline]
     fn max_abs(&self) -> T {
@@ -169,7 +170,7 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     }
     #[inline]
     fn finite(&self) -> T::Mask {
-        self.iter().fold(T::Mask::everywhere(), |finite, x| finite & x.finite())
+        self.as_slice().iter().fold(T::Mask::everywhere(), |finite, x| finite & x.finite())
     }
 }
 

@@ -101,6 +101,28 @@ impl<S: Clebsch> Stepper<S> {
         Ok(next)
     }
 
+    /// One step into the place of another state, which holds none where this fails.
+    ///
+    /// # Errors
+    /// Those of [`step_with`](Self::step_with).
+    #[inline]
+    pub(crate) fn step_into(&self, state: &State<S>, u: &S::Input, next: &mut State<S>) -> Result<(), Error> {
+        if size_of::<S::Input>() > 0 && !u.is_finite() {
+            return Err(Error::NotFinite { name: "the input" });
+        }
+        let (t, State { configuration: q, held, impulse, .. }) = (state.time.now(), state);
+        let into = (&mut next.configuration, &mut next.held, &mut next.impulse);
+        let stepped = match size_of::<S::Impulse>() == 0 || state.h == self.h {
+            true => self.system.step_into(&self.constants, t, (q, held, impulse), u, into),
+            false => self.system.step_into(&self.constants, t, (q, held, &self.impulse_of(state)), u, into),
+        };
+        if stepped.is_err() {
+            return Err(self.refused(state, u));
+        }
+        (next.time, next.h) = (state.time.after_step(self.h), self.h);
+        if next.is_finite() { Ok(()) } else { Err(self.beyond(next)) }
+    }
+
     /// The state after `steps` steps.
     ///
     /// The same as stepping so often but for rounding, and faster: no state between is made, and splittings drift from one step into the next.

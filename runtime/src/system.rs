@@ -148,6 +148,25 @@ pub trait Clebsch {
         u: &Self::Input,
     ) -> Result<(Self::Configuration, Self::Held, Self::Impulse), Error>;
 
+    /// The same step, from the parts of a state into the place of those of another: what points on large spheres and arrays of sites are saved is to hand
+    /// them on by value. After an error the other state is none.
+    ///
+    /// # Errors
+    /// As [`inverse_legendre`](Self::inverse_legendre).
+    #[allow(clippy::type_complexity, reason = "a place, and one to write to")]
+    #[inline]
+    fn step_into(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
+        u: &Self::Input,
+        (next, held, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
+    ) -> Result<(), Error> {
+        (*next, *held, *left) = self.step(constants, t, q, mu, impulse, u)?;
+        Ok(())
+    }
+
     /// `steps` steps of size `h` from the time t, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts,
     /// both may be made at once.
     ///

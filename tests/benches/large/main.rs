@@ -6,8 +6,9 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Integrator};
 use nalgebra::{SMatrix, SVector};
+use std::cell::RefCell;
 use std::hint::black_box;
 use timing::{Run, interleaved};
 
@@ -225,6 +226,11 @@ macro_rules! points {
             contestants.push(Box::new(move |steps| stepped(&system, q, mu, false, steps)));
             names.push(concat!($name, ", advance"));
             contestants.push(Box::new(move |steps| stepped(&other, q, mu, true, steps)));
+            names.push(concat!($name, ", Integrator"));
+            let stepper = $system { stiffness }.into_stepper(H).expect("a regular system");
+            let start = stepper.state(q, mu).expect("a state");
+            let integrator = RefCell::new(Integrator::new(stepper, start));
+            contestants.push(Box::new(move |steps| (0..steps).for_each(|_| integrator.borrow_mut().step().expect("a step"))));
         )*
         report($n, &names, &contestants)
     }};

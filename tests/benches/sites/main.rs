@@ -6,7 +6,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Clebsch, SiteStorage, Sites};
+use clebsch::{Clebsch, Integrator, SiteStorage, Sites};
 use nalgebra::Vector3;
 use std::cell::RefCell;
 use timing::{Run, Time, interleaved};
@@ -228,6 +228,13 @@ fn rings<const N: usize>(unrolled: Option<[&dyn Fn(u64) -> u64; 2]>) -> f64 {
     if N <= 64 {
         names.push("array");
         contestants.push(Box::new(|rounds| in_array(rounds * steps)));
+        names.push("array, Integrator");
+        let stepper = ring.stepper(H).expect("a ring");
+        let start = stepper.state(std::array::from_fn(|i| q[i]), std::array::from_fn(|i| mu[i])).expect("a state");
+        let integrator = RefCell::new(Integrator::new(stepper, start));
+        contestants.push(Box::new(move |rounds| {
+            (0..rounds * steps).for_each(|_| integrator.borrow_mut().step().expect("a step"));
+        }));
         names.push("array, advance");
         contestants.push(Box::new(|rounds| advanced(rounds * steps)));
     }

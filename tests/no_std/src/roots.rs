@@ -85,6 +85,10 @@ macro_rules! stepping {
                                                  u: &<S as Clebsch>::Input| {
                 *state = stepper.step_with(state, u)?;
             });
+            $crate::export!("integrator", $name, |integrator: &mut Integrator<S>, u: &<S as Clebsch>::Input| {
+                integrator.step_with(u)?;
+                integrator.advance(2)?;
+            });
             $crate::export!("step_each", $name, |stepper: &Stepper<S>, state: &mut State<S>| {
                 *state = stepper.step_each(state).0;
             });

@@ -70,15 +70,51 @@ impl Emitter<'_, '_> {
 
     /// A step, or those that it is composed of, in (q, w).
     fn great_circles_taken(&self) -> TokenStream {
-        let (private, step) = (&self.paths.private, &self.names.step);
+        let private = &self.paths.private;
+        let turned = self.turned_in_place(&quote!(1));
         match self.program.formulas.stages() {
-            None => quote!(#step::euler_poincare_steps(&#step { system: self, constants }, 1, q, mu, impulse)),
+            None => quote!(#private::in_place((*q, *mu, *impulse), #turned)),
             Some(_) => quote! {
-                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, (q, mu, impulse)| {
-                    #step::euler_poincare_steps(&#step { system: self, constants }, 1, &q, &mu, &impulse)
+                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, state| {
+                    #private::in_place(state, #turned)
                 })
             },
         }
+    }
+
+    /// What makes as many steps in (q, w) where they stand.
+    fn turned_in_place(&self, steps: &TokenStream) -> TokenStream {
+        let step = &self.names.step;
+        quote! {
+            |(q, held, impulse)| {
+                #step::euler_poincare_steps(&#step { system: self, constants }, #steps, q, held, impulse)
+            }
+        }
+    }
+
+    /// The method that makes a step into the place of another state, where it is made in (q, w).
+    pub(super) fn step_into_taken(&self) -> Option<TokenStream> {
+        if !self.follows_great_circles() || self.program.formulas.stages().is_some() {
+            return None;
+        }
+        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        Some(quote! {
+            /// One step into the place of another state.
+            #[inline]
+            fn step_into(
+                &self,
+                constants: &Self::Constants,
+                t: #scalar,
+                (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
+                u: &Self::Input,
+                (next, held, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
+            ) -> ::core::result::Result<(), #krate::Error> {
+                *next = *q;
+                *held = *mu;
+                *left = *impulse;
+                #step::euler_poincare_steps(&#step { system: self, constants }, 1, next, held, left)
+            }
+        })
     }
 
     /// A step of the discrete symmetric representation.
@@ -109,15 +145,17 @@ impl Emitter<'_, '_> {
     /// The method that makes several steps, where that is less than each of them.
     pub(super) fn steps_taken(&self) -> TokenStream {
         let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
-        let step = &self.names.step;
+        let (private, step) = (&self.paths.private, &self.names.step);
         let (title, taken) = match self.split_steps(&quote!(steps)) {
             Some(split) => {
                 ("Several steps, the drift at the end of one and that at the start of the next in one.", split)
             }
-            None if self.follows_great_circles() && self.program.formulas.stages().is_none() => (
-                "Several steps in (q, w).",
-                quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu, impulse)),
-            ),
+            None if self.follows_great_circles() && self.program.formulas.stages().is_none() => {
+                ("Several steps in (q, w).", {
+                    let turned = self.turned_in_place(&quote!(steps));
+                    quote!(#private::in_place((*q, *mu, *impulse), #turned))
+                })
+            }
             None if self.keeps_motions() => (
                 "Several steps of one motion.",
                 quote!(#step::euler_poincare_steps(&#step { system: self, constants }, steps, q, mu, impulse)),

@@ -135,6 +135,30 @@ impl<'g> Emitter<'_, 'g> {
             }
         };
         let (step, several) = (stepped(quote!(1)), stepped(quote!(steps)));
+        let step_into = (!power.terms.is_empty()).then(|| {
+            let (kick, part, left) = match is_second {
+                true => (quote!(::core::option::Option::Some(impulse)), quote!(-0.5), quote!(left)),
+                false => (
+                    quote!(::core::option::Option::None),
+                    quote!(-1.0),
+                    quote!(&mut [#private::Space::<#scalar>::origin(); #length]),
+                ),
+            };
+            quote! {
+                /// One step into the place of another state.
+                #[inline]
+                fn step_into(
+                    &self,
+                    constants: &Self::Constants,
+                    t: #scalar,
+                    (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
+                    u: &Self::Input,
+                    (next, moved, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
+                ) -> ::core::result::Result<(), #krate::Error> {
+                    #private::Power::power_step_into(self, constants, t, (q, mu, #kick), #part, (next, moved), #left)
+                }
+            }
+        });
         let (start, end) = match (power.terms.is_empty(), is_second) {
             (true, _) => (quote!(0.0), quote!(0.0)),
             (false, true) => (quote!(-0.5), quote!(-0.5)),
@@ -231,6 +255,7 @@ impl<'g> Emitter<'_, 'g> {
                 ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
                     #step
                 }
+                #step_into
                 /// Several steps, in place.
                 #[inline]
                 fn steps(

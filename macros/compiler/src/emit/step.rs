@@ -346,17 +346,15 @@ impl Emitter<'_, '_> {
         let (configuration, held, impulse) = (self.configuration_type(), self.held_type(), self.impulse_type());
         let symmetric = self.symmetric_along_great_circles();
         let [one, two] = [1.0, 2.0].map(|weight| quote!(#private::Scalar::from_f64(#weight)));
-        let push =
-            |gradient: TokenStream, weight: &TokenStream| quote!(#private::push(&q, &mut w, &#gradient, #weight););
+        let push = |gradient: TokenStream, weight: &TokenStream| quote!(#private::push(q, w, &#gradient, #weight););
         let [start, end] = self.gradients_of_great_circles();
-        let turned = quote!(#private::turn_great_circle(a, &mut q, &mut w)?;);
-        let gradient = quote!(gradient = self.start_gradient(&q););
-        let (steps, left) = match (start, end) {
+        let turned = quote!(#private::turn_great_circle(a, q, w)?;);
+        let steps = match (start, end) {
             _ if self.shares_impulse() => {
-                let (half, whole) = (push(quote!(gradient), &one), push(quote!(gradient), &two));
+                let (half, whole) = (push(quote!(*gradient), &one), push(quote!(*gradient), &two));
+                let gradient = quote!(*gradient = self.start_gradient(q););
                 // between two steps both kicks are one
-                let steps = quote! {
-                    let mut gradient = *impulse;
+                quote! {
                     if steps > 0 {
                         #half
                         for _ in 1..steps {
@@ -368,54 +366,44 @@ impl Emitter<'_, '_> {
                         #gradient
                         #half
                     }
-                };
-                (steps, quote!(gradient))
+                }
             }
             (start, end) => {
-                let [start, end] = [start, end].map(|name| name.map(|name| push(quote!(self.#name(&q)), &one)));
-                (quote!(for _ in 0..steps { #start #turned #end }), quote!(()))
+                let [start, end] = [start, end].map(|name| name.map(|name| push(quote!(self.#name(q)), &one)));
+                quote!(for _ in 0..steps { #start #turned #end })
             }
         };
-        if self.is_free_on_great_circles() {
-            return quote! {
-                /// q ↦ q⁺, as many times as there are steps, with N = vuᵀ − uvᵀ, which stays.
-                ///
-                /// q⁺ = cq + aw with w = Nq, a = h/κ and c² = 1 − a²|w|².
-                #[inline]
-                fn euler_poincare_steps(
-                    &self,
-                    steps: ::core::primitive::usize,
-                    q: &#configuration,
-                    plane: &#held,
-                    impulse: &#impulse,
-                ) -> ::core::result::Result<(#configuration, #held, #impulse), #krate::Error> {
-                    let mut q = *q;
-                    let a = self.constants.step_size * self.constants.inertia_inverse;
-                    for _ in 0..steps {
-                        #private::turn_freely(a, plane, &mut q)?;
-                    }
-                    ::core::result::Result::Ok((q, *plane, ()))
-                }
-                #symmetric
-            };
-        }
+        let (plane, turns) = match self.is_free_on_great_circles() {
+            true => (quote!(plane), quote!(for _ in 0..steps { #private::turn_freely(a, plane, q)?; })),
+            false => (quote!(w), steps),
+        };
+        let documentation: &[&str] = match self.is_free_on_great_circles() {
+            true => &[
+                "q ↦ q⁺, as many times as there are steps, with N = vuᵀ − uvᵀ, which stays.",
+                "",
+                "q⁺ = cq + aw with w = Nq, a = h/κ and c² = 1 − a²|w|².",
+            ],
+            false => &[
+                "(q, w) ↦ (q⁺, w⁺), as many times as there are steps, with N = wqᵀ − qwᵀ.",
+                "",
+                "w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁; what is not perpendicular to q is taken off w in each",
+                "step, which rounding makes necessary.",
+            ],
+        };
+        let documentation = docs::lines(&documentation.iter().map(ToString::to_string).collect::<Vec<_>>());
         quote! {
-            /// (q, w) ↦ (q⁺, w⁺), as many times as there are steps, with N = wqᵀ − qwᵀ.
-            ///
-            /// w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁; what is not perpendicular to q is taken off w in each
-            /// step, which rounding makes necessary.
+            #documentation
             #[inline]
             fn euler_poincare_steps(
                 &self,
                 steps: ::core::primitive::usize,
-                q: &#configuration,
-                w: &#held,
-                impulse: &#impulse,
-            ) -> ::core::result::Result<(#configuration, #held, #impulse), #krate::Error> {
-                let (mut q, mut w) = (*q, *w);
+                q: &mut #configuration,
+                #plane: &mut #held,
+                gradient: &mut #impulse,
+            ) -> ::core::result::Result<(), #krate::Error> {
                 let a = self.constants.step_size * self.constants.inertia_inverse;
-                #steps
-                ::core::result::Result::Ok((q, w, #left))
+                #turns
+                ::core::result::Result::Ok(())
             }
             #symmetric
         }

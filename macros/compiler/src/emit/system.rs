@@ -339,7 +339,7 @@ impl Emitter<'_, '_> {
         let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
         let time = self.time_argument();
         let (taken, several, taken_symmetric) = (self.step_taken(), self.steps_taken(), self.symmetric_step_taken());
-        let inline = self.inline_of_steps();
+        let (inline, into) = (self.inline_of_steps(), self.step_into_taken());
         let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
         let [whole, first] = self.whole_and_first();
         let impulse = match self.shares_impulse() {
@@ -407,6 +407,7 @@ impl Emitter<'_, '_> {
             ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
                 #taken
             }
+            #into
             #several
             /// One step of the discrete symmetric representation.
             fn step_symmetric(

@@ -142,6 +142,9 @@ proptest! {
         prop_assert_eq!(next, image);
         prop_assert_eq!(kick, ring.power_kick(t + H, &next, constants.part(-0.5)));
         prop_assert!(apart(&momenta, &std::array::from_fn(|i| moved[i] + kick[i])) < 1e-15);
+        let (mut image, mut moved, mut left) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::x(); N]);
+        ring.power_step_into(&constants, t, (&q, &mu, Some(&start)), -0.5, (&mut image, &mut moved), &mut left)?;
+        prop_assert_eq!((image, moved, left), (next, momenta, kick));
         let f = ring.power_inverse_legendre(&constants, t, &q, &mu, -0.5)?;
         prop_assert!(apart(&ring.act_on_sites(&f, &q), &next) < 1e-13);
         prop_assert!(apart(&ring.power_legendre(H, t, &q, &f, -0.5), &mu) < 1e-12);

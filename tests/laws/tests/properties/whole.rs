@@ -2,13 +2,13 @@
 
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::{
-    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, invert_uniform,
-    kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia, orientation_of_uniform, projection,
-    push, shifted, skew, skew_components, skew_outer, skew_times, tangent, turn_freely, turn_great_circle,
-    turned_in_plane,
+    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, in_place,
+    invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
+    orientation_of_uniform, projection, push, shifted, skew, skew_components, skew_outer, skew_times, tangent,
+    turn_freely, turn_great_circle, turned_in_plane,
 };
 use clebsch::num_dual::Dual64;
-use clebsch::{Clebsch, Error, F64x4, Space};
+use clebsch::{Clebsch, Error, F64x4, Integrator, Space};
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
 
@@ -212,6 +212,45 @@ proptest! {
         prop_assert!((together.configuration() - one_by_one.configuration()).amax() < 1e-13);
         prop_assert!((together.momentum() - one_by_one.momentum()).amax() < 1e-13);
         prop_assert_eq!(stepper.advance(&start, 0)?, start);
+    }
+
+    /// An integrator makes the steps of its stepper, and keeps its state where one fails.
+    #[test]
+    fn integrators_step_in_place(stiffness in vector::<8>(2.0), q in vector::<8>(1.0), w in vector::<8>(1.0), count in 0_usize..6) {
+        prop_assume!(q.norm() > 0.1 && w.norm() > 0.1);
+        let q = q.normalize();
+        let point = Neumann { stiffness };
+        let mu = point.momentum_map(&q, &w);
+        let stepper = point.stepper(0.05)?;
+        let start = stepper.state(q, mu)?;
+        let mut integrator = Integrator::on_heap(point.clone(), 0.05, q, mu)?;
+        prop_assert_eq!((integrator.state(), integrator.steps()), (&start, 0));
+        let beside = Integrator::new(stepper.clone(), start);
+        prop_assert_eq!(beside.state(), integrator.state());
+        let mut state = start;
+        for _ in 0..count {
+            state = stepper.step(&state)?;
+            integrator.step()?;
+            prop_assert_eq!(integrator.state(), &state);
+        }
+        prop_assert_eq!(integrator.steps(), count as u64);
+        let later = stepper.advance(&state, 3)?;
+        integrator.advance(3)?;
+        prop_assert_eq!((integrator.state(), integrator.steps()), (&later, count as u64 + 3));
+        // where it is slow it steps, from where it is too fast it does not
+        let constants = integrator.stepper().system().constants(0.05)?;
+        let (mut x, mut held, mut gradient) = (q, w, w);
+        let place = (&q, &Neumann::held(&q, &mu), &integrator.stepper().system().impulse(&constants, 0.0, &q, &mu));
+        point.step_into(&constants, 0.0, place, &(), (&mut x, &mut held, &mut gradient))?;
+        prop_assert_eq!(&in_place((q, *place.1, *place.2), |into| point.step_into(&constants, 0.0, place, &(), into))?, &(x, held, gradient));
+        let stepped = stepper.step(&start)?;
+        prop_assert_eq!(&x, stepped.configuration());
+        let fast = stepper.state(q, mu * (40.0 / mu.norm()))?;
+        integrator.set_state(fast);
+        let (refused, several) = (integrator.step_with(&()), integrator.clone().advance(2));
+        prop_assert_eq!(refused, stepper.step(&fast).map(drop));
+        prop_assert!(refused.is_err() && several == refused && integrator.state() == &fast);
+        prop_assert_eq!(integrator.steps(), count as u64 + 3);
     }
 
     /// A projection in other units is the same, and so is the distance from it.

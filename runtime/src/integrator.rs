@@ -1,0 +1,149 @@
+//! A stepper with its state, stepped in place.
+
+use crate::{Clebsch, Error, Space, State, Stepper};
+use core::fmt::{self, Debug, Formatter};
+
+/// A [`Stepper`] with a state and room for the next one, which are all that steps write: for states so large that handing each on by value takes longer than
+/// the step itself, points on large spheres and arrays of sites.
+///
+/// It makes the steps of [`Stepper::step`], to the last bit, and where one fails the state is what it was. Small states are better off in a `Stepper`, which
+/// keeps them in registers.
+///
+/// An integrator is where it is put: on the stack, in a `static`, or with the feature `alloc` on the heap, by `Integrator::on_heap`, which allocates
+/// once.
+///
+/// ```
+/// use clebsch::{Clebsch, Integrator};
+/// use nalgebra::SVector;
+///
+/// /// A point on S¹⁰⁰ in a field along its last axis.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action    = |F: SO<101>, q: Unit<SVector<101>>| F * q,
+///     cost      = |h, F| (F - I).norm_squared() / (4 * h),
+///     potential = |q| self.gravity * q[100],
+/// )]
+/// struct Pendulum {
+///     /// Gravity, 1/s².
+///     gravity: f64,
+/// }
+///
+/// let stepper = Pendulum { gravity: 1.0 }.into_stepper(0.01)?;
+/// let start = SVector::<f64, 101>::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
+/// let momentum = stepper.momentum_map(&start, &SVector::zeros());
+/// let state = stepper.state(start, momentum)?;
+/// let mut pendulum = Integrator::new(stepper, state);
+/// for _ in 0..100 {
+///     pendulum.step()?;
+/// }
+/// assert!(pendulum.state().configuration()[100] < -0.4, "it falls");
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Integrator<S: Clebsch> {
+    stepper: Stepper<S>,
+    states: [State<S>; 2],
+    /// Which of the states is the present one.
+    is_second: bool,
+    steps: u64,
+}
+
+impl<S: Clebsch> Integrator<S> {
+    /// Starts from a state that this stepper, or one of the same system, has made.
+    pub fn new(stepper: Stepper<S>, start: State<S>) -> Self {
+        Self { stepper, states: [start, start], is_second: false, steps: 0 }
+    }
+
+    /// The state.
+    #[inline]
+    pub fn state(&self) -> &State<S> {
+        let [first, second] = &self.states;
+        if self.is_second { second } else { first }
+    }
+
+    /// Goes on from another state.
+    pub fn set_state(&mut self, state: State<S>) {
+        let [first, second] = &mut self.states;
+        *(if self.is_second { second } else { first }) = state;
+    }
+
+    /// The system with its step size.
+    #[inline]
+    pub fn stepper(&self) -> &Stepper<S> {
+        &self.stepper
+    }
+
+    /// Steps made so far.
+    #[inline]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// One step, as [`Stepper::step`] makes it.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step`]; the state is what it was.
+    #[inline]
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.step_with(&S::Input::origin())
+    }
+
+    /// One step during which the input of the forces is `u`, as [`Stepper::step_with`] makes it.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step_with`]; the state is what it was.
+    #[inline]
+    pub fn step_with(&mut self, u: &S::Input) -> Result<(), Error> {
+        let [first, second] = &mut self.states;
+        let (state, next) = if self.is_second { (&*second, first) } else { (&*first, second) };
+        self.stepper.step_into(state, u, next)?;
+        self.is_second = !self.is_second;
+        self.steps = self.steps.saturating_add(1);
+        Ok(())
+    }
+
+    /// So many steps, as [`Stepper::advance`] makes them.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step); the state is the one before the step that failed.
+    pub fn advance(&mut self, steps: usize) -> Result<(), Error> {
+        match self.stepper.advance(self.state(), steps) {
+            Ok(state) => {
+                self.set_state(state);
+                self.steps = self.steps.saturating_add(steps as u64);
+                Ok(())
+            }
+            Err(_) => (0..steps).try_for_each(|_| self.step()),
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Clebsch> Integrator<S> {
+    /// An integrator on the heap, of a system with the step size `h`, from the state (q, N), after the checks of [`Clebsch::stepper`] and
+    /// [`Stepper::state`]. Nothing is allocated after it.
+    ///
+    /// # Errors
+    /// Those of [`Clebsch::stepper`] and [`Stepper::state`].
+    pub fn on_heap(
+        system: S,
+        h: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<alloc::boxed::Box<Self>, Error> {
+        let stepper = system.into_stepper(h)?;
+        let start = stepper.state(q, mu)?;
+        Ok(alloc::boxed::Box::new(Self::new(stepper, start)))
+    }
+}
+
+impl<S: Clebsch + Debug> Debug for Integrator<S> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { stepper, steps, .. } = self;
+        f.debug_struct("Integrator")
+            .field("stepper", stepper)
+            .field("state", self.state())
+            .field("steps", steps)
+            .finish()
+    }
+}
