@@ -44,7 +44,7 @@ macro_rules! export {
 macro_rules! stepping {
     ($name:literal, $type:ty) => {
         const _: () = {
-            use clebsch::{Clebsch, CotangentState, SavedState, State, Stepper};
+            use clebsch::{Clebsch, CotangentState, Integrator, SavedState, State, Stepper};
             use core::hint::black_box;
             #[allow(unused_imports, reason = "a system may have it all")]
             use $crate::roots::{self, Absent};

@@ -135,6 +135,7 @@ scenes! {
     a_quaternion_top: quaternion_top::QuaternionTop { inertia: inertia(), moment: center() }, quaternion(), 0.05;
     a_relativistic_particle: relativistic_particle::RelativisticParticle { mass: 1.2, force: center() }, center(), 0.05;
     a_body_in_four_dimensions: rigid_body4::RigidBody4 { j_d: four() }, Matrix4::identity(), 0.1;
+    a_body_in_five_dimensions: driven_body5::DrivenBody5 { j_d: many(), drag: 0.2 }, SMatrix::identity(), 0.1;
     a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
     a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
     a_projected_body: projected_body::ProjectedBody { inertia: inertia() }, turned(), 0.05;

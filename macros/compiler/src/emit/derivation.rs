@@ -36,14 +36,17 @@ pub fn derivation(program: &Program<'_>) -> String {
 
 /// How the code is written, and why.
 fn form(program: &Program<'_>) -> String {
-    let Form { code, estimate, is_asked, is_body_or_point } = program.form;
+    let Form { code, estimate, is_asked, is_body_or_point, missing } = program.form;
     let written = match code {
         CodeForm::Unrolled => "Code is written out, entry by entry",
         CodeForm::Matrices => "Code keeps whole matrices, in loops",
     };
     let why = match (is_asked, code) {
         (true, _) => "as the declaration asks".to_string(),
-        (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => "of few unknowns".to_string(),
+        (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => match missing {
+            Some(why) => format!("and {why} has no code with whole matrices"),
+            None => "of few unknowns".to_string(),
+        },
         (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
         (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED && is_body_or_point => {
             "and bodies in five dimensions or more and points on S⁷ or larger keep them at any number".to_string()

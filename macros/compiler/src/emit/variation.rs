@@ -143,7 +143,9 @@ impl Emitter<'_, '_> {
             let slope = scope.number(&clebsch_symbolic::rational(numerator, denominator));
             if (numerator, denominator) == (1, 1) { quote!(eta[#i]) } else { quote!(#slope * eta[#i]) }
         });
-        quote!(let x = #private::vector([#(#entries),*]);)
+        // operations on whole matrices take references
+        let reference = self.program.form.keeps_matrices().then(|| quote!(&));
+        quote!(let x = #reference #private::vector([#(#entries),*]);)
     }
 
     /// The implicit solve of an edge.

@@ -37,6 +37,8 @@ pub struct Form {
     pub is_asked: bool,
     /// Whether it is a system that keeps matrices at any number of products: a body on SO(5) or larger, or a point on S⁷ or larger.
     pub is_body_or_point: bool,
+    /// What of the system has no code with whole matrices.
+    pub missing: Option<&'static str>,
 }
 
 impl Form {
@@ -58,12 +60,13 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     let is_point = dimension >= FEWEST_OF_SPHERES && formulas.follows_great_circles();
     let is_body_or_point = is_point || is_body(formulas);
     let is_large = is_long || is_body_or_point || dimension > MOST_UNKNOWNS;
+    let missing = without_matrices(formulas);
     let code = match asked {
         Some(asked) => asked.value,
-        None if is_large && without_matrices(formulas).is_none() => CodeForm::Matrices,
+        None if is_large && missing.is_none() => CodeForm::Matrices,
         None => CodeForm::Unrolled,
     };
-    match (code, asked, without_matrices(formulas)) {
+    match (code, asked, missing) {
         (CodeForm::Matrices, Some(asked), Some(why)) => {
             let error = Diagnostic::new(asked.span, format!("{why} has no code with whole matrices yet"));
             return Err(error.help("leave out `code`, or write `code = unrolled`").into());
@@ -85,7 +88,7 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
         ));
     }
-    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
 }
 
 /// Whether an equation is that of a body on SO(n), whose Jacobian is Sylvester's map.
@@ -118,10 +121,6 @@ pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<&'static str> 
         (formulas.splitting.is_some() || formulas.turns_whole(), "a step of exact drifts"),
         (!formulas.weighted().is_empty(), "the free rotation of a body"),
         (formulas.collocation.is_some(), "`order = 16`"),
-        (formulas.is_compensated(), "`summation = compensated`"),
-        (model.emit.tangent, "`emit = [tangent]`"),
-        (model.emit.boundary, "`emit = [boundary]`"),
-        (formulas.covector.is_some(), "a force"),
         (is_held && formulas.projection.is_none(), "a configuration that some motions leave where it is"),
         (formulas.energy.general.is_some(), "a Lagrangian that is not quadratic"),
     ];

@@ -1,6 +1,6 @@
 //! What holds of the two forms of code of a declaration.
 
-use clebsch::{Clebsch, Conserved, Conserves, Space};
+use clebsch::{Clebsch, Conserved, Conserves, Integrator, Space, State, Variational};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::SVector;
@@ -74,6 +74,74 @@ where
         near(there, "20 steps on T*Q");
         let together = b.advance(&b.state(q, mu).expect("a state"), 20).expect("20 steps");
         near(far(together.configuration(), y.configuration()).max(far(&together.momentum(), &y.momentum())), "at once");
+    }
+}
+
+/// Twenty steps under random inputs are the same in both forms, one by one and by an integrator.
+pub fn agree_forced<U, W, const M: usize, const K: usize>(unrolled: &U, matrices: &W, rest: U::Configuration, seed: u64)
+where
+    U: Clebsch<Scalar = f64, Momentum = SVector<f64, M>, Input = SVector<f64, K>> + Clone,
+    W: Clebsch<
+            Scalar = f64,
+            Configuration = U::Configuration,
+            Momentum = SVector<f64, M>,
+            Input = SVector<f64, K>,
+            Time = U::Time,
+        > + Clone,
+    U::Configuration: Flat,
+{
+    let mut random = Random::new(seed);
+    for _ in 0..5 {
+        let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
+        let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
+        let (mut x, mut y) = (a.state(rest, mu).expect("a state"), b.state(rest, mu).expect("a state"));
+        let mut unforced = x;
+        let mut integrator = Integrator::new(b.clone(), y);
+        for _ in 0..20 {
+            let input = random.vector::<K>();
+            x = a.step_with(&x, &input).expect("a step");
+            y = b.step_with(&y, &input).expect("a step");
+            unforced = a.step(&unforced).expect("a step");
+            integrator.step_with(&input).expect("a step");
+        }
+        let far = |x: &State<U>, y: &State<W>| {
+            far(x.configuration(), y.configuration()).max(far(&x.momentum(), &y.momentum()))
+        };
+        assert!(far(&x, &y) < 2e-13, "{:.1e} apart for {}", far(&x, &y), U::NAME);
+        assert!(far(&unforced, &y) > 1e-3, "the input acts on {}", U::NAME);
+        assert_eq!(integrator.state(), &y);
+    }
+}
+
+/// Steps, tangent maps and the extremals between their ends are the same in both forms.
+pub fn agree_varied<U, W, const M: usize>(unrolled: &U, matrices: &W, rest: U::Configuration, seed: u64)
+where
+    U: Variational<M> + Clebsch<Scalar = f64, Momentum = SVector<f64, M>, Input = (), Time = ()> + Clone,
+    W: Variational<M>
+        + Clebsch<Scalar = f64, Configuration = U::Configuration, Momentum = SVector<f64, M>, Input = (), Time = ()>
+        + Clone,
+    U::Configuration: Flat,
+{
+    let mut random = Random::new(seed);
+    let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
+    for _ in 0..5 {
+        let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
+        let (mut x, mut y) = (a.state(rest, mu).expect("a state"), b.state(rest, mu).expect("a state"));
+        for _ in 0..8 {
+            let ((after, tangent), (stepped, other)) =
+                (a.step_tangent(&x).expect("a step"), b.step_tangent(&y).expect("a step"));
+            let apart = [
+                tangent.motion_by_motion - other.motion_by_motion,
+                tangent.motion_by_momentum - other.motion_by_momentum,
+                tangent.momentum_by_motion - other.momentum_by_motion,
+                tangent.momentum_by_momentum - other.momentum_by_momentum,
+            ];
+            assert!(apart.iter().all(|block| block.amax() < 1e-11), "{:?}", apart.map(|block| block.amax()));
+            let kept = b.step(&y).expect("a step");
+            assert!(far(stepped.configuration(), kept.configuration()) < 1e-14);
+            (x, y) = (after, stepped);
+        }
+        assert!(far(x.configuration(), y.configuration()).max(far(&x.momentum(), &y.momentum())) < 1e-13);
     }
 }
 
