@@ -236,6 +236,47 @@ fn newtons_method_finds_the_steps_of_the_fixed_point() {
     }
 }
 
+/// A body in seven dimensions with drag, by Newton's method with Sylvester's equation.
+#[derive(Clebsch, Clone)]
+#[clebsch(
+    action = |F: SO<7>, R: SO<7>| R * F,
+    cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+    force  = |xi| -self.drag * xi,
+    solver = newton,
+)]
+struct DraggedBody {
+    #[clebsch(symmetric)]
+    j_d: SMatrix<f64, 7, 7>,
+    drag: f64,
+}
+
+/// In the plane of two axes half of h·f acts at each end, at the velocity 2 tan(θ/2)/h: m = 2(j₁ + j₂) sin θ/h + drag tan(θ/2), and m⁺ is that with the other sign.
+#[test]
+fn drag_slows_down_a_permanent_rotation() {
+    let (drag, h) = (0.7, 0.3);
+    let j_d = SMatrix::<f64, 7, 7>::from_diagonal(&SVector::from_fn(|i, _| 1.0 + 0.5 * i as f64));
+    let stepper = DraggedBody { j_d, drag }.stepper(h).expect("a regular body");
+    let mut m = 3.0;
+    let mu = SVector::<f64, 21>::from_fn(|k, _| if k == 0 { m } else { 0.0 });
+    let mut state = stepper.state(SMatrix::identity(), mu).expect("a state");
+    let mut turned = 0.0_f64;
+    for _ in 0..40 {
+        // x = tan(θ/2) has sin θ = 2x/(1 + x²)
+        let (inertial, drags) = (|x: f64| 10.0 / h * x / (1.0 + x * x), |x: f64| drag * x);
+        let (mut below, mut above) = (0.0_f64, 1.0_f64);
+        for _ in 0..60 {
+            let middle = 0.5 * (below + above);
+            if inertial(middle) + drags(middle) < m { below = middle } else { above = middle }
+        }
+        m = inertial(below) - drags(below);
+        turned += 2.0 * below.atan();
+        state = stepper.step(&state).expect("a step");
+        let momentum = state.momentum();
+        assert!((momentum[0] - m).abs() < 1e-13 && momentum.rows(1, 20).amax() < 1e-14, "{} is not {m}", momentum[0]);
+    }
+    assert!(m < 1.0 && (state.configuration()[(0, 0)] - turned.cos()).abs() < 1e-12, "{m}, {turned}");
+}
+
 /// Permanent rotations in the plane of two axes: the angle has the sine hm/2(j₁ + j₂), and beyond a right angle there is none.
 #[test]
 fn permanent_rotations_end_at_a_right_angle() {
