@@ -6,7 +6,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Clebsch, Integrator};
+use clebsch::{Clebsch, Integrator, State, Stepper};
 use nalgebra::{SMatrix, SVector};
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -254,4 +254,33 @@ fn main() {
     let large = points!(101, 5050, "matrices": MatricesOn101);
     let growth = |k: usize| (large[k] / small[k]).ln() / (101.0_f64 / 21.0).ln();
     println!("\ntime ∝ n^{:.2} of a step, n^{:.2} of one of many, from 21 to 101", growth(1), growth(2));
+    memory();
+}
+
+/// Bytes that a state and a stepper take, all that a step reads and writes; `tests/no_std/check` has what it takes of the stack meanwhile.
+fn memory() {
+    println!("\nBytes of a state and of a stepper, whole matrices\n");
+    println!("{:>5} {:24} {:>10} {:>10}", "n", "", "state", "stepper");
+    let row =
+        |n: usize, name: &str, [state, stepper]: [usize; 2]| println!("{n:>5} {name:24} {state:>10} {stepper:>10}");
+    let bodies =
+        [(5, bytes::<Matrices5>()), (6, bytes::<Matrices6>()), (8, bytes::<Matrices8>()), (10, bytes::<Matrices10>())];
+    bodies.iter().for_each(|(n, bytes)| row(*n, "body", *bytes));
+    let points = [(8, bytes::<MatricesOn8>()), (21, bytes::<MatricesOn21>()), (101, bytes::<MatricesOn101>())];
+    points.iter().for_each(|(n, bytes)| row(*n, "point", *bytes));
+    let growth = |rows: &[(usize, [usize; 2])], k: usize| {
+        let (first, last) = (rows[0], rows[rows.len() - 1]);
+        (last.1[k] as f64 / first.1[k] as f64).ln() / (last.0 as f64 / first.0 as f64).ln()
+    };
+    println!(
+        "\nbytes ∝ n^{:.2} and n^{:.2} of bodies, whose inverse inertia is a matrix of all components; n^{:.2} and n^{:.2} of points",
+        growth(&bodies, 0),
+        growth(&bodies, 1),
+        growth(&points, 0),
+        growth(&points, 1)
+    );
+}
+
+fn bytes<S: Clebsch>() -> [usize; 2] {
+    [size_of::<State<S>>(), size_of::<Stepper<S>>()]
 }

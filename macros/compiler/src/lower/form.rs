@@ -19,8 +19,8 @@ const FEWEST_UNKNOWNS: usize = 15;
 /// Bodies on SO(n) keep matrices from as many unknowns on, those of SO(5): there the same products take six tenths of the time.
 const FEWEST_OF_BODIES: usize = 10;
 
-/// Points on spheres are turned in (q, w) from as many components of the momentum on, those of S⁷: of many steps at once each takes seven
-/// tenths of the time there and four on S¹⁰; a single one, which makes all components, takes 1.3 times as long.
+/// Points on spheres are turned in (q, w) from as many components of the momentum on, those of S⁷: of many steps at once each takes two thirds of the time
+/// there and a third on S¹⁰, a single one eight tenths and half; on S³ twice as long.
 const FEWEST_OF_SPHERES: usize = 28;
 
 /// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
