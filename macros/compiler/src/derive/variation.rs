@@ -16,14 +16,14 @@ pub struct Variation<'g> {
     pub before: Expr<'g>,
     /// F⁺ℓd.
     pub after: Expr<'g>,
-    /// ∂F⁻ℓd/∂η for the motion Φ_{exp η} of q, column by column.
-    pub before_by_start: Vec<Expr<'g>>,
-    /// ∂F⁻ℓd/∂η′ for the motion of q⁺.
-    pub before_by_end: Vec<Expr<'g>>,
-    /// ∂F⁺ℓd/∂η, where forces act; else −(∂F⁻ℓd/∂η′)ᵀ.
-    pub after_by_start: Option<Vec<Expr<'g>>>,
-    /// ∂F⁺ℓd/∂η′.
-    pub after_by_end: Vec<Expr<'g>>,
+    /// ∂F⁻ℓd/∂η η for the motion Φ_{exp η} of q, as all derivatives here a vector that is linear in η, the symbols of the algebra.
+    pub before_by_start: Expr<'g>,
+    /// ∂F⁻ℓd/∂η′ η′ for the motion of q⁺.
+    pub before_by_end: Expr<'g>,
+    /// ∂F⁺ℓd/∂η η, where forces act; else that of −(∂F⁻ℓd/∂η′)ᵀ.
+    pub after_by_start: Option<Expr<'g>>,
+    /// ∂F⁺ℓd/∂η′ η′.
+    pub after_by_end: Expr<'g>,
     /// The same along motions that leave F as it is.
     pub carried: Carried<'g>,
     /// What a choice of inputs needs, where there is one.
@@ -35,12 +35,12 @@ pub struct Variation<'g> {
 /// The derivatives along the motions η of q that carry q⁺ along, by η′ = Ad_F η for a left action and Ad_{F⁻¹} η for a right one, and leave F
 /// as it is. Where the cost does not couple only potentials and forces are left of them.
 pub struct Carried<'g> {
-    /// η′, column by column.
-    pub adjoint: Vec<Expr<'g>>,
-    /// ∂F⁻ℓd.
-    pub before: Vec<Expr<'g>>,
-    /// ∂F⁺ℓd.
-    pub after: Vec<Expr<'g>>,
+    /// η′.
+    pub adjoint: Expr<'g>,
+    /// ∂F⁻ℓd η.
+    pub before: Expr<'g>,
+    /// ∂F⁺ℓd η.
+    pub after: Expr<'g>,
 }
 
 /// What becomes of the momenta at both ends of an edge when a quantity changes that is fixed during a step.
@@ -164,10 +164,10 @@ impl<'g> Source<'_, 'g> {
         }
         let varied = Variation {
             lagrangian: lagrangian.kinetic + start + end,
-            before_by_start: self.columns(first, &self.at_start()),
-            before_by_end: self.columns(first, &self.at_end()),
-            after_by_start: force.map(|_| self.columns(last, &self.at_start())),
-            after_by_end: self.columns(last, &self.at_end()),
+            before_by_start: first.differential(&self.at_start()),
+            before_by_end: first.differential(&self.at_end()),
+            after_by_start: force.map(|_| last.differential(&self.at_start())),
+            after_by_end: last.differential(&self.at_end()),
             carried: self.carried(first, last),
             slopes: (!self.quantities.is_empty())
                 .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),
@@ -194,11 +194,7 @@ impl<'g> Source<'_, 'g> {
     fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {
         let motions = self.carried_motions();
         let moved = self.stack(&self.moved_along());
-        Carried {
-            adjoint: self.symbols.basis().iter().map(|element| moved.substitute(element)).collect(),
-            before: self.columns(before, &motions),
-            after: self.columns(after, &motions),
-        }
+        Carried { adjoint: moved, before: before.differential(&motions), after: after.differential(&motions) }
     }
 
     /// Ad η for each factor, what q⁺ moves by when F stays as it is.
@@ -284,12 +280,6 @@ impl<'g> Source<'_, 'g> {
         };
         let rational = cayley::motion(self.model, k, eta, from_left);
         [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational)
-    }
-
-    /// The derivatives of a vector along each basis element of the algebra.
-    fn columns(&self, momentum: Expr<'g>, motions: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
-        let directional = momentum.differential(motions);
-        self.symbols.basis().iter().map(|element| directional.substitute(element)).collect()
     }
 }
 

@@ -254,9 +254,11 @@ pub(super) fn matrix_of(
     argument: &str,
     is_argument: impl Fn(Role) -> bool,
 ) -> (TokenStream, TokenStream) {
-    let (private, depends) = (&scope.paths.private, kernel.depends_on(is_argument));
-    let (before, within) =
-        (code::locals_where(scope, kernel, |k| !depends[k]), code::locals_where(scope, kernel, |k| depends[k]));
+    let (private, depends, needed) = (&scope.paths.private, kernel.depends_on(is_argument), kernel.needed_by(output));
+    let (before, within) = (
+        code::locals_where(scope, kernel, |k| !depends[k]),
+        code::locals_where(scope, kernel, |k| depends[k] && needed[k]),
+    );
     let (shape, entries) = &kernel.outputs[output];
     let value = code::grid(scope, *shape, entries, false);
     let (argument, vector) = (format_ident!("{argument}"), scope.paths.matrix(scope.coordinates.len(), 1));

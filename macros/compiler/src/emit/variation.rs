@@ -1,10 +1,11 @@
 //! The implementations of `Variational` and `Sensitive`: motions, edges, and their derivatives.
 
+use clebsch_symbolic::Role;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::code::Nesting;
-use super::{Emitter, Generics, code, docs};
+use super::{Emitter, Generics, code, docs, matrices};
 use crate::lower::{EdgeKernels, Kernel, VariationKernels};
 
 impl Emitter<'_, '_> {
@@ -70,13 +71,24 @@ impl Emitter<'_, '_> {
         );
         let retractions = self.retractions(variations);
         let (matrix, orbit_metric) = (self.block_type(), &variations.orbit_metric);
-        let metric = method(
-            "GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).",
-            quote!(orbit_metric(&self, q: &Self::Configuration) -> #matrix),
-            orbit_metric,
-            None,
-            quote!(),
-        );
+        let title = "GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).";
+        let signature = quote!(orbit_metric(&self, q: &Self::Configuration) -> #matrix);
+        let metric = match self.program.form.keeps_matrices() {
+            true => {
+                let along = |role| matches!(role, Role::Algebra(_));
+                let (terms, metric) = matrices::matrix_of(&self.scope_of_system(), orbit_metric, 0, "x", along);
+                let documentation = docs::formulas(title, &[], Some(orbit_metric));
+                quote! {
+                    #documentation
+                    #[inline]
+                    fn #signature {
+                        #terms
+                        #metric
+                    }
+                }
+            }
+            false => method(title, signature, orbit_metric, None, quote!()),
+        };
         let difference = code::combined(self.model, &quote!(target), quote!(-), &quote!(q), &self.paths);
         let krate = &self.paths.krate;
         quote! {
@@ -345,12 +357,25 @@ impl Emitter<'_, '_> {
         let place = quote!(#time q: &#configuration, d: &#element, next: &#configuration, #input);
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let scope = self.scope_of_step();
-        let grid = |kernel: &Kernel, index: usize| {
-            let (shape, entries) = &kernel.outputs[index];
-            code::matrix(&scope, *shape, entries)
+        let along = |role| matches!(role, Role::Algebra(_));
+        let keeps_matrices = self.program.form.keeps_matrices();
+        let grid = |kernel: &Kernel, index: usize| match keeps_matrices {
+            true => matrices::matrix_of(&scope, kernel, index, "x", along).1,
+            false => {
+                let (shape, entries) = &kernel.outputs[index];
+                code::matrix(&scope, *shape, entries)
+            }
+        };
+        // what derivatives along motions are made of stands with them
+        let locals = |kernel: &Kernel| match keeps_matrices {
+            true => {
+                let depends = kernel.depends_on(along);
+                code::locals_where(&scope, kernel, |k| !depends[k])
+            }
+            false => code::locals(&scope, kernel),
         };
         let kernel = &kernels.edge;
-        let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+        let (terms, lagrangian) = (locals(kernel), scope.code(&kernel.outputs[0].1[0], false));
         let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
         let (before, after) = (vector(1), vector(2));
         let (by_start, by_end, after_by_end) = (grid(kernel, 3), grid(kernel, 4), grid(kernel, 5));
@@ -370,9 +395,10 @@ impl Emitter<'_, '_> {
                 &[],
                 Some(kernel),
             );
-            let (name, locals) = (format_ident!("carried{suffix}"), code::locals(&scope, kernel));
-            let [momentum, adjoint, before, after, before_by_end, after_by_end] =
-                [0, 1, 2, 3, 4, 5].map(|index| grid(kernel, index));
+            let (name, locals) = (format_ident!("carried{suffix}"), locals(kernel));
+            let momentum = code::grid(&scope, kernel.outputs[0].0, &kernel.outputs[0].1, false);
+            let [adjoint, before, after, before_by_end, after_by_end] =
+                [1, 2, 3, 4, 5].map(|index| grid(kernel, index));
             quote! {
                 #documentation
                 #[inline]
@@ -394,7 +420,8 @@ impl Emitter<'_, '_> {
             let documentation =
                 docs::formulas("∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.", &[], Some(kernel));
             let (name, slopes) = (format_ident!("edge_slopes{suffix}"), self.slopes_type());
-            let (locals, before, after) = (code::locals(&scope, kernel), grid(kernel, 0), grid(kernel, 1));
+            let matrix = |index: usize| code::matrix(&scope, kernel.outputs[index].0, &kernel.outputs[index].1);
+            let (locals, before, after) = (code::locals(&scope, kernel), matrix(0), matrix(1));
             quote! {
                 #documentation
                 fn #name(&self, #place) -> (#slopes, #slopes) {
@@ -407,7 +434,7 @@ impl Emitter<'_, '_> {
             #documentation
             #[inline]
             fn #edge(&self, #place) -> #krate::Edge<#scalar, #dimension> {
-                #locals
+                #terms
                 let before_by_end = #by_end;
                 #krate::Edge {
                     lagrangian: #lagrangian,

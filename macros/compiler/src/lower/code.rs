@@ -147,6 +147,18 @@ impl Kernel {
         depends
     }
 
+    /// Which of its terms an output is made of.
+    pub fn needed_by(&self, output: usize) -> Vec<bool> {
+        let mut needed = vec![false; self.locals.len()];
+        let mut open: Vec<usize> = self.outputs[output].1.iter().flat_map(Code::locals).collect();
+        while let Some(index) = open.pop() {
+            if !std::mem::replace(&mut needed[index], true) {
+                open.extend(self.locals[index].locals());
+            }
+        }
+        needed
+    }
+
     /// The arguments that it takes as a whole, with their shapes.
     pub(super) fn arguments(&self) -> Vec<(&Input, Shape)> {
         let mut arguments = Vec::new();

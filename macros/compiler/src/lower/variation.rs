@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::kernel::kernel;
-use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, plain};
+use super::{Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, matrices, plain};
 use crate::derive::{Formulas, Variation, from_increment, increments, inserted, inverse_by};
 use crate::model::Side;
 
@@ -25,7 +25,7 @@ pub struct VariationKernels {
 
 /// The kernels of an edge.
 pub struct EdgeKernels {
-    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ.
+    /// With whole matrices derivatives are vectors, along a motion: ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ.
     pub edge: Kernel,
     /// ℓd, F⁻ℓd, F⁺ℓd.
     pub momenta: Kernel,
@@ -98,8 +98,14 @@ fn compose(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     plain(scalars, &products)
 }
 
-/// J(q, (E_j)_Q(q)), column by column.
+/// J(q, (E_j)_Q(q)), column by column; with whole matrices J(q, ξ_Q(q)).
 pub(super) fn orbit_metric(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+    if scalars.keeps_matrices {
+        let generators = formulas.generator.iter().copied();
+        let covectors: Vec<_> = formulas.symbols.covectors.iter().copied().zip(generators).collect();
+        let momenta = formulas.momentum_map.iter().map(|momentum| momentum.substitute(&covectors));
+        return matrices::stack(&momenta.collect::<Vec<_>>());
+    }
     let column = |element: &Vec<(Expr<'_>, Expr<'_>)>| {
         let velocities = formulas.generator.iter().map(|velocity| velocity.substitute(element));
         let covectors: Vec<_> = formulas.symbols.covectors.iter().copied().zip(velocities).collect();
@@ -135,26 +141,61 @@ fn edge<'g>(
     hoisted: &mut Hoisted,
 ) -> EdgeKernels {
     let elements = elements(formulas);
-    let columns = |block: &[Expr<'g>], scalars: &mut Scalars| columns(block, &elements, scalars);
+    if scalars.keeps_matrices {
+        return edge_of_matrices(variation, &elements, scalars, hoisted);
+    }
+    let basis = formulas.symbols.basis();
+    let columns_of = |block: Expr<'g>, scalars: &mut Scalars| {
+        let block: Vec<_> = basis.iter().map(|element| block.substitute(element)).collect();
+        columns(&block, &elements, scalars)
+    };
     let values = [variation.lagrangian, variation.before, variation.after];
     let values = values.map(|value| inserted(value, &elements));
     let mut outputs = grids(scalars, &values);
     let momenta = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
-    let blocks = [&variation.before_by_start, &variation.before_by_end, &variation.after_by_end];
-    for block in blocks.into_iter().chain(&variation.after_by_start) {
-        outputs.push(columns(block, scalars));
+    let blocks = [variation.before_by_start, variation.before_by_end, variation.after_by_end];
+    for block in blocks.into_iter().chain(variation.after_by_start) {
+        outputs.push(columns_of(block, scalars));
     }
     let edge = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
     let carried = &variation.carried;
     let mut outputs = grids(scalars, &[inserted(variation.after, &elements)]);
-    let blocks = [&carried.adjoint, &carried.before, &carried.after, &variation.before_by_end, &variation.after_by_end];
-    outputs.extend(blocks.map(|block| columns(block, scalars)));
+    let blocks = [carried.adjoint, carried.before, carried.after, variation.before_by_end, variation.after_by_end];
+    outputs.extend(blocks.map(|block| columns_of(block, scalars)));
     let carried = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
-    let slopes = variation.slopes.as_ref().map(|slopes| {
-        let outputs = [columns(&slopes.before, scalars), columns(&slopes.after, scalars)];
+    EdgeKernels { edge, momenta, carried, slopes: slopes_of(variation, &elements, scalars, hoisted) }
+}
+
+/// The derivatives with respect to what is fixed during a step, each by itself.
+fn slopes_of<'g>(
+    variation: &Variation<'g>,
+    elements: &[(Expr<'g>, Expr<'g>)],
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> Option<Kernel> {
+    variation.slopes.as_ref().map(|slopes| {
+        let outputs = [columns(&slopes.before, elements, scalars), columns(&slopes.after, elements, scalars)];
         kernel(scalars, &outputs, Hoisting::Constants(hoisted))
-    });
-    EdgeKernels { edge, momenta, carried, slopes }
+    })
+}
+
+/// The same with whole matrices: derivatives along a motion, of which loops make the columns.
+fn edge_of_matrices<'g>(
+    variation: &Variation<'g>,
+    elements: &[(Expr<'g>, Expr<'g>)],
+    scalars: &mut Scalars,
+    hoisted: &mut Hoisted,
+) -> EdgeKernels {
+    let Variation { lagrangian, before, after, before_by_start, before_by_end, after_by_end, .. } = *variation;
+    let carried = &variation.carried;
+    let kernel = |values: &[Expr<'g>]| {
+        matrices::kernel(&values.iter().map(|value| inserted(*value, elements)).collect::<Vec<_>>())
+    };
+    let momenta = kernel(&[lagrangian, before, after]);
+    let blocks = [lagrangian, before, after, before_by_start, before_by_end, after_by_end];
+    let edge = kernel(&blocks.into_iter().chain(variation.after_by_start).collect::<Vec<_>>());
+    let carried = kernel(&[after, carried.adjoint, carried.before, carried.after, before_by_end, after_by_end]);
+    EdgeKernels { edge, momenta, carried, slopes: slopes_of(variation, elements, scalars, hoisted) }
 }
 
 /// The replacements of F by I + D, and of inverses of configurations by the formulas of their groups.

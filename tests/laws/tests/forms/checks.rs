@@ -118,14 +118,49 @@ pub fn agree_varied<U, W, const M: usize>(unrolled: &U, matrices: &W, rest: U::C
 where
     U: Variational<M> + Clebsch<Scalar = f64, Momentum = SVector<f64, M>, Input = (), Time = ()> + Clone,
     W: Variational<M>
-        + Clebsch<Scalar = f64, Configuration = U::Configuration, Momentum = SVector<f64, M>, Input = (), Time = ()>
-        + Clone,
+        + Clebsch<
+            Scalar = f64,
+            Configuration = U::Configuration,
+            Element = U::Element,
+            Momentum = SVector<f64, M>,
+            Input = (),
+            Time = (),
+        > + Clone,
     U::Configuration: Flat,
+    U::Element: Flat,
 {
     let mut random = Random::new(seed);
     let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
+    let (before, after) = (unrolled.constants(H).expect("constants"), matrices.constants(H).expect("constants"));
+    let near = |distance: f64, what: &str| {
+        assert!(distance < 1e-11, "{what}: {distance:.1e} apart for {}", U::NAME);
+    };
     for _ in 0..5 {
         let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
+        let eta = random.vector::<M>() * 0.3;
+        let d = unrolled.retraction(&eta);
+        near(far(&d, &matrices.retraction(&eta)), "τ(η)");
+        let next = unrolled.advance(&rest, &d);
+        near(far(&next, &matrices.advance(&rest, &d)), "the motion");
+        near(far(&unrolled.compose(&d, &d), &matrices.compose(&d, &d)), "the motion twice");
+        near((unrolled.orbit_metric(&next) - matrices.orbit_metric(&next)).amax(), "GᵀG");
+        near((unrolled.approach(&next, &rest) - matrices.approach(&next, &rest)).amax(), "the approach");
+        let ends = [
+            unrolled.momenta(&before, 0, 0.0, &rest, &d, &next, &()),
+            matrices.momenta(&after, 0, 0.0, &rest, &d, &next, &()),
+        ];
+        near((ends[0].lagrangian - ends[1].lagrangian).abs(), "ℓd");
+        near((ends[0].before - ends[1].before).amax().max((ends[0].after - ends[1].after).amax()), "the transforms");
+        let edges = [
+            unrolled.edge(&before, 0, 0.0, &rest, &d, &next, &()),
+            matrices.edge(&after, 0, 0.0, &rest, &d, &next, &()),
+        ];
+        let [first, second] = edges.map(|e| [e.before_by_start, e.before_by_end, e.after_by_start, e.after_by_end]);
+        let size = first.iter().fold(1.0_f64, |most, block| most.max(block.amax()));
+        near(
+            first.iter().zip(&second).fold(0.0_f64, |most, (a, b)| most.max((a - b).amax())) / size,
+            "second derivatives",
+        );
         let (mut x, mut y) = (a.state(rest, mu).expect("a state"), b.state(rest, mu).expect("a state"));
         for _ in 0..8 {
             let ((after, tangent), (stepped, other)) =

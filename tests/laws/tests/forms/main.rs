@@ -294,6 +294,75 @@ both!(
 );
 
 both!(
+    agree_varied: varied_two_bodies,
+    (Matrix4::identity(), Matrix4::identity()),
+    Bodies { first: mass(), second: mass() },
+    #[clebsch(
+        action = |(F, G): (SO<4>, SO<4>), (R, S): (SO<4>, SO<4>)| (R * F, G * S),
+        cost   = |h, (F, G)| (self.first * (F - I) * (F - I).transpose()).trace() / h
+            + (self.second * (G - I) * (G - I).transpose()).trace() / h,
+        potential = |(R, S)| R[(0, 1)] * S[(2, 3)] / 4,
+        emit      = [tangent, boundary],
+    )]
+    struct Bodies {
+        #[clebsch(symmetric)]
+        pub first: Matrix4<f64>,
+        #[clebsch(symmetric)]
+        pub second: Matrix4<f64>,
+    }
+);
+
+both!(
+    agree_varied: varied_by_the_exponential,
+    SMatrix::identity(),
+    Body { inertia: mass(), drag: 0.3 },
+    #[clebsch(
+        action         = |F: SO<4>, R: SO<4>| R * F,
+        lagrangian     = |xi| xi.dot(&(self.inertia * xi)) / 2,
+        discretization = exponential,
+        force          = |xi| -self.drag * xi,
+        emit           = [tangent],
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub inertia: SMatrix<f64, 6, 6>,
+        pub drag: f64,
+    }
+);
+
+both!(
+    agree_varied: varied_dragged_body,
+    SMatrix::identity(),
+    Body { inertia: mass(), drag: 0.3 },
+    #[clebsch(
+        action     = |F: SO<4>, R: SO<4>| R * F,
+        lagrangian = |xi| xi.dot(&(self.inertia * xi)) / 2,
+        potential  = |R| R[(0, 1)] / 3,
+        force      = |R, xi| -self.drag * (1 + R[(0, 0)]) * xi.norm_squared() * xi,
+        emit       = [tangent],
+    )]
+    struct Body {
+        #[clebsch(symmetric)]
+        pub inertia: SMatrix<f64, 6, 6>,
+        pub drag: f64,
+    }
+);
+
+both!(
+    agree_varied: varied_ellipsoid,
+    Matrix3::identity(),
+    Fluid { mass: 1.3 },
+    #[clebsch(
+        action = |F: SL<3>, q: SL<3>| F * q,
+        cost   = |h, q, F| self.mass * (F * q - q).norm_squared() / (2 * h),
+        emit   = [tangent, boundary],
+    )]
+    struct Fluid {
+        pub mass: f64,
+    }
+);
+
+both!(
     spatial_body,
     Matrix4::identity(),
     Body { mass_matrix: mass(), gravity: 0.8 },
