@@ -132,7 +132,7 @@ pub fn in_place<Q, W, I>(
 /// ```
 ///
 /// # Errors
-/// As [`great_circle`].
+/// As [`turn_great_circle`].
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorem 1 and example B.
 #[inline]
