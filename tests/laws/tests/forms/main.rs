@@ -121,20 +121,20 @@ both!(
 );
 
 both!(
-    compensated_body_5,
-    SMatrix::identity(),
-    Body { j_d: mass(), weight: 0.4, center: SVector::from_fn(|i, _| 0.3 - 0.1 * i as f64) },
+    compensated_body,
+    Matrix4::identity(),
+    Body { j_d: mass(), weight: 0.4, center: Vector4::from_fn(|i, _| 0.3 - 0.1 * i as f64) },
     #[clebsch(
-        action    = |F: SO<5>, R: SO<5>| R * F,
+        action    = |F: SO<4>, R: SO<4>| R * F,
         cost      = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
-        potential = |R| self.weight * (R * self.center)[4],
+        potential = |R| self.weight * (R * self.center)[3],
         summation = compensated,
     )]
     struct Body {
         #[clebsch(symmetric)]
-        pub j_d: SMatrix<f64, 5, 5>,
+        pub j_d: Matrix4<f64>,
         pub weight: f64,
-        pub center: SVector<f64, 5>,
+        pub center: Vector4<f64>,
     }
 );
 
@@ -191,18 +191,18 @@ both!(
 );
 
 both!(
-    agree_forced: turbulent_body_5,
-    SMatrix::identity(),
+    agree_forced: turbulent_body,
+    Matrix4::identity(),
     Body { j_d: mass(), drag: 0.3 },
     #[clebsch(
-        action    = |F: SO<5>, R: SO<5>| R * F,
+        action    = |F: SO<4>, R: SO<4>| R * F,
         cost      = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
-        force     = |R, xi, torque: SVector<10>| torque * R[(0, 0)] - self.drag * xi.norm_squared() * xi,
+        force     = |R, xi, torque: SVector<6>| torque * R[(0, 0)] - self.drag * xi.norm_squared() * xi,
         order     = 4,
     )]
     struct Body {
         #[clebsch(symmetric)]
-        pub j_d: SMatrix<f64, 5, 5>,
+        pub j_d: Matrix4<f64>,
         pub drag: f64,
     }
 );
@@ -260,20 +260,20 @@ both!(
 );
 
 both!(
-    agree_varied: varied_body_5,
-    SMatrix::identity(),
-    Body { j_d: mass(), weight: 0.4, center: SVector::from_fn(|i, _| 0.3 - 0.1 * i as f64) },
+    agree_varied: varied_body,
+    Matrix4::identity(),
+    Body { j_d: mass(), weight: 0.4, center: Vector4::from_fn(|i, _| 0.3 - 0.1 * i as f64) },
     #[clebsch(
-        action    = |F: SO<5>, R: SO<5>| R * F,
+        action    = |F: SO<4>, R: SO<4>| R * F,
         cost      = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
-        potential = |R| self.weight * (R * self.center)[4],
+        potential = |R| self.weight * (R * self.center)[3],
         emit      = [tangent, boundary],
     )]
     struct Body {
         #[clebsch(symmetric)]
-        pub j_d: SMatrix<f64, 5, 5>,
+        pub j_d: Matrix4<f64>,
         pub weight: f64,
-        pub center: SVector<f64, 5>,
+        pub center: Vector4<f64>,
     }
 );
 
@@ -295,10 +295,10 @@ both!(
 
 both!(
     agree_varied: varied_two_bodies,
-    (Matrix4::identity(), Matrix4::identity()),
+    (Matrix3::identity(), Matrix4::identity()),
     Bodies { first: mass(), second: mass() },
     #[clebsch(
-        action = |(F, G): (SO<4>, SO<4>), (R, S): (SO<4>, SO<4>)| (R * F, G * S),
+        action = |(F, G): (SO<3>, SO<4>), (R, S): (SO<3>, SO<4>)| (R * F, G * S),
         cost   = |h, (F, G)| (self.first * (F - I) * (F - I).transpose()).trace() / h
             + (self.second * (G - I) * (G - I).transpose()).trace() / h,
         potential = |(R, S)| R[(0, 1)] * S[(2, 3)] / 4,
@@ -306,7 +306,7 @@ both!(
     )]
     struct Bodies {
         #[clebsch(symmetric)]
-        pub first: Matrix4<f64>,
+        pub first: Matrix3<f64>,
         #[clebsch(symmetric)]
         pub second: Matrix4<f64>,
     }
