@@ -9,7 +9,7 @@ use core::fmt::{self, Debug, Formatter};
 /// It makes the steps of [`Stepper::step`], to the last bit, and where one fails the state is what it was. Small states are better off in a `Stepper`, which
 /// keeps them in registers.
 ///
-/// An integrator is where it is put: on the stack, in a `static`, or with the feature `alloc` on the heap, by `Integrator::on_heap`, which allocates
+/// An integrator is where it is put: on the stack, in a struct of yours, or with the feature `alloc` on the heap, by `Integrator::on_heap`, which allocates
 /// once.
 ///
 /// ```

@@ -68,55 +68,6 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// A step, or those that it is composed of, in (q, w).
-    fn great_circles_taken(&self) -> TokenStream {
-        let private = &self.paths.private;
-        let turned = self.turned_in_place(&quote!(1));
-        match self.program.formulas.stages() {
-            None => quote!(#private::in_place((*q, *mu, *impulse), #turned)),
-            Some(_) => quote! {
-                #private::compose(constants, t, (*q, *mu, *impulse), |constants, t, state| {
-                    #private::in_place(state, #turned)
-                })
-            },
-        }
-    }
-
-    /// What makes as many steps in (q, w) where they stand.
-    fn turned_in_place(&self, steps: &TokenStream) -> TokenStream {
-        let step = &self.names.step;
-        quote! {
-            |(q, held, impulse)| {
-                #step::euler_poincare_steps(&#step { system: self, constants }, #steps, q, held, impulse)
-            }
-        }
-    }
-
-    /// The method that makes a step into the place of another state, where it is made in (q, w).
-    pub(super) fn step_into_taken(&self) -> Option<TokenStream> {
-        if !self.follows_great_circles() || self.program.formulas.stages().is_some() {
-            return None;
-        }
-        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
-        Some(quote! {
-            /// One step into the place of another state.
-            #[inline]
-            fn step_into(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
-                u: &Self::Input,
-                (next, held, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
-            ) -> ::core::result::Result<(), #krate::Error> {
-                *next = *q;
-                *held = *mu;
-                *left = *impulse;
-                #step::euler_poincare_steps(&#step { system: self, constants }, 1, next, held, left)
-            }
-        })
-    }
-
     /// A step of the discrete symmetric representation.
     pub(super) fn symmetric_step_taken(&self) -> TokenStream {
         let (private, krate, step) = (&self.paths.private, &self.paths.krate, &self.names.step);
@@ -144,7 +95,6 @@ impl Emitter<'_, '_> {
 
     /// The method that makes several steps, where that is less than each of them.
     pub(super) fn steps_taken(&self) -> TokenStream {
-        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
         let (private, step) = (&self.paths.private, &self.names.step);
         let (title, taken) = match self.split_steps(&quote!(steps)) {
             Some(split) => {
@@ -162,6 +112,12 @@ impl Emitter<'_, '_> {
             ),
             None => return TokenStream::new(),
         };
+        self.several_steps(title, &taken)
+    }
+
+    /// The method that makes several steps.
+    pub(super) fn several_steps(&self, title: &str, taken: &TokenStream) -> TokenStream {
+        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
         let title = docs::lines(&[title.to_string()]);
         quote! {
             #title
@@ -175,6 +131,25 @@ impl Emitter<'_, '_> {
                 impulse: &Self::Impulse,
                 u: &Self::Input,
             ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
+                #taken
+            }
+        }
+    }
+
+    /// The method that makes a step into the place of another state: `next`, `held` and `left`.
+    pub(super) fn step_into(&self, taken: &TokenStream) -> TokenStream {
+        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
+        quote! {
+            /// One step into the place of another state.
+            #[inline]
+            fn step_into(
+                &self,
+                constants: &Self::Constants,
+                t: #scalar,
+                (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
+                u: &Self::Input,
+                (next, held, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
+            ) -> ::core::result::Result<(), #krate::Error> {
                 #taken
             }
         }

@@ -10,6 +10,7 @@ mod derivation;
 mod docs;
 mod equation;
 mod exact;
+mod great_circle;
 mod jacobian;
 mod matrices;
 mod names;

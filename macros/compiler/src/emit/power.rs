@@ -134,7 +134,8 @@ impl<'g> Emitter<'_, 'g> {
                 quote!(#private::Power::power_steps_of_first_order(self, constants, t, #steps, q, mu))
             }
         };
-        let (step, several) = (stepped(quote!(1)), stepped(quote!(steps)));
+        let step = stepped(quote!(1));
+        let several = self.several_steps("Several steps, in place.", &stepped(quote!(steps)));
         let step_into = (!power.terms.is_empty()).then(|| {
             let (kick, part, left) = match is_second {
                 true => (quote!(::core::option::Option::Some(impulse)), quote!(-0.5), quote!(left)),
@@ -144,20 +145,9 @@ impl<'g> Emitter<'_, 'g> {
                     quote!(&mut [#private::Space::<#scalar>::origin(); #length]),
                 ),
             };
-            quote! {
-                /// One step into the place of another state.
-                #[inline]
-                fn step_into(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    (q, mu, impulse): (&Self::Configuration, &Self::Held, &Self::Impulse),
-                    u: &Self::Input,
-                    (next, moved, left): (&mut Self::Configuration, &mut Self::Held, &mut Self::Impulse),
-                ) -> ::core::result::Result<(), #krate::Error> {
-                    #private::Power::power_step_into(self, constants, t, (q, mu, #kick), #part, (next, moved), #left)
-                }
-            }
+            self.step_into(&quote! {
+                #private::Power::power_step_into(self, constants, t, (q, mu, #kick), #part, (next, held), #left)
+            })
         });
         let (start, end) = match (power.terms.is_empty(), is_second) {
             (true, _) => (quote!(0.0), quote!(0.0)),
@@ -256,20 +246,7 @@ impl<'g> Emitter<'_, 'g> {
                     #step
                 }
                 #step_into
-                /// Several steps, in place.
-                #[inline]
-                fn steps(
-                    &self,
-                    constants: &Self::Constants,
-                    (t, _): (#scalar, #scalar),
-                    steps: ::core::primitive::usize,
-                    q: &Self::Configuration,
-                    mu: &Self::Held,
-                    impulse: &Self::Impulse,
-                    u: &Self::Input,
-                ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
-                    #several
-                }
+                #several
                 /// One step of the discrete symmetric representation.
                 fn step_symmetric(
                     &self,

@@ -25,7 +25,7 @@ pub struct VariationKernels {
 
 /// The kernels of an edge.
 pub struct EdgeKernels {
-    /// With whole matrices derivatives are vectors, along a motion: ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ.
+    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ: matrices, or with whole matrices what they make of one motion.
     pub edge: Kernel,
     /// ℓd, F⁻ℓd, F⁺ℓd.
     pub momenta: Kernel,
