@@ -9,7 +9,7 @@ use quote::{TokenStreamExt, format_ident, quote};
 use super::path::Paths;
 use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Code, Input, Kernel};
-use crate::model::{Model, ScalarType, Structure};
+use crate::model::{Access, Model, Part, ScalarType, Structure};
 
 /// Where a function finds its inputs.
 pub struct Scope<'a, 'g> {
@@ -64,9 +64,22 @@ fn entry(vector: &str, held: &[usize], wanted: usize) -> TokenStream {
 }
 
 /// Tokens that reach a leaf: `.0[1]`.
-pub fn accessor(text: &str) -> TokenStream {
-    // by construction: accessors are made of tuple and array indices
-    text.parse().unwrap_or_default()
+pub fn accessor(access: &Access) -> TokenStream {
+    let parts = access.parts().iter().map(|part| match part {
+        Part::Field(position) => {
+            let position = Literal::usize_unsuffixed(*position);
+            quote!(.#position)
+        }
+        Part::Index(position) => {
+            let position = Literal::usize_unsuffixed(*position);
+            quote!([#position])
+        }
+        Part::Site(place) => {
+            let index = format_ident!("at{place}");
+            quote!([#index])
+        }
+    });
+    parts.collect()
 }
 
 impl Scope<'_, '_> {
@@ -82,11 +95,11 @@ impl Scope<'_, '_> {
     fn spell_read(&self, input: &Input) -> TokenStream {
         let (row, column) = (Literal::usize_unsuffixed(input.row), Literal::usize_unsuffixed(input.column));
         let index = if input.is_vector { quote!([#row]) } else { quote!([(#row, #column)]) };
-        let leaf = |name: &str, access: &str| {
+        let leaf = |name: &str, access: &Access| {
             let (name, access) = (format_ident!("{name}"), accessor(access));
             quote!(#name #access #index)
         };
-        let factor = |k: usize| self.model.factors[k].accessor.as_str();
+        let factor = |k: usize| &self.model.factors[k].accessor;
         match input.role {
             Role::StepSize => match &self.constants {
                 // what is written out has taken all that depends on h into its constants
@@ -114,8 +127,8 @@ impl Scope<'_, '_> {
             Role::Increment(k) => leaf("d", factor(k)),
             Role::Following(k) => leaf("second", factor(k)),
             Role::MomentumMatrix(k) => leaf("m", factor(k)),
-            Role::Multiplier => leaf("kappa", ""),
-            Role::Weight => leaf("z", ""),
+            Role::Multiplier => quote!(kappa #index),
+            Role::Weight => quote!(z #index),
             Role::ChartWeight(number) => {
                 let number = Literal::usize_unsuffixed(number);
                 quote!(w[#number])

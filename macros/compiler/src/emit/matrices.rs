@@ -7,6 +7,7 @@ use quote::{format_ident, quote};
 use super::code::{self, Scope, accessor, nested};
 use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
+use crate::model::Access;
 
 impl Scope<'_, '_> {
     /// An operation on whole matrices.
@@ -159,17 +160,15 @@ impl Scope<'_, '_> {
 
     /// Where a matrix among the arguments of a function stands.
     fn place(&self, role: Role, shape: Shape) -> Place {
-        let leaf = |name: &str, access: &str| {
+        let leaf = |name: &str, access: &Access| {
             let name = format_ident!("{name}");
-            match access {
-                "" => Place::Reference(quote!(#name)),
-                _ => {
-                    let access = accessor(access);
-                    Place::Value(quote!(#name #access))
-                }
+            if access.is_whole() {
+                return Place::Reference(quote!(#name));
             }
+            let access = accessor(access);
+            Place::Value(quote!(#name #access))
         };
-        let factor = |k: usize| self.model.factors[k].accessor.as_str();
+        let factor = |k: usize| &self.model.factors[k].accessor;
         match role {
             Role::Parameter(leaf) => Place::Value(self.parameter(leaf, quote!())),
             Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),

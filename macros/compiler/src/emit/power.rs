@@ -347,9 +347,7 @@ impl<'g> Emitter<'_, 'g> {
             let Some(promise) = parameter.promise else { continue };
             let leaves = parameter.leaves.iter().map(|leaf| {
                 // the place of an entry is every site here
-                let access = leaf.accessor.strip_prefix('[').filter(|rest| rest.starts_with("at"));
-                let access =
-                    accessor(access.and_then(|rest| rest.split_once(']')).map_or(&leaf.accessor, |(_, rest)| rest));
+                let access = accessor(&leaf.accessor.inside_site());
                 match promise {
                     Promise::Symmetric => quote!(#private::check_symmetric(#name, &entry #access)?;),
                     Promise::Diagonal => quote!(#private::check_diagonal(#name, &entry #access)?;),

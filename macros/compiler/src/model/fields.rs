@@ -13,7 +13,7 @@ use super::scalar::Agreement;
 use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::Value;
 use super::vectors::{hint, last_segment, vectors};
-use super::{Leaf, Parameter, Promise, ScalarType, Structure};
+use super::{Access, Leaf, Parameter, Promise, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Declaration, Field, spell_type};
 
@@ -204,7 +204,7 @@ fn parameter<'g>(
         Some(Promise::Diagonal) => Property::Diagonal,
         Some(Promise::Unit) => Property::Unit,
     };
-    let leaf = |(position, accessor): (usize, String)| {
+    let leaf = |(position, accessor): (usize, Access)| {
         let symbol = graph.symbol(
             &format!("{symbol_name}{accessor}"),
             ty.shape,

@@ -10,7 +10,7 @@ use super::leaves::{Expected, leaf_names, leaves};
 use super::spaces::read_spaces;
 use super::value::Value;
 use super::velocity::Velocity;
-use super::{Configuration, Factor, Force, Space, Structure};
+use super::{Access, Configuration, Factor, Force, Space, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Argument, Closure, Declaration, Pattern, spell};
 
@@ -147,7 +147,7 @@ pub(super) fn read_input<'g>(
     }
     let names = leaf_names(&argument.pattern, &product.structure, &mut context.diagnostics)?;
     let accessors = product.structure.accessors();
-    let leaf = |(i, ((leaf, _), (name, accessor))): (usize, (&(super::spaces::SpaceType<'_>, _), (String, String)))| {
+    let leaf = |(i, ((leaf, _), (name, accessor))): (usize, (&(super::spaces::SpaceType<'_>, _), (String, Access)))| {
         let symbol = context.graph.symbol(&name, leaf.shape, Role::Input(i), Property::General);
         Configuration { symbol, name, space: leaf.space, shape: leaf.shape, is_quaternion: false, accessor }
     };

@@ -1,5 +1,6 @@
 //! The second stage: the declaration as mathematics, with names resolved, shapes checked and the action's laws verified.
 
+mod access;
 mod action_errors;
 mod action_laws;
 mod arguments;
@@ -36,6 +37,7 @@ mod velocity;
 pub use crate::parse::{
     ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
+pub use access::{Access, Part};
 pub use groups::is_large;
 pub use outline::{Outline, outline};
 pub use power::{Linear, Place, Power, Term};

@@ -321,7 +321,7 @@ pub(super) fn power_of<'g>(mut model: Model<'g>, sites: Sites<'g>, terms: Vec<Te
         let field = &model.parameters[entry.field];
         let leaf = |(leaf, symbol): (&Leaf<'g>, &Expr<'g>)| Leaf {
             symbol: *symbol,
-            accessor: format!("[at{}]{}", entry.place, leaf.accessor),
+            accessor: leaf.accessor.at_site(entry.place),
             ..leaf.clone()
         };
         let leaves = field.leaves.iter().zip(&entry.leaves).map(leaf).collect();

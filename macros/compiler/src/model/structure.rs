@@ -1,5 +1,7 @@
 //! How the leaves of a product nest: a leaf, a tuple or an array of such.
 
+use super::access::{Access, Part};
+
 /// The nesting of leaves, which are numbered from left to right.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Structure {
@@ -20,22 +22,21 @@ impl Structure {
         }
     }
 
-    /// How each leaf is reached, in order: `.0`, `[1]`, `.0[1]`; empty for a single leaf.
-    pub fn accessors(&self) -> Vec<String> {
+    /// How each leaf is reached, in order: `.0`, `[1]`, `.0[1]`.
+    pub fn accessors(&self) -> Vec<Access> {
         let mut accessors = Vec::new();
-        self.collect(String::new(), &mut accessors);
+        self.collect(Access::default(), &mut accessors);
         accessors
     }
 
-    fn collect(&self, prefix: String, accessors: &mut Vec<String>) {
-        match self {
-            Structure::Leaf(_) => accessors.push(prefix),
-            Structure::Tuple(parts) => {
-                parts.iter().enumerate().for_each(|(i, part)| part.collect(format!("{prefix}.{i}"), accessors));
-            }
-            Structure::Array(parts) => {
-                parts.iter().enumerate().for_each(|(i, part)| part.collect(format!("{prefix}[{i}]"), accessors));
-            }
+    fn collect(&self, prefix: Access, accessors: &mut Vec<Access>) {
+        let (parts, step): (_, fn(usize) -> Part) = match self {
+            Structure::Leaf(_) => return accessors.push(prefix),
+            Structure::Tuple(parts) => (parts, Part::Field),
+            Structure::Array(parts) => (parts, Part::Index),
+        };
+        for (position, part) in parts.iter().enumerate() {
+            part.collect(prefix.then(step(position)), accessors);
         }
     }
 

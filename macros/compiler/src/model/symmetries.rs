@@ -12,7 +12,7 @@ use super::groups::{Names, group, unknown_group};
 use super::leaves::{self, Expected};
 use super::spaces::{space_of, span_of};
 use super::value::Value;
-use super::{Configuration, Factor, OfferedSymmetry, Side, Structure};
+use super::{Access, Configuration, Factor, OfferedSymmetry, Side, Structure};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
 
@@ -86,7 +86,8 @@ impl<'g> System<'_, 'g> {
             Ok(group) => {
                 let role = Role::Auxiliary(SYMBOLS + index);
                 let symbol = context.graph.symbol(&name, group.element_shape(), role, group.element_property());
-                let (accessor, span) = (String::new(), span_of(ty));
+                let accessor = Access::default();
+                let span = span_of(ty);
                 Some(Factor { group, symbol, name, side: Side::Left, moves: true, accessor, span })
             }
             Err(error) => refuse(context, error),
@@ -153,7 +154,7 @@ impl<'g> System<'_, 'g> {
             space: space_of(factor.group),
             shape: factor.group.element_shape(),
             is_quaternion: factor.group == Group::UnitQuaternions,
-            accessor: String::new(),
+            accessor: Access::default(),
         };
         let leaves: Vec<Configuration<'g>> =
             self.configurations.iter().cloned().chain(self.factors.iter().map(as_leaf)).collect();

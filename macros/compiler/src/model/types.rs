@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
-use super::{Power, Structure};
+use super::{Access, Power, Structure};
 use crate::parse::{
     ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
@@ -152,8 +152,8 @@ pub struct Parameter<'g> {
 pub struct Leaf<'g> {
     /// Its symbol.
     pub symbol: Expr<'g>,
-    /// How it is reached from the field, `[0]`; empty for a field that is no array.
-    pub accessor: String,
+    /// How it is reached from the field, `[0]`; whole for a field that is no array.
+    pub accessor: Access,
     /// Its shape.
     pub shape: Shape,
     /// Whether the Rust type is the scalar itself, not a 1×1 matrix.
@@ -181,8 +181,8 @@ pub struct Factor<'g> {
     pub side: Side,
     /// Whether it moves any configuration.
     pub moves: bool,
-    /// How it is reached in the element, `.0[1]`; empty for a single factor.
-    pub accessor: String,
+    /// How it is reached in the element, `.0[1]`.
+    pub accessor: Access,
     /// Where its type is written.
     pub span: Span,
 }
@@ -209,8 +209,8 @@ pub struct Configuration<'g> {
     pub shape: Shape,
     /// Whether its Rust type is a quaternion, whose coordinates are i, j, k, w.
     pub is_quaternion: bool,
-    /// How it is reached in the configuration, `.0[1]`; empty for a single leaf.
-    pub accessor: String,
+    /// How it is reached in the configuration, `.0[1]`.
+    pub accessor: Access,
 }
 
 /// What a leaf of the configuration is promised to be.

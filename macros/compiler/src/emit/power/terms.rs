@@ -246,8 +246,7 @@ impl<'g> Emitter<'_, 'g> {
 
 /// The place whose entry of a field a term reads.
 fn place_of(parameter: &Parameter<'_>) -> Option<usize> {
-    let accessor = &parameter.leaves.first()?.accessor;
-    accessor.strip_prefix("[at")?.split_once(']')?.0.parse().ok()
+    parameter.leaves.first()?.accessor.site()
 }
 
 /// A linear expression in the indices and N, as a signed number.
