@@ -55,8 +55,20 @@ pub enum Role {
     Site(usize),
     /// A leaf of the configuration at a place of a power, by the number of the place and of the leaf.
     At(usize, usize),
-    /// Any other symbol, by an index of the user's.
-    Auxiliary(usize),
+    /// The direction δ of a derivative along the chart coordinates of a block.
+    Direction(usize),
+    /// Σ⁻¹, the inverse of the inertia.
+    InertiaInverse,
+    /// An element of a factor where a law of the action composes several, by the factor and the number of the element.
+    Composed(usize, usize),
+    /// The element of an offered symmetry, by the index of the symmetry.
+    OfferedElement(usize),
+    /// An element of a declared group while its equation is read.
+    DeclaredElement,
+    /// A number of which nothing is known in the special value of a parameter.
+    Unknown,
+    /// A letter of a formula that is printed and not computed.
+    Letter,
 }
 
 /// What is promised about the values of a symbol.

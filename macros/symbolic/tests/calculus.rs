@@ -14,13 +14,13 @@ struct Symbols<'g> {
 }
 
 fn symbols(graph: &Graph) -> Symbols<'_> {
-    let matrix = |name, property, index| graph.symbol(name, Shape::square(3), Role::Auxiliary(index), property);
-    let vector = |name, index| graph.symbol(name, Shape::vector(3), Role::Auxiliary(index), Property::General);
+    let matrix = |name, property, index| graph.symbol(name, Shape::square(3), Role::Parameter(index), property);
+    let vector = |name, index| graph.symbol(name, Shape::vector(3), Role::Parameter(index), Property::General);
     Symbols {
         f: matrix("F", Property::Orthogonal, 0),
         s: matrix("S", Property::Symmetric, 1),
         a: matrix("A", Property::General, 2),
-        q: graph.symbol("q", Shape::vector(3), Role::Auxiliary(3), Property::Unit),
+        q: graph.symbol("q", Shape::vector(3), Role::Parameter(3), Property::Unit),
         u: vector("u", 4),
         v: vector("v", 5),
         h: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
@@ -62,7 +62,7 @@ fn simplification_on_construction() {
 fn gradients_agree_with_directional_derivatives_and_differences() {
     let graph = Graph::new();
     let Symbols { s, a, q, u, v, h, x, .. } = symbols(&graph);
-    let f = graph.symbol("G", Shape::square(3), Role::Auxiliary(7), Property::General);
+    let f = graph.symbol("G", Shape::square(3), Role::Parameter(7), Property::General);
     let i = graph.identity(3);
     let scalars = [
         (s * (f - i) * (f - i).transpose()).trace() / (2 * h),

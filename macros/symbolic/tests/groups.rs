@@ -7,7 +7,7 @@ fn element<'g>(graph: &'g Graph, group: Group, name: &str, index: usize) -> Expr
 }
 
 fn vector<'g>(graph: &'g Graph, n: usize, name: &str, index: usize) -> Expr<'g> {
-    graph.symbol(name, Shape::vector(n), Role::Auxiliary(index), Property::General)
+    graph.symbol(name, Shape::vector(n), Role::Parameter(index), Property::General)
 }
 
 /// The equations of the group hold at random elements, products and inverses; the inverse inverts.
@@ -59,7 +59,7 @@ fn coadjoint_laws(graph: &Graph, group: Group) {
     let m = group.dimension();
     let (f, g) = (element(graph, group, "F", 0), element(graph, group, "G", 1));
     let (mu, xi) = (vector(graph, m, "μ", 0), vector(graph, m, "ξ", 1));
-    let d = graph.symbol("D", group.element_shape(), Role::Auxiliary(2), Property::General);
+    let d = graph.symbol("D", group.element_shape(), Role::Parameter(2), Property::General);
     let name = group.name(graph);
     let moved = group.translate_right(group.inverse(f), group.translate_left(f, group.wedge(xi)));
     let pairing = group.momentum_matrix(mu).dot(moved);

@@ -4,7 +4,7 @@ use clebsch_symbolic::identity;
 use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape};
 
 fn symbol<'g>(graph: &'g Graph, name: &str, shape: Shape) -> Expr<'g> {
-    graph.symbol(name, shape, Role::Auxiliary(0), Property::General)
+    graph.symbol(name, shape, Role::Parameter(0), Property::General)
 }
 
 #[test]

@@ -132,17 +132,17 @@ pub(super) fn turns_whole(model: &Model<'_>) -> bool {
 pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> Equation<'g> {
     let (graph, block) = (sources.model.graph, sources.symbols.blocks[i]);
     let n = block.dimension();
-    let m = graph.symbol("m", Shape::vector(n), Role::Auxiliary(1), Property::General);
+    let m = graph.symbol("m", Shape::vector(n), Role::Letter, Property::General);
     let (residual, directional) = match turns_whole(sources.model) {
         true => {
             let group = sources.model.factors[block.factor].group;
-            let mass = graph.symbol("J̃", Shape::square(4), Role::Auxiliary(0), Property::Symmetric);
-            let turned = graph.symbol("F̃", Shape::square(4), Role::Auxiliary(2), Property::Orthogonal);
+            let mass = graph.symbol("J̃", Shape::square(4), Role::Letter, Property::Symmetric);
+            let turned = graph.symbol("F̃", Shape::square(4), Role::Letter, Property::Orthogonal);
             let skew = turned * mass - mass * turned.transpose();
             (group.projected_coordinates(skew) - m, graph.zero(Shape::vector(n)))
         }
         false => {
-            let d = graph.symbol("d", Shape::square(3), Role::Auxiliary(0), Property::Symmetric);
+            let d = graph.symbol("d", Shape::square(3), Role::Letter, Property::Symmetric);
             let hat = Group::SpecialOrthogonal(3).wedge(m);
             (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
         }
@@ -241,10 +241,7 @@ pub(crate) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'
     (0..mu.len()).map(row).collect()
 }
 
-/// What Σ⁻¹ is among the symbols of the derivation.
-pub(crate) const INERTIA_INVERSE: Role = Role::Auxiliary(usize::MAX);
-
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
 pub(crate) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
-    graph.symbol("inertia_inverse", shape, INERTIA_INVERSE, Property::Symmetric)
+    graph.symbol("inertia_inverse", shape, Role::InertiaInverse, Property::Symmetric)
 }

@@ -47,7 +47,7 @@ pub use energy::Energy;
 pub(crate) use equation::chart_slope;
 pub use equation::{Equation, Solution};
 pub use exact::Splitting;
-pub(crate) use exact::{INERTIA_INVERSE, by_inertia, inertia_inverse};
+pub(crate) use exact::{by_inertia, inertia_inverse};
 pub use force::EdgeForce;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
 pub use power::{Home, Link, Stencil, stencil};

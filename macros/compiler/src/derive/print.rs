@@ -268,8 +268,8 @@ impl<'g> Formulas<'g> {
             return Formula::new("Hamiltonian", at, &[pairing - lagrangian + self.potential_energy]);
         }
         let (graph, shape) = (self.model.graph, self.inertia.shape());
-        let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Auxiliary(0), Property::General);
-        let inertia = graph.symbol("Σ", shape, Role::Auxiliary(1), Property::Symmetric);
+        let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Letter, Property::General);
+        let inertia = graph.symbol("Σ", shape, Role::Letter, Property::Symmetric);
         let momentum = momentum - self.symbols.slope(self.energy.gyroscopic);
         let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
         Formula::new("Hamiltonian", title, &[kinetic + self.potential_energy])

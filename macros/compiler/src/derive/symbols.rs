@@ -250,7 +250,7 @@ fn blocks<'g>(model: &Model<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'
             graph.symbol(&subscripted(letter, index, shapes.len()), Shape::vector(size), role, Property::General)
         };
         let (coordinates, direction) =
-            (symbol(letters[0], Role::Chart(index)), symbol(letters[1], Role::Auxiliary(index)));
+            (symbol(letters[0], Role::Chart(index)), symbol(letters[1], Role::Direction(index)));
         made.push(ChartBlock { factor, block, offset, coordinates, direction });
         offset += size;
     }

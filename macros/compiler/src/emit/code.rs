@@ -7,7 +7,6 @@ use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, 
 use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
-use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Code, Input, Kernel};
 use crate::model::{Access, Model, Part, ScalarType, Structure};
 
@@ -140,17 +139,16 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 entry("x", &self.coordinates, self.model.offset(k) + input.row)
             }
-            INERTIA_INVERSE if self.keeps_matrices => {
-                let constants = &self.constants;
-                quote!(#constants.inertia_inverse.matrix() #index)
-            }
-            Role::Auxiliary(block) if self.keeps_matrices => {
-                entry("delta", &self.coordinates, self.blocks[block] + input.row)
-            }
-            Role::Auxiliary(_) => match &self.constants {
+            Role::Direction(block) => entry("delta", &self.coordinates, self.blocks[block] + input.row),
+            Role::InertiaInverse => match &self.constants {
+                Some(constants) if self.keeps_matrices => quote!(#constants.inertia_inverse.matrix() #index),
                 Some(constants) => quote!(#constants.inertia_inverse #index),
                 None => quote!(inertia_inverse #index),
             },
+            // by construction: nothing that is computed reads the symbols of checks and of print
+            Role::Composed(..) | Role::OfferedElement(_) | Role::DeclaredElement | Role::Unknown | Role::Letter => {
+                TokenStream::new()
+            }
         }
     }
 

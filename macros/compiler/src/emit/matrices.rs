@@ -5,7 +5,6 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::code::{self, Scope, accessor, nested};
-use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
 use crate::model::Access;
 
@@ -184,11 +183,11 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 self.part("x", &self.coordinates, self.model.offset(k), shape)
             }
-            INERTIA_INVERSE => {
+            Role::InertiaInverse => {
                 let constants = &self.constants;
                 Place::Reference(quote!(#constants.inertia_inverse.matrix()))
             }
-            Role::Auxiliary(block) => self.part("delta", &self.coordinates, self.blocks[block], shape),
+            Role::Direction(block) => self.part("delta", &self.coordinates, self.blocks[block], shape),
             // by construction: the other roles are numbers, or of systems that are written out
             _ => Place::Value(quote!()),
         }

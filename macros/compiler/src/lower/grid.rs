@@ -289,7 +289,7 @@ impl<'g> Lowering<'_> {
     /// Whether an expression is fixed once per stepper.
     fn is_constant(&mut self, expr: Expr<'g>) -> bool {
         let once =
-            |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::Auxiliary(_));
+            |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse);
         let constant = &mut self.scalars.lowered.constant;
         if let Some(known) = constant.get(&expr.position()) {
             return *known;

@@ -8,11 +8,10 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Expr, Graph, Group, One, Rational, Shape, Symbol, Table, View, WordTerm, integer, work,
+    Algebra, Expr, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
 };
 
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
-use crate::derive::INERTIA_INVERSE;
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
 use words::{Weighted, cheapest_cut, common_letter};
@@ -343,7 +342,7 @@ impl Matrices {
             return self.total(shape, vec![(sign, turned)]);
         }
         if let ([letter], 1) = (left, shape.columns)
-            && letter.as_symbol().is_some_and(|symbol| symbol.role == INERTIA_INVERSE)
+            && letter.as_symbol().is_some_and(|symbol| symbol.role == Role::InertiaInverse)
         {
             let vector = self.product(right);
             let cost = product_cost(inner, inner, 1);

@@ -148,8 +148,7 @@ impl Scalars {
     /// An entry of an input.
     pub fn input(&mut self, input: Input) -> Scalar {
         let rate = match input.role {
-            Role::StepSize | Role::Parameter(_) | Role::Constant(_) => Rate::Once,
-            Role::Auxiliary(_) => Rate::Once,
+            Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse => Rate::Once,
             Role::Chart(_) => Rate::Iteration,
             _ => Rate::Step,
         };

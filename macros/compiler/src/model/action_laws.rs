@@ -92,7 +92,7 @@ impl<'g> Action<'_, 'g> {
     /// A second element of a factor, printed as `F1` or `F2`.
     pub(super) fn element(&self, factor: usize, number: usize) -> Expr<'g> {
         let Factor { group, name, .. } = &self.factors[factor];
-        let role = Role::Auxiliary(2 * factor + number);
+        let role = Role::Composed(factor, number);
         self.graph.symbol(&format!("{name}{number}"), group.element_shape(), role, group.element_property())
     }
 

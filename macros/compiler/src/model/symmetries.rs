@@ -16,9 +16,6 @@ use super::{Access, Configuration, Factor, OfferedSymmetry, Side, Structure};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
 
-/// Where the symbols of offered symmetries begin among the auxiliary ones.
-const SYMBOLS: usize = 1 << 16;
-
 /// The system that symmetries are offered for.
 pub(super) struct System<'a, 'g> {
     pub arguments: &'a Arguments<'a, 'g>,
@@ -84,7 +81,7 @@ impl<'g> System<'_, 'g> {
         }
         match group(ty, self.names).unwrap_or_else(|| Err(unknown_group(ty, self.names))) {
             Ok(group) => {
-                let role = Role::Auxiliary(SYMBOLS + index);
+                let role = Role::OfferedElement(index);
                 let symbol = context.graph.symbol(&name, group.element_shape(), role, group.element_property());
                 let accessor = Access::default();
                 let span = span_of(ty);

@@ -121,7 +121,7 @@ impl Graph {
 
     /// A new symbol for an element of a declared group's matrices.
     pub fn element_symbol(&self, name: &str, n: usize) -> Expr<'_> {
-        self.symbol(name, Shape::square(n), Role::Auxiliary(usize::MAX - 1), Property::General)
+        self.symbol(name, Shape::square(n), Role::DeclaredElement, Property::General)
     }
 }
 

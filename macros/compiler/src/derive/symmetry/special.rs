@@ -155,7 +155,7 @@ impl<'g> Special<'g> {
         let graph = symbol.graph();
         let free = |number: usize| {
             let name = format!("special{index}_{number}");
-            graph.symbol(&name, Shape::scalar(), Role::Auxiliary(1 << 20), Property::General)
+            graph.symbol(&name, Shape::scalar(), Role::Unknown, Property::General)
         };
         let unit = graph.unit(Shape::vector(3), axis, 0);
         let (axial, name) = (format!("e{}", axis + 1), symbol.to_string());

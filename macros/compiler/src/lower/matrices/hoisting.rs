@@ -2,7 +2,6 @@
 
 use clebsch_symbolic::{Role, Shape};
 
-use crate::derive::INERTIA_INVERSE;
 use crate::lower::{Code, Kernel};
 
 /// A kernel of an iteration as two: the terms that do not depend on the coordinates, or on a direction of them, as far as others need them,
@@ -40,5 +39,5 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
 
 /// Whether a symbol is the direction of a derivative.
 pub(crate) fn is_direction(role: Role) -> bool {
-    matches!(role, Role::Auxiliary(_)) && role != INERTIA_INVERSE
+    matches!(role, Role::Direction(_))
 }
