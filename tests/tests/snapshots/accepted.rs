@@ -44,9 +44,10 @@ fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
 
 /// Each formula as `symbol = expression` in LaTeX.
 fn latex(formulas: &Formulas<'_>) -> String {
-    let line =
-        |formula: &Formula| format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex.join(" \\\\\n"));
-    formulas.listing().iter().map(line).collect()
+    let line = |formula: &Formula<'_>| {
+        format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex().join(" \\\\\n"))
+    };
+    formulas.listing().map(line).collect()
 }
 
 /// The code of all kernels, or their operation counts where that is long.

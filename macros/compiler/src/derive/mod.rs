@@ -6,6 +6,7 @@
 //! r where K does not depend on q) plus J(q⁺, ∂U₁).
 
 mod action;
+mod catalogue;
 mod cayley;
 mod clearing;
 mod closed_form;
@@ -16,11 +17,12 @@ mod energy;
 mod equation;
 mod exact;
 mod force;
+mod formula;
 mod increments;
 mod naming;
 mod power;
-mod print;
 mod reference;
+mod rows;
 mod signature;
 mod structure;
 mod summation;
@@ -32,6 +34,7 @@ mod variation;
 mod velocity;
 
 use std::cell::OnceCell;
+use std::fmt;
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
@@ -39,6 +42,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Isotropy, Model, Order, Space};
 
 pub(crate) use action::generator_columns;
+pub use catalogue::{Entry, Heat, Id};
 pub(crate) use cayley::of_increment as cayley_coordinates;
 pub use collocation::Collocation;
 pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
@@ -49,11 +53,11 @@ pub use equation::{Equation, Solution};
 pub use exact::Splitting;
 pub(crate) use exact::{by_inertia, inertia_inverse};
 pub use force::EdgeForce;
+pub use formula::Formula;
 pub(crate) use increments::{from_increment, increments, inserted, inverse_by};
 pub use power::{Home, Link, Stencil, stencil};
-pub use print::Formula;
-pub(crate) use print::MOST_LISTED;
 pub use reference::Reference;
+pub(crate) use rows::MOST_LISTED;
 pub use structure::Structure;
 pub use symbols::{ChartBlock, Symbols};
 pub use symmetry::{ConservedMomentum, Symmetries};
@@ -121,8 +125,8 @@ pub struct Formulas<'g> {
     pub steering: Option<Steering<'g>>,
     /// The price of the end; `None` if there is none.
     pub endpoint: Option<Endpoint<'g>>,
-    /// All of it as text, made when it is first asked for.
-    listing: OnceCell<Vec<Formula>>,
+    /// All of it as the rows of a table, made when it is first asked for.
+    table: OnceCell<Vec<Formula<'g>>>,
 }
 
 /// One discrete Lagrangian with what a step of it needs.
@@ -244,7 +248,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         legendre,
         legendre_next,
         legendre_kick,
-        listing: OnceCell::new(),
+        table: OnceCell::new(),
         projection: match is_free {
             true => None,
             false => action::projection(&model, &symbols, &generator, &momentum_map),
@@ -287,7 +291,7 @@ fn steered<'g>(
         legendre: Vec::new(),
         legendre_next: Vec::new(),
         legendre_kick: None,
-        listing: OnceCell::new(),
+        table: OnceCell::new(),
         is_free: action::is_free(&model, &symbols, &generator),
         projection: None,
         coadjoint: action::coadjoint(&model, &symbols),
@@ -538,4 +542,13 @@ fn legendre<'g>(
         before.iter_mut().zip(start).for_each(|(before, start)| *before = *before - start);
     }
     (before, after)
+}
+
+impl fmt::Display for Formulas<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for formula in self.listing() {
+            writeln!(f, "{}", formula.to_string().trim_end())?;
+        }
+        Ok(())
+    }
 }

@@ -29,24 +29,3 @@ impl fmt::Display for Reference {
         })
     }
 }
-
-/// The source of a formula, by its title.
-pub(super) fn of(title: &str) -> Option<Reference> {
-    let table = [
-        ("action", Reference::ClebschOptimalControl),
-        ("generator", Reference::MechanicsAndSymmetry),
-        ("momentum map", Reference::MechanicsAndSymmetry),
-        ("coadjoint action", Reference::MechanicsAndSymmetry),
-        ("cotangent lift", Reference::ClebschOptimalControl),
-        ("inertia", Reference::MechanicsAndSymmetry),
-        ("Hamiltonian", Reference::MechanicsAndSymmetry),
-        ("Hamilton's equations", Reference::MechanicsAndSymmetry),
-        ("Legendre transform", Reference::DiscreteMechanics),
-        ("next Legendre transform", Reference::DiscreteMechanics),
-        ("kick", Reference::ClebschOptimalControl),
-        ("equation", Reference::LieGroupMethods),
-        ("Jacobian", Reference::LieGroupMethods),
-        ("momentum update", Reference::ClebschOptimalControl),
-    ];
-    table.iter().find(|(known, _)| *known == title).map(|(_, reference)| *reference)
-}

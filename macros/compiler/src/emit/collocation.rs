@@ -5,7 +5,7 @@ use quote::{ToTokens, format_ident, quote};
 
 use super::code::{self, Nesting};
 use super::{Emitter, docs};
-use crate::derive::Formula;
+use crate::derive::Id;
 use crate::lower::CollocationKernels;
 
 impl Emitter<'_, '_> {
@@ -20,10 +20,10 @@ impl Emitter<'_, '_> {
     /// (q′, p′), in the order of their entries.
     fn slope(&self, kernels: &CollocationKernels) -> TokenStream {
         let (time, numbers) = (self.time_parameter(), self.pair_type());
-        let formulas = Formula::of_collocation(&self.program.formulas);
+        let formulas = self.program.formulas.titled(Id::HamiltonEquations);
         let documentation = docs::formulas(
             "Hamilton's equations: the slope (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.",
-            &formulas,
+            formulas,
             Some(&kernels.slope),
         );
         let (q, p) = (self.built("y", 0), self.built("y", self.entries().count()));

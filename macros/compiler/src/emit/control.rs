@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::code::Nesting;
 use super::{Emitter, Generics, code, docs};
+use crate::derive::Id;
 use crate::lower::{BendKernels, ControlKernels, Kernel, StepOfInputs};
 
 impl Emitter<'_, '_> {
@@ -109,7 +110,7 @@ impl Emitter<'_, '_> {
         let (metric, approach) = (self.matrix(&kernels.orbit_metric), self.matrix(&kernels.approach));
         let documentation = docs::formulas(
             "The step that an input makes.",
-            &self.program.formulas.titled("controls"),
+            self.program.formulas.titled(Id::Controls),
             Some(&step.increment),
         );
         let costate = quote!(#private::SVector<#scalar, #m>);
@@ -300,8 +301,8 @@ impl Emitter<'_, '_> {
         };
         let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
         let formulas = &self.program.formulas;
-        let documentation = docs::formulas("The price of a step.", &formulas.titled("price"), Some(&kernels.price));
-        let of_bounds = docs::formulas("The bounds.", &formulas.titled("bounds"), Some(&kernels.bounds));
+        let documentation = docs::formulas("The price of a step.", formulas.titled(Id::Price), Some(&kernels.price));
+        let of_bounds = docs::formulas("The bounds.", formulas.titled(Id::Bounds), Some(&kernels.bounds));
         quote! {
             #documentation
             #[inline]

@@ -440,7 +440,7 @@ fn split(order: Order, has_gradient: bool) -> String {
 }
 
 /// The factors of an equation, with the components that are meant where it holds not all of them.
-fn part(program: &Program<'_>, equation: &Equation<'_>, names: &[&str]) -> String {
+fn part<'g>(program: &Program<'g>, equation: &Equation<'g>, names: &[&str]) -> String {
     let formulas = &program.formulas;
     let whole: usize = equation.factors.iter().map(|&k| formulas.model.factors[k].group.dimension()).sum();
     let names = names.join(", ");

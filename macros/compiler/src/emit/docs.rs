@@ -13,13 +13,13 @@ pub fn lines(lines: &[String]) -> TokenStream {
 }
 
 /// A title, its formulas as a code block, their shape and source, and the cost of the kernel.
-pub fn formulas(title: &str, formulas: &[Formula], kernel: Option<&Kernel>) -> TokenStream {
+pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) -> TokenStream {
     let mut text = vec![title.to_string()];
     if !formulas.is_empty() {
         text.extend([String::new(), "```text".to_string()]);
         text.extend(formulas.iter().map(Formula::equation));
         text.push("```".to_string());
-        let shapes: Vec<String> = formulas[0].shapes.iter().map(|shape| shape.to_string()).collect();
+        let shapes: Vec<String> = formulas[0].shapes().iter().map(|shape| shape.to_string()).collect();
         text.extend([String::new(), format!("Shape: {}.", shapes.join(", "))]);
         if let Some(source) = formulas[0].source {
             text.extend([String::new(), format!("Source: {source}.")]);

@@ -6,7 +6,7 @@ use quote::quote;
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs, matrices};
-use crate::derive::{Equation, Formula, Solution, Structure};
+use crate::derive::{Id, Solution, Structure};
 use crate::lower::{Solve, is_direction};
 
 impl<'g> Emitter<'_, 'g> {
@@ -28,12 +28,12 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The struct of an equation: the system and the constants, with the equation as its documentation.
-    fn equation_structure(&self, name: &Ident, derived: &Equation<'_>, place: Option<&Solve>) -> TokenStream {
+    fn equation_structure(&self, name: &Ident, id: Id, place: Option<&Solve>) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
         let Names { lifetime, constants: constants_name, .. } = &self.names;
-        let formula = self.program.formulas.formula_of_equation(derived);
-        let documentation = docs::formulas("The momentum equation in the chart.", &[formula], None);
+        let formulas = self.program.formulas.titled(id);
+        let documentation = docs::formulas("The momentum equation in the chart.", formulas, None);
         let (time, configuration, input) = (self.time_parameter(), self.configuration_type(), self.input_type());
         let place = place.filter(|solve| solve.moves).map(|solve| {
             let input = solve.reads_input.then(|| quote!(u: &#lifetime #input,));
@@ -57,17 +57,16 @@ impl<'g> Emitter<'_, 'g> {
         let name = self.names.equation(self.program.suffix(index), number);
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
-        let derived = &self.program.formulas.substeps[index].equations[number];
-        let structure = self.equation_structure(&name, derived, None);
+        let structure = self.equation_structure(&name, Id::Equation(index, number), None);
+        let solved = self.program.formulas.titled(Id::Solution(index, number));
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
             Some(kernel) => {
                 let by_reference = self.program.form.keeps_matrices().then(|| quote!(let x = &x;));
                 let (locals, sine) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
-                let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
                 let documentation = docs::formulas(
                     "The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.",
-                    &solved,
+                    solved,
                     solve.predict.as_ref(),
                 );
                 quote! {
@@ -80,13 +79,12 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
             None => {
-                let solved: Vec<Formula> = self.program.formulas.formula_of_solution(derived).into_iter().collect();
                 let title = match (solved.is_empty(), solve.given.is_empty()) {
                     (true, _) => "The solution, h Σ⁻¹μ in the units of the chart.",
                     (false, true) => "The solution, coordinate after coordinate.",
                     (false, false) => "The solution where the coordinates of equations before this one are x.",
                 };
-                let documentation = docs::formulas(title, &solved, solve.predict.as_ref());
+                let documentation = docs::formulas(title, solved, solve.predict.as_ref());
                 let given = (!solve.given.is_empty()).then(|| {
                     let given = self.paths.matrix(solve.given.len(), 1);
                     quote!(, x: &#given)
@@ -172,10 +170,9 @@ impl<'g> Emitter<'_, 'g> {
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
-        let derived = &self.program.formulas.substeps[index].equations[number];
-        let structure = self.equation_structure(&name, derived, Some(solve));
-        let formula = self.program.formulas.formula_of_jacobian(derived);
-        let documentation = docs::formulas("Dρ and −ρ(0).", &[formula], Some(&solve.linearize));
+        let structure = self.equation_structure(&name, Id::Equation(index, number), Some(solve));
+        let jacobian = self.program.formulas.titled(Id::Jacobian(index, number));
+        let documentation = docs::formulas("Dρ and −ρ(0).", jacobian, Some(&solve.linearize));
         let (place, (locals, right, left)) = (self.place(solve), self.linearized(&scope, solve));
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
@@ -230,16 +227,16 @@ impl<'g> Emitter<'_, 'g> {
             }
         });
         let (place, (locals, residual, jacobian)) = (self.place(solve), self.linearized(&scope, solve));
-        let derived = &self.program.formulas.substeps[index].equations[number];
-        let mut formulas = vec![
-            self.program.formulas.formula_of_equation(derived),
-            self.program.formulas.formula_of_jacobian(derived),
-        ];
-        if let Structure::Sylvester(_) = solve.structure {
-            formulas.extend(self.program.formulas.formula_of_sylvester_factor(derived));
-        }
-        let structure = self.equation_structure(&name, derived, Some(solve));
-        let linearized = docs::formulas("The residual and its Jacobian.", &formulas, Some(&solve.linearize));
+        let equation = Id::Equation(index, number);
+        let is_shown = |id: Id| match id {
+            Id::JacobianFactor(..) => {
+                id == Id::JacobianFactor(index, number) && matches!(solve.structure, Structure::Sylvester(_))
+            }
+            _ => id == equation || id == Id::Jacobian(index, number),
+        };
+        let formulas = self.program.formulas.titled_all(is_shown);
+        let structure = self.equation_structure(&name, equation, Some(solve));
+        let linearized = docs::formulas("The residual and its Jacobian.", formulas, Some(&solve.linearize));
         let alone = solve.residual.as_ref().map(|kernel| {
             let documentation = docs::formulas("The residual alone.", &formulas[..1], Some(kernel));
             let body = code::body(&scope, kernel, None);

@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::Emitter;
 use super::code::Nesting;
-use crate::derive::{Formula, Solution};
+use crate::derive::{Id, Solution};
 use crate::lower::{Solve, SplittingKernels, StepKernels};
 
 impl Emitter<'_, '_> {
@@ -181,11 +181,12 @@ impl Emitter<'_, '_> {
             false => quote!((#configuration, #momentum)),
         };
         let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
-        let formula = Formula::of_splitting(&self.program.formulas);
-        let kick = self.part("A kick.", &formula, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
+        let formulas = &self.program.formulas;
+        let kick = formulas.titled(Id::SplittingKick);
+        let kick = self.part("A kick.", kick, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
         let kick_gradient = self.part(
             "The same for the covector.",
-            &[],
+            formulas.titled(Id::SplittingGradient),
             quote!(kick_gradient(&self, #weights) -> #configuration),
             &splitting.gradient,
             Some(Nesting::Configuration),

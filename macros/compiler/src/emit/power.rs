@@ -8,6 +8,7 @@ use quote::quote;
 
 use super::code::{accessor, locals, nested_type};
 use super::{Emitter, Generics, docs};
+use crate::derive::Id;
 use crate::model::{Order, Parameter, Power, Promise, Space};
 
 impl<'g> Emitter<'_, 'g> {
@@ -76,8 +77,8 @@ impl<'g> Emitter<'_, 'g> {
             Some(gathered) => self.gathered_gradient(power, gathered, &point),
             None => self.added_gradient(power, &point),
         };
-        let formulas = self.program.formulas.formulas_of_terms();
-        let of_potential = docs::formulas("The potential energy, a sum over sites.", &formulas, None);
+        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Term(_)));
+        let of_potential = docs::formulas("The potential energy, a sum over sites.", formulas, None);
         quote! {
             #[automatically_derived]
             impl<#parameters> #private::Power<#length> for #ident<#arguments> #predicates {
@@ -309,8 +310,8 @@ impl<'g> Emitter<'_, 'g> {
             let (k, value) = (Literal::usize_unsuffixed(k), scope.code(entry, false));
             quote!(sum[#k] += #value;)
         });
-        let formulas = self.program.formulas.formulas_of_conserved();
-        let documentation = docs::formulas("The momenta that no step changes, sums over all sites.", &formulas, None);
+        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Conserved(_)));
+        let documentation = docs::formulas("The momenta that no step changes, sums over all sites.", formulas, None);
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Conserves for #ident<#arguments> #predicates {

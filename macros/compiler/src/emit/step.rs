@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
-use crate::derive::{Formula, Solution};
+use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
@@ -45,7 +45,7 @@ impl Emitter<'_, '_> {
     pub(super) fn part(
         &self,
         title: &str,
-        formulas: &[Formula],
+        formulas: &[Formula<'_>],
         signature: TokenStream,
         kernel: &Kernel,
         nesting: Option<Nesting>,
@@ -66,25 +66,29 @@ impl Emitter<'_, '_> {
         let suffix = self.program.suffix(index);
         let name = |name: &str| format_ident!("{name}{suffix}");
         let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
-        let substep = &self.program.formulas.substeps[index];
-        let kick = |name: Ident, title: &str, kernel: &Kernel, parts: &Option<Vec<clebsch_symbolic::Expr<'_>>>| {
-            let mut formula = self.program.formulas.formula_of_momentum_map();
-            formula.symbol = "kick".into();
-            formula.text = parts.iter().flatten().map(|part| part.to_string()).collect();
-            self.part(title, &[formula], quote!(#name(&self, #time q: &#configuration) -> #momentum), kernel, None)
+        let formulas = &self.program.formulas;
+        let kick = |name: Ident, title: &str, kernel: &Kernel, id: Id| {
+            self.part(
+                title,
+                formulas.titled(id),
+                quote!(#name(&self, #time q: &#configuration) -> #momentum),
+                kernel,
+                None,
+            )
         };
         let start = step
             .start
             .as_ref()
-            .map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, &substep.start));
+            .map(|kernel| kick(name("start_kick"), "The kick at the start of a step.", kernel, Id::StartKick(index)));
         let end = step.end.as_ref().filter(|_| !step.end_is_start);
-        let end = end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, &substep.end));
+        let end =
+            end.map(|kernel| kick(name("end_kick"), "The kick at the end of a step.", kernel, Id::EndKick(index)));
         let input = self.input_parameter();
         let element = self.element_type();
         let force = |name: Ident, title: &str, at: TokenStream, kernel: &Kernel| {
-            let formulas = self.program.formulas.titled("force");
+            let formulas = self.program.formulas.titled(Id::Force);
             let signature = quote!(#name(&self, #time q: &#configuration, #at #input) -> #momentum);
-            self.part(title, &formulas, signature, kernel, None)
+            self.part(title, formulas, signature, kernel, None)
         };
         let start_force = step.start_force.as_ref();
         let start_force = start_force.map(|kernel| {
@@ -97,36 +101,47 @@ impl Emitter<'_, '_> {
             let title = "The part of the impulse at the start of a step that depends on the velocity.";
             force(name("moving_force"), title, quote!(x: &#momentum,), kernel)
         });
-        let gradient = |name: Ident, title: &str, kernel: &Kernel| {
+        let gradient = |name: Ident, title: &str, kernel: &Kernel, id: Id| {
             let signature = quote!(#name(&self, #time q: &#configuration) -> #configuration);
-            self.part(title, &[], signature, kernel, Some(Nesting::Configuration))
+            self.part(title, formulas.titled(id), signature, kernel, Some(Nesting::Configuration))
         };
         let start_gradient = step.start_gradient.as_ref();
         let start_gradient = start_gradient.map(|kernel| {
-            gradient(name("start_gradient"), "∂U₀(q), the kick of the covector at the start of a step.", kernel)
+            gradient(
+                name("start_gradient"),
+                "∂U₀(q), the kick of the covector at the start of a step.",
+                kernel,
+                Id::StartGradient(index),
+            )
         });
         let end_gradient = step.end_gradient.as_ref().filter(|_| !(step.end_is_start && self.follows_great_circles()));
         let end_gradient = end_gradient.map(|kernel| {
-            gradient(name("end_gradient"), "∂U₁(q), the kick of the covector at the end of a step.", kernel)
+            gradient(
+                name("end_gradient"),
+                "∂U₁(q), the kick of the covector at the end of a step.",
+                kernel,
+                Id::EndGradient(index),
+            )
         });
         let rest = step.rest.as_ref().map(|kernel| {
-            kick(name("rest_kick"), "What the cost gives at F = I, with the other sign.", kernel, &substep.rest)
+            kick(name("rest_kick"), "What the cost gives at F = I, with the other sign.", kernel, Id::RestKick(index))
         });
         let coupled_gradient = step.coupled_gradient.as_ref().map(|kernel| {
             let name = name("coupled_gradient");
             let signature = quote!(#name(&self, #time q: &#configuration, d: &#element) -> #configuration);
             let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
-            self.part(title, &[], signature, kernel, Some(Nesting::Configuration))
+            let formulas = formulas.titled(Id::CoupledGradient(index));
+            self.part(title, formulas, signature, kernel, Some(Nesting::Configuration))
         });
         let update = step.update.as_ref().map(|kernel| {
-            let (signature, formulas) = (name("update"), self.program.formulas.titled("momentum update"));
+            let (signature, formulas) = (name("update"), self.program.formulas.titled(Id::MomentumUpdate(index)));
             let from = if step.couples { quote!(#time q: &#configuration) } else { quote!(mu: &#momentum) };
             let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
             let title = match self.is_compensated() {
                 true => "What the move, F = I + D, adds to the momentum: M⁺ − μ, in which μ has cancelled.",
                 false => "The momentum after the move, F = I + D.",
             };
-            self.part(title, &formulas, signature, kernel, None)
+            self.part(title, formulas, signature, kernel, None)
         });
         let solve_kept = self.keeps_motions().then(|| self.solve(name("solve_kept"), suffix, step, true));
         let (solve, solve_kept) = match self.program.formulas.turns_whole() {
@@ -249,7 +264,7 @@ impl Emitter<'_, '_> {
                     true => "What F, with chart coordinates x, adds to q: α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
                     false => "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
                 },
-                &self.program.formulas.titled("action"),
+                self.program.formulas.titled(Id::Action),
                 quote!(displace(&self, q: &#configuration, x: &#momentum) -> #configuration),
                 displace,
                 Some(Nesting::Configuration),
@@ -259,7 +274,7 @@ impl Emitter<'_, '_> {
                     true => "What F = I + D adds to q: Φ_F(q) − q, in which q has cancelled.",
                     false => "The configuration that F = I + D moves q to.",
                 },
-                &self.program.formulas.titled("action"),
+                self.program.formulas.titled(Id::Action),
                 quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
                 &step.advance,
                 Some(Nesting::Configuration),
@@ -267,7 +282,7 @@ impl Emitter<'_, '_> {
         };
         let lift = self.part(
             "The covector p carried along by F = I + D, at q⁺.",
-            &self.program.formulas.titled("cotangent lift"),
+            self.program.formulas.titled(Id::CotangentLift),
             quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
             &self.program.cotangent_lift,
             Some(Nesting::Configuration),

@@ -7,7 +7,7 @@ use quote::quote;
 use super::code::Nesting;
 use super::names::Names;
 use super::{Emitter, Generics, code, docs};
-use crate::derive::{Formula, Solution};
+use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
 use crate::model::Space;
 
@@ -82,8 +82,8 @@ impl Emitter<'_, '_> {
                 quote!([#(#entries),*])
             }
         };
-        let formulas = self.program.formulas.formulas_of_conserved();
-        let documentation = docs::formulas("The momenta that no step changes.", &formulas, Some(kernel));
+        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Conserved(_)));
+        let documentation = docs::formulas("The momenta that no step changes.", formulas, Some(kernel));
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Conserves for #ident<#arguments> #predicates {
@@ -143,7 +143,7 @@ impl Emitter<'_, '_> {
     /// A method that is one kernel.
     fn method(
         &self,
-        documentation: (&str, &[Formula]),
+        documentation: (&str, &[Formula<'_>]),
         signature: TokenStream,
         kernel: &Kernel,
         nesting: Option<Nesting>,
@@ -155,7 +155,7 @@ impl Emitter<'_, '_> {
     fn method_after(
         &self,
         inputs: Option<&TokenStream>,
-        documentation: (&str, &[Formula]),
+        documentation: (&str, &[Formula<'_>]),
         signature: TokenStream,
         kernel: &Kernel,
         nesting: Option<Nesting>,
@@ -176,7 +176,7 @@ impl Emitter<'_, '_> {
         let free = self.free_momenta();
         let methods = [
             self.method(
-                ("The action.", &formulas.titled("action")),
+                ("The action.", formulas.titled(Id::Action)),
                 quote!(act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration),
                 &program.act,
                 Some(Nesting::Configuration),
@@ -184,14 +184,14 @@ impl Emitter<'_, '_> {
             self.method(
                 (
                     "The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).",
-                    &formulas.titled("momentum map"),
+                    formulas.titled(Id::MomentumMap),
                 ),
                 quote!(momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum),
                 &program.momentum_map,
                 None,
             ),
             self.method(
-                ("The coadjoint action.", &formulas.titled("coadjoint action")),
+                ("The coadjoint action.", formulas.titled(Id::Coadjoint)),
                 quote!(coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum),
                 &program.coadjoint,
                 None,
@@ -200,7 +200,7 @@ impl Emitter<'_, '_> {
                 free.as_ref(),
                 (
                     "The discrete Legendre transform: the momentum N before the step that moves q by F.",
-                    &formulas.titled("Legendre transform"),
+                    formulas.titled(Id::Legendre),
                 ),
                 quote!(legendre(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre,
@@ -210,7 +210,7 @@ impl Emitter<'_, '_> {
                 free.as_ref(),
                 (
                     "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
-                    &formulas.titled("next Legendre transform"),
+                    formulas.titled(Id::LegendreNext),
                 ),
                 quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
                 &program.legendre_next,
@@ -239,9 +239,12 @@ impl Emitter<'_, '_> {
         let scope = self.scope_of_system();
         let locals = code::locals(&scope, &self.program.potential);
         let value = scope.code(&self.program.potential.outputs[0].1[0], false);
-        let potential =
-            docs::formulas("The potential energy.", &[formulas.formula_of_potential()], Some(&self.program.potential));
-        let kinetic = docs::formulas("The kinetic energy.", &[formulas.formula_of_hamiltonian()], None);
+        let potential = docs::formulas(
+            "The potential energy.",
+            formulas.titled(Id::PotentialEnergy),
+            Some(&self.program.potential),
+        );
+        let kinetic = docs::formulas("The kinetic energy.", formulas.titled(Id::KineticEnergyOfMomentum), None);
         let energy = self.kinetic_energy();
         quote! {
             #potential
@@ -308,7 +311,7 @@ impl Emitter<'_, '_> {
         let (gradient, hessian) = (grid(1), grid(2));
         let documentation = docs::formulas(
             "The Lagrangian of a velocity, its gradient and its Hessian.",
-            &self.program.formulas.titled("Lagrangian"),
+            self.program.formulas.titled(Id::Lagrangian),
             Some(kernel),
         );
         quote! {
@@ -425,9 +428,9 @@ impl Emitter<'_, '_> {
     /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
     fn stagger(&self) -> Option<TokenStream> {
         let (kernel, scalar) = (self.program.stagger.as_ref()?, &self.paths.scalar);
-        let formulas = self.program.formulas.titled("synchronized momentum");
+        let formulas = self.program.formulas.titled(Id::SynchronizedMomentum);
         Some(self.method(
-            ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", &formulas),
+            ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", formulas),
             quote!(stagger(&self, h: #scalar, t: #scalar, q: &Self::Configuration) -> Self::Momentum),
             kernel,
             None,

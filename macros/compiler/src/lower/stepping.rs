@@ -270,10 +270,6 @@ fn separate(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) ->
     kernel(scalars, &grids, Hoisting::Constants(hoisted))
 }
 
-/// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
-/// there, half as long for SO(10), and less memory in all.
-const FEWEST_OF_SYLVESTER: usize = 21;
-
 fn solve<'g>(
     formulas: &Formulas<'g>,
     substep: &Substep<'g>,
@@ -290,11 +286,7 @@ fn solve<'g>(
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
     let mut residual = None;
-    let is_large = scalars.keeps_matrices && equation.components.len() >= FEWEST_OF_SYLVESTER;
-    let sylvester = match equation.solution {
-        Solution::Newton if is_large => equation.sylvester_factor(formulas),
-        _ => None,
-    };
+    let sylvester = if scalars.keeps_matrices { equation.large_jacobian_factor(formulas) } else { None };
     let (prepare, linearize) = match equation.solution {
         Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
@@ -527,9 +519,9 @@ fn advance(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
 
 /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one; the other trivialisation of ∂_F K where the cost couples. Where sums
 /// keep their rests, what is added to what was solved for.
-fn update(
-    formulas: &Formulas<'_>,
-    substep: &Substep<'_>,
+fn update<'g>(
+    formulas: &Formulas<'g>,
+    substep: &Substep<'g>,
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> Option<Kernel> {

@@ -3,10 +3,20 @@
 use clebsch_symbolic::{Expr, Group, Shape, View};
 
 use crate::derive::equation::Equation;
-use crate::derive::{Formulas, Symbols};
+use crate::derive::{Formulas, Solution, Symbols};
 use crate::model::Model;
 
+/// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
+/// there, half as long for SO(10), and less memory in all.
+const FEWEST_OF_SYLVESTER: usize = 21;
+
 impl<'g> Equation<'g> {
+    /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
+    pub fn large_jacobian_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
+        let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;
+        if is_large { self.sylvester_factor(formulas) } else { None }
+    }
+
     /// B with Dρ(x)·δ = ⟨δ^·B, E⟩ for all δ in so(n), which is ΔB + BᵀΔ for Δ = δ^.
     ///
     /// ⟨A, E⟩ is the skew part of A, so that a term uΔ counts as Δuᵀ. `None` where Δ stands between two matrices, and for other groups.

@@ -1,0 +1,172 @@
+//! The table of formulas: each has an id, by which prints, documentation and the later stages find it.
+
+use super::Reference::{self, ClebschOptimalControl, DiscreteMechanics, LieGroupMethods, MechanicsAndSymmetry};
+use Heat::{Cold, Hot};
+
+/// Which formula; numbers are those of the substep, and of the equation in it, or of the term.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Id {
+    /// Φ_F(q).
+    Action,
+    /// ξ_Q(q).
+    Generator,
+    /// J(q, p).
+    MomentumMap,
+    /// Ad*_F μ.
+    Coadjoint,
+    /// (TΦ_F)^{-*} p.
+    CotangentLift,
+    /// Σξ.
+    Inertia,
+    /// T(ξ).
+    KineticEnergy,
+    /// ℓ(ξ), which is not quadratic.
+    Lagrangian,
+    /// V(q).
+    PotentialEnergy,
+    /// H(q, μ).
+    Hamiltonian,
+    /// H(q, μ) − V(q).
+    KineticEnergyOfMomentum,
+    /// The force in 𝔤*.
+    Force,
+    /// K(h, F).
+    DiscreteLagrangian,
+    /// U₀(h, q).
+    StartPotential,
+    /// U₁(h, q⁺).
+    EndPotential,
+    /// F⁻ℓd(q, F).
+    Legendre,
+    /// F⁺ℓd(q, F).
+    LegendreNext,
+    /// A term of the potential of a power.
+    Term(usize),
+    /// Its gradient at a place that it reads.
+    TermGradient(usize, usize),
+    /// What moves a configuration that is steered.
+    Controls,
+    /// The price of a step.
+    Price,
+    /// The bounds of inputs.
+    Bounds,
+    /// The price of the end.
+    PriceOfEnd,
+    /// A momentum that no step changes.
+    Conserved(usize),
+    /// M − N, the kick before the solve.
+    StartKick(usize),
+    /// What of that kick the cost gives at F = I.
+    RestKick(usize),
+    /// The same kick of the covector.
+    StartGradient(usize),
+    /// ρ(x) = 0.
+    Equation(usize, usize),
+    /// Dρ(x)·δ.
+    Jacobian(usize, usize),
+    /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩.
+    JacobianFactor(usize, usize),
+    /// x(μ).
+    Solution(usize, usize),
+    /// M⁺.
+    MomentumUpdate(usize),
+    /// N⁺ − M⁺, the kick after the move.
+    EndKick(usize),
+    /// The same kick of the covector.
+    EndGradient(usize),
+    /// The kick of the covector by a cost that couples.
+    CoupledGradient(usize),
+    /// By how much the momentum of a step of first order is ahead.
+    SynchronizedMomentum,
+    /// The kick of a splitting, with its weights.
+    SplittingKick,
+    /// The same kick of the covector.
+    SplittingGradient,
+    /// What a step of order 16 collocates.
+    HamiltonEquations,
+}
+
+/// How often a formula is computed.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Heat {
+    /// In every step.
+    Hot,
+    /// When someone asks for it.
+    Cold,
+}
+
+/// What the table says of a formula.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Entry {
+    /// What it is, in words.
+    pub title: &'static str,
+    /// Where it comes from; `None` for what is declared or follows from the formulas above it.
+    pub source: Option<Reference>,
+    /// How often it is computed.
+    pub heat: Heat,
+    /// Whether prints and `DERIVATION` list it; the rest is in the documentation of methods alone.
+    pub is_listed: bool,
+}
+
+impl Id {
+    /// The substep whose formula it is; `None` for those of the whole system.
+    pub fn substep(self) -> Option<usize> {
+        match self {
+            Id::StartKick(index)
+            | Id::RestKick(index)
+            | Id::StartGradient(index)
+            | Id::Equation(index, _)
+            | Id::Jacobian(index, _)
+            | Id::JacobianFactor(index, _)
+            | Id::Solution(index, _)
+            | Id::MomentumUpdate(index)
+            | Id::EndKick(index)
+            | Id::EndGradient(index)
+            | Id::CoupledGradient(index) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// What the table says.
+    pub fn entry(self) -> Entry {
+        let listed = |title, source, heat| Entry { title, source, heat, is_listed: true };
+        let unlisted = |title, source, heat| Entry { title, source, heat, is_listed: false };
+        match self {
+            Id::Action => listed("action", Some(ClebschOptimalControl), Cold),
+            Id::Generator => listed("generator", Some(MechanicsAndSymmetry), Cold),
+            Id::MomentumMap => listed("momentum map", Some(MechanicsAndSymmetry), Cold),
+            Id::Coadjoint => listed("coadjoint action", Some(MechanicsAndSymmetry), Cold),
+            Id::CotangentLift => listed("cotangent lift", Some(ClebschOptimalControl), Cold),
+            Id::Inertia => listed("inertia", Some(MechanicsAndSymmetry), Cold),
+            Id::KineticEnergy => listed("kinetic energy", None, Cold),
+            Id::Lagrangian => listed("Lagrangian", None, Cold),
+            Id::PotentialEnergy => listed("potential energy", None, Cold),
+            Id::Hamiltonian => listed("Hamiltonian", Some(MechanicsAndSymmetry), Cold),
+            Id::KineticEnergyOfMomentum => unlisted("kinetic energy", Some(MechanicsAndSymmetry), Cold),
+            Id::Force => listed("force", None, Hot),
+            Id::DiscreteLagrangian => listed("discrete Lagrangian", None, Cold),
+            Id::StartPotential | Id::EndPotential => listed("", None, Cold),
+            Id::Legendre => listed("Legendre transform", Some(DiscreteMechanics), Cold),
+            Id::LegendreNext => listed("next Legendre transform", Some(DiscreteMechanics), Cold),
+            Id::Term(_) => listed("term", None, Cold),
+            Id::TermGradient(..) => listed("gradient of a term", None, Hot),
+            Id::Controls => listed("controls", None, Hot),
+            Id::Price => listed("price", None, Cold),
+            Id::Bounds => listed("bounds", None, Cold),
+            Id::PriceOfEnd => listed("price of the end", None, Cold),
+            Id::Conserved(_) => listed("conserved", None, Cold),
+            Id::StartKick(_) | Id::EndKick(_) | Id::SplittingKick => listed("kick", Some(ClebschOptimalControl), Hot),
+            Id::RestKick(_) => unlisted("kick", Some(ClebschOptimalControl), Hot),
+            Id::StartGradient(_) | Id::EndGradient(_) | Id::CoupledGradient(_) | Id::SplittingGradient => {
+                unlisted("kick of the covector", Some(ClebschOptimalControl), Cold)
+            }
+            Id::Equation(..) => listed("equation", Some(LieGroupMethods), Hot),
+            Id::Jacobian(..) => listed("Jacobian", Some(LieGroupMethods), Hot),
+            Id::JacobianFactor(..) => unlisted("factor of the Jacobian", None, Hot),
+            Id::Solution(..) => listed("solution", None, Hot),
+            Id::MomentumUpdate(_) => listed("momentum update", Some(ClebschOptimalControl), Hot),
+            Id::SynchronizedMomentum => listed("synchronized momentum", None, Cold),
+            Id::HamiltonEquations => listed("Hamilton's equations", Some(MechanicsAndSymmetry), Hot),
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! A formula: one row of the table, with its expressions; text is made of them when it is asked for.
+
+use std::cell::OnceCell;
+use std::fmt;
+
+use clebsch_symbolic::{Expr, Shape};
+
+use super::{Heat, Id, Reference};
+
+/// A derived formula, `symbol = value`.
+#[derive(Clone)]
+pub struct Formula<'g> {
+    /// Which it is.
+    pub id: Id,
+    /// What it is, in words.
+    pub title: &'static str,
+    /// The left side, `J(q, p)`.
+    pub symbol: String,
+    /// The right side; one expression for each factor or leaf.
+    pub value: Vec<Expr<'g>>,
+    /// Where it comes from.
+    pub source: Option<Reference>,
+    /// How often it is computed.
+    pub heat: Heat,
+    /// How the right side is written.
+    wording: Wording<'g>,
+    /// Which of its expressions are said in the momentum μ of the free motion to F, with μ and F.
+    free: Vec<(usize, Expr<'g>, Expr<'g>)>,
+    text: OnceCell<Vec<String>>,
+}
+
+/// How the right side of a formula is written.
+#[derive(Clone)]
+enum Wording<'g> {
+    /// As its expressions are.
+    AsIs,
+    /// Each expression as it is or expanded, whichever is shorter.
+    Shorter,
+    /// In words: Unicode and LaTeX.
+    Words(String, String),
+    /// Each expression with a kick at this place added to it.
+    AndKick(String, Vec<Expr<'g>>),
+}
+
+/// A notation of formulas.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Notation {
+    Unicode,
+    Latex,
+}
+
+impl<'g> Formula<'g> {
+    /// A formula that is written as its expressions are.
+    pub(super) fn new(id: Id, symbol: impl Into<String>, value: &[Expr<'g>]) -> Formula<'g> {
+        let entry = id.entry();
+        Formula {
+            id,
+            title: entry.title,
+            symbol: symbol.into(),
+            value: value.to_vec(),
+            source: entry.source,
+            heat: entry.heat,
+            wording: Wording::AsIs,
+            free: Vec::new(),
+            text: OnceCell::new(),
+        }
+    }
+
+    /// A formula whose expressions are written expanded where that is shorter.
+    pub(super) fn shorter(id: Id, symbol: impl Into<String>, value: &[Expr<'g>]) -> Formula<'g> {
+        Formula { wording: Wording::Shorter, ..Formula::new(id, symbol, value) }
+    }
+
+    /// The same formula in words.
+    pub(super) fn in_words(self, unicode: String, latex: String) -> Formula<'g> {
+        Formula { wording: Wording::Words(unicode, latex), ..self }
+    }
+
+    /// The same formula with a kick at q⁺ added to its expressions.
+    pub(super) fn and_kick(self, place: String, kick: &[Expr<'g>]) -> Formula<'g> {
+        Formula { wording: Wording::AndKick(place, kick.to_vec()), ..self }
+    }
+
+    /// The same formula, some of whose expressions are said in the momentum μ of the free motion to F.
+    pub(super) fn of_free_motions(self, free: Vec<(usize, Expr<'g>, Expr<'g>)>) -> Formula<'g> {
+        Formula { free, ..self }
+    }
+
+    /// The same formula, with another title than that of the table.
+    pub(super) fn with_title(self, title: &'static str) -> Formula<'g> {
+        Formula { title, ..self }
+    }
+
+    /// The right side, one text for each factor or leaf.
+    pub fn text(&self) -> &[String] {
+        self.text.get_or_init(|| self.written(Notation::Unicode))
+    }
+
+    /// The same in LaTeX.
+    pub fn latex(&self) -> Vec<String> {
+        self.written(Notation::Latex)
+    }
+
+    /// The shapes of the right sides.
+    pub fn shapes(&self) -> Vec<Shape> {
+        self.value.iter().map(|value| value.shape()).collect()
+    }
+
+    /// `symbol = expression`, tuples in parentheses.
+    pub fn equation(&self) -> String {
+        match self.text() {
+            [only] => format!("{} = {only}", self.symbol),
+            several => format!("{} = ({})", self.symbol, several.join(", ")),
+        }
+    }
+
+    /// Whether it is that something vanishes.
+    pub(super) fn is_trivial(&self) -> bool {
+        self.value.is_empty() || self.text().iter().all(|text| text == "0")
+    }
+
+    fn written(&self, notation: Notation) -> Vec<String> {
+        let mut written = self.written_alone(notation);
+        for (k, mu, f) in &self.free {
+            written[*k] += &notation.of_free_motion(*mu, *f);
+        }
+        written
+    }
+
+    fn written_alone(&self, notation: Notation) -> Vec<String> {
+        let each = |write: &dyn Fn(Expr<'g>) -> String| self.value.iter().map(|value| write(*value)).collect();
+        match &self.wording {
+            Wording::AsIs => each(&|value| notation.of(without_embeddings(value))),
+            Wording::Shorter => each(&|value| notation.of(without_embeddings(shorter(value)))),
+            Wording::Words(unicode, latex) => vec![if notation == Notation::Latex { latex } else { unicode }.clone()],
+            Wording::AndKick(place, kicks) => {
+                let write = |(value, kick): (&Expr<'g>, &Expr<'g>)| {
+                    let (value, kick) = (notation.of(without_embeddings(*value)), notation.of(shorter(*kick)));
+                    match notation {
+                        Notation::Unicode => format!("{value} + [{kick}] at {place}"),
+                        Notation::Latex => format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+")),
+                    }
+                };
+                self.value.iter().zip(kicks).map(write).collect()
+            }
+        }
+    }
+}
+
+impl Notation {
+    fn of(self, expression: Expr<'_>) -> String {
+        if self == Notation::Latex { expression.latex() } else { expression.to_string() }
+    }
+
+    /// What the symbol μ means where a factor moves freely.
+    fn of_free_motion(self, mu: Expr<'_>, f: Expr<'_>) -> String {
+        let (mu, f) = (self.of(mu), self.of(f));
+        match self {
+            Notation::Unicode => {
+                format!(", {mu} the momentum of the free motion from I to {f} in h, by less than half a turn")
+            }
+            Notation::Latex => format!(
+                ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Formula<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<24} {}", self.title, self.equation())
+    }
+}
+
+/// The expression with matrices of blocks multiplied block by block, where it has such and that is shorter.
+fn without_embeddings(expression: Expr<'_>) -> Expr<'_> {
+    let text = expression.to_string();
+    if !text.contains("embed(") {
+        return expression;
+    }
+    let blockwise = expression.expand().blockwise().expand();
+    if blockwise.to_string().chars().count() < text.chars().count() { blockwise } else { expression }
+}
+
+/// An expression as it is or expanded, whichever is shorter.
+fn shorter(expression: Expr<'_>) -> Expr<'_> {
+    let length = |expression: &Expr<'_>| expression.to_string().chars().count();
+    let expanded = expression.expand();
+    if length(&expression) < length(&expanded) { expression } else { expanded }
+}

@@ -1,0 +1,131 @@
+//! The rows of a step: kicks, the momentum equation, the momentum after the move, splittings and collocation.
+
+use clebsch_symbolic::Expr;
+
+use crate::derive::{Equation, Formula, Formulas, Id, Solution, Substep};
+
+impl<'g> Formulas<'g> {
+    pub(super) fn rows_of_substep(&self, index: usize) -> Vec<Formula<'g>> {
+        let (substep, q) = (&self.substeps[index], self.q());
+        let mut rows = Vec::new();
+        if let Some(start) = &substep.start {
+            rows.push(Formula::shorter(Id::StartKick(index), "M − N", start));
+        }
+        for number in 0..substep.equations.len() {
+            rows.extend(self.rows_of_equation(index, number));
+        }
+        rows.push(self.row_of_update(index, substep));
+        if let Some(end) = &substep.end {
+            let symbol = format!("N⁺ − M⁺, at {}", self.place_of_end(end));
+            rows.push(Formula::shorter(Id::EndKick(index), symbol, end));
+        }
+        if let Some(rest) = &substep.rest {
+            rows.push(Formula::shorter(Id::RestKick(index), format!("−r({q}, I)"), rest));
+        }
+        let lagrangian = &substep.lagrangian;
+        rows.push(self.row_of_gradient(Id::StartGradient(index), format!("∂U₀/∂{q}"), lagrangian.start));
+        let (end, place) = (lagrangian.end, self.place_of_end(&[lagrangian.end]));
+        rows.push(self.row_of_gradient(Id::EndGradient(index), format!("∂U₁/∂{q}, at {place}"), end));
+        if lagrangian.couples {
+            rows.push(self.row_of_gradient(Id::CoupledGradient(index), format!("∂K/∂{q}"), lagrangian.kinetic));
+        }
+        rows
+    }
+
+    /// The gradient of a part of the discrete Lagrangian with respect to the configuration.
+    fn row_of_gradient(&self, id: Id, symbol: String, part: Expr<'g>) -> Formula<'g> {
+        let gradients = self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol));
+        Formula::shorter(id, symbol, &gradients.collect::<Vec<_>>())
+    }
+
+    /// An equation with its Jacobian, and its solution where there is a formula for it.
+    fn rows_of_equation(&self, index: usize, number: usize) -> Vec<Formula<'g>> {
+        let equation = &self.substeps[index].equations[number];
+        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
+        let delta = self.letter(&self.symbols.blocks.iter().map(|block| block.direction).collect::<Vec<_>>());
+        let row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), &[equation.residual]);
+        let is_explicit = equation.solution == Solution::Explicit;
+        let symbol = format!("Dρ({x})·{delta}");
+        let mut rows = vec![
+            if is_explicit { row.with_title("equation (explicit)") } else { row },
+            Formula::new(Id::Jacobian(index, number), symbol.as_str(), &[equation.directional]),
+        ];
+        let factor = equation.large_jacobian_factor(self).map(|factor| {
+            let symbol = format!("{symbol} = ⟨{delta}^·B, E⟩ with B({x})");
+            Formula::new(Id::JacobianFactor(index, number), symbol, &[factor])
+        });
+        let solution = equation
+            .formula
+            .map(|solution| Formula::new(Id::Solution(index, number), self.coordinates_of(equation), &[solution]));
+        rows.extend(factor.into_iter().chain(solution));
+        rows
+    }
+
+    /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
+    pub fn coordinates_of(&self, equation: &Equation<'g>) -> String {
+        let name = |i: usize| {
+            let block = &self.symbols.blocks[i];
+            let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).collect();
+            let entry = |component: &usize| format!("{}[{}]", block.coordinates, component - block.offset);
+            if held.len() == block.dimension() {
+                return block.coordinates.to_string();
+            }
+            held.iter().map(entry).collect::<Vec<_>>().join(", ")
+        };
+        let names = self.symbols.blocks_of(&equation.components).into_iter().map(name);
+        names.collect::<Vec<_>>().join(", ")
+    }
+
+    fn row_of_update(&self, index: usize, substep: &Substep<'g>) -> Formula<'g> {
+        if let Some(other) = &substep.other {
+            return Formula::shorter(Id::MomentumUpdate(index), "M⁺", other);
+        }
+        let update = |k: usize| {
+            let mu = self.symbols.momenta[k];
+            let mu = substep.rest.as_ref().map_or(mu, |rest| mu - rest[k]);
+            if substep.unchanged[k] { mu } else { self.carried(k, mu) }
+        };
+        let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
+        Formula::new(Id::MomentumUpdate(index), "M⁺", &updates)
+    }
+
+    /// N − π, of a step of first order.
+    pub(super) fn row_of_stagger(&self) -> Option<Formula<'g>> {
+        let stagger = self.stagger.as_ref()?;
+        Some(Formula::shorter(Id::SynchronizedMomentum, format!("N − π, at {}", self.q()), stagger))
+    }
+
+    /// The kicks of a splitting, with their weights b and g.
+    pub(super) fn rows_of_splitting(&self) -> Vec<Formula<'g>> {
+        let Some(splitting) = &self.splitting else { return Vec::new() };
+        let q = self.q();
+        let gradient = |plain: String, with: String| if splitting.has_gradient { plain + &with } else { plain };
+        let energy = gradient(format!("−h·b·V({q})"), format!(" + h³·g·Gᵀ·Σ⁻¹·G, G = J({q}, ∂V)"));
+        let latex = gradient(
+            format!("-h b V({q})"),
+            format!(" + h^3 g\\, G^T \\Sigma^{{-1}} G,\\quad G = J({q}, \\partial V)"),
+        );
+        let kick = Formula::new(Id::SplittingKick, format!("M⁺ − M at {q}"), &splitting.kick);
+        let covector = self.row_of_gradient(Id::SplittingGradient, format!("∂U/∂{q} with U"), splitting.potential);
+        vec![
+            kick.in_words(format!("J({q}, ∂U), U = {energy}"), format!("J({q}, \\partial U),\\quad U = {latex}")),
+            covector.in_words(energy, latex),
+        ]
+    }
+
+    /// Hamilton's equations, which a step of order 16 collocates.
+    pub(super) fn row_of_collocation(&self) -> Option<Formula<'g>> {
+        let collocation = self.collocation.as_ref()?;
+        let (q, xi) = (self.q(), self.letter(&self.symbols.algebra));
+        let p = self.letter(&self.symbols.covectors);
+        let row = Formula::new(Id::HamiltonEquations, format!("({q}′, {p}′)"), &collocation.velocity);
+        let is_linear = !self.energy.gyroscopic.is_zero();
+        let (a, less) = if is_linear { (" − A", format!(" − A·{xi}")) } else { ("", String::new()) };
+        let v = if self.potential_energy.is_zero() { "" } else { " + V" };
+        let (a_latex, less_latex) = if is_linear { (" - A", format!(" - A\\cdot {xi}")) } else { ("", String::new()) };
+        Some(row.in_words(
+            format!("({xi}_Q({q}), −∂_{q}(⟨{p}, {xi}_Q({q})⟩{less}{v})), {xi} = Σ⁻¹(J({q}, {p}){a})"),
+            format!("({xi}_Q({q}),\\, -\\partial_{{{q}}}(\\langle {p}, {xi}_Q({q})\\rangle{less_latex} {v})),\\quad {xi} = \\Sigma^{{-1}}(J({q}, {p}){a_latex})"),
+        ))
+    }
+}
