@@ -8,7 +8,7 @@ use super::{Formula, Formulas, Id};
 use crate::model::Kinetic;
 
 /// More conserved momenta are told by the first and the last of them.
-pub(crate) const MOST_LISTED: usize = 16;
+pub(super) const MOST_LISTED: usize = 16;
 
 impl<'g> Formulas<'g> {
     /// All formulas, in the order of the derivation.

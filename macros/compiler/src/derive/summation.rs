@@ -36,6 +36,12 @@ impl<'g> Formulas<'g> {
         substep.unchanged.contains(&false).then(|| momenta.map(added).collect())
     }
 
+    /// Whether the move leaves the momentum as it is.
+    pub fn keeps_momentum(&self, substep: &Substep<'g>) -> bool {
+        let carries = substep.unchanged.contains(&false) || (substep.rest.is_some() && !self.is_compensated());
+        substep.other.is_none() && !carries
+    }
+
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
     pub fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {

@@ -6,7 +6,6 @@ mod collocation;
 mod composition;
 mod constants;
 mod control;
-mod derivation;
 mod docs;
 mod equation;
 mod exact;
@@ -33,7 +32,6 @@ use code::{Scope, Spelled, nested_type};
 use names::Names;
 use path::Paths;
 
-pub use derivation::derivation;
 pub use stub::stub;
 
 /// The integrator of a program.
@@ -50,6 +48,11 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
         };
         #generated
     }
+}
+
+/// The text of `DERIVATION`.
+pub fn derivation(program: &Program<'_>) -> String {
+    program.derivation()
 }
 
 /// The generated code of a program as text.

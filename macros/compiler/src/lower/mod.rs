@@ -20,6 +20,7 @@ mod print;
 mod scalar;
 mod stepping;
 mod sums;
+mod told;
 mod variation;
 
 use clebsch_symbolic::{Expr, Property, Shape, identity};

@@ -1,0 +1,198 @@
+//! The constant `DERIVATION`: the derivation in words and formulas, what it costs, and what was left out and why.
+
+mod conserved;
+mod equations;
+mod step;
+
+use std::fmt::Write;
+
+use super::{Formulas, Structure};
+use crate::model::{Discretization, Kinetic, Model, Side};
+
+/// What lowering found, which the derivation tells.
+pub struct Lowered {
+    /// How the code is written, and why: a sentence.
+    pub form: String,
+    /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero; `None` where code keeps whole matrices.
+    pub energy: Option<Vec<(usize, usize, String)>>,
+    /// Whether the gradient of a site of a power is gathered from the terms that read it.
+    pub is_gathered: bool,
+    /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
+    pub turns_in_plane: bool,
+    /// How the equations of each substep are iterated.
+    pub iterations: Vec<Vec<Iteration>>,
+    /// The operations of each kernel, one line each.
+    pub costs: String,
+}
+
+/// How a momentum equation is iterated.
+pub struct Iteration {
+    /// What is known of its Jacobian.
+    pub structure: Structure,
+    /// Whether x ← x − s h Σ⁻¹ρ(x) is tried before Newton's method.
+    pub tries_fixed_point: bool,
+}
+
+/// The text of `DERIVATION`.
+pub fn derivation(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    if formulas.model.is_steered() {
+        return steered(formulas, lowered);
+    }
+    let model = &formulas.model;
+    let item = model.power.as_ref().map_or(&model.item, |power| &power.item);
+    let system = [
+        sites(formulas, lowered),
+        frames(model),
+        energy(formulas, lowered),
+        conserved::forces(formulas),
+        conserved::conserved(formulas),
+    ];
+    let scheme = [step::scheme(formulas, lowered), form(formulas, lowered)];
+    let left_out = conserved::left_out(formulas);
+    format!(
+        "{}\n\n{}\n{}\n{left_out}\nFormulas\n\n{formulas}\nCost\n\n{}",
+        item.ident,
+        system.concat(),
+        scheme.concat(),
+        lowered.costs,
+    )
+}
+
+/// What a state holds where steps are made in a plane, and how the code is written.
+fn form(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let is_pushed = formulas.substeps.iter().any(|substep| substep.start.is_some() || substep.end.is_some());
+    let in_plane = match (lowered.turns_in_plane, is_pushed) {
+        (true, true) => {
+            "Steps are made in q and w ⊥ q, which a state holds in place of its momentum M = wqᵀ − qwᵀ: q⁺ = cq + aw, w⁺ = cw − a|w|²q, a = h/κ, c² = 1 − a²|w|².\n"
+        }
+        (true, false) => {
+            "A state holds two vectors of the plane in which it turns in place of its momentum M = vuᵀ − uvᵀ, which stays: q⁺ = cq + aw, w = Mq, a = h/κ, c² = 1 − a²|w|².\n"
+        }
+        (false, _) => "",
+    };
+    format!("{in_plane}{}\n", lowered.form)
+}
+
+/// What a power is.
+fn sites(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let Some(power) = &formulas.model.power else { return String::new() };
+    let length = &power.length;
+    let equal = if power.is_uniform {
+        "all with the same kinetic energy, whose constants are made once"
+    } else {
+        "whose kinetic energies differ, so that the constants of each are made in each step"
+    };
+    let (summed, each) = match power.terms.len() {
+        1 => ("a sum of one formula".to_string(), "it"),
+        count => (format!("sums of {count} formulas"), "each"),
+    };
+    let added = if lowered.is_gathered {
+        "the gradient of a site is gathered from the terms that read it"
+    } else {
+        "what a term has for its sites is added there"
+    };
+    let terms = if power.terms.is_empty() {
+        "Nothing ties them to each other.".to_string()
+    } else {
+        format!(
+            "They are tied to each other by the potential, {summed}; {each} is differentiated once, and {added}, in loops: the code does not grow with {length}."
+        )
+    };
+    format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")
+}
+
+/// The text of a system whose configuration inputs move.
+fn steered(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let model = &formulas.model;
+    let motion = match &model.kinetic {
+        Kinetic::Controls { discretization: Discretization::Exponential, .. } => {
+            "A step moves the configuration by F = exp(h ξ(u)), exact where the input stays as it is."
+        }
+        Kinetic::Controls { .. } => {
+            "A step moves the configuration by F = (I − h/2 ξ(u))⁻¹(I + h/2 ξ(u)), of second order in h."
+        }
+        _ => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
+    };
+    let inputs: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
+    let bounds = match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
+        0 => String::new(),
+        1 => " and keep one bound".to_string(),
+        count => format!(" and keep {count} bounds"),
+    };
+    format!(
+        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{formulas}\nCost\n\n{}",
+        model.item.ident,
+        frames(model),
+        inputs.join(", "),
+        lowered.costs,
+    )
+}
+
+/// Which frame momenta are in, factor by factor.
+fn frames(model: &Model<'_>) -> String {
+    let mut text = String::new();
+    for factor in &model.factors {
+        if !factor.moves {
+            let _ = writeln!(
+                text,
+                "{} in {} moves no configuration; its cost is invariant under conjugation, so it has no side.",
+                factor.name,
+                factor.group.name(model.graph),
+            );
+            continue;
+        }
+        let (side, frame) = match factor.side {
+            Side::Left => ("left", "spatial"),
+            Side::Right => ("right", "body"),
+        };
+        let _ = writeln!(
+            text,
+            "{} in {} acts from the {side}: momenta and velocities are {frame}, in the basis of {}.",
+            factor.name,
+            factor.group.name(model.graph),
+            factor.group.name(model.graph),
+        );
+    }
+    text + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
+}
+
+/// The kinetic energy in coordinates, for a look at what the cost stands for.
+fn energy(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let names: Vec<String> = formulas
+        .symbols
+        .algebra
+        .iter()
+        .flat_map(|xi| (0..xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i + 1))))
+        .collect();
+    let term = |(i, j, text): &(usize, usize, String)| {
+        let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
+        if text == "1" { square } else { format!("{} {square}", grouped(text)) }
+    };
+    let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
+    let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
+    let signature = match formulas.signature() {
+        Some((_, 0)) => "positive definite for positive parameters".to_string(),
+        Some((0, _)) => "negative definite for positive parameters".to_string(),
+        Some((positive, negative)) => {
+            format!(
+                "indefinite, of signature ({positive}, {negative}) for positive parameters: extremals are no minima"
+            )
+        }
+        None => "of a signature that depends on the parameters".to_string(),
+    };
+    match &lowered.energy {
+        None => format!("Kinetic energy is {signature}.\n"),
+        Some(terms) => {
+            let terms = terms.iter().map(term).collect::<Vec<_>>().join(" + ");
+            format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
+        }
+    }
+}
+
+fn grouped(text: &str) -> String {
+    if text.contains(' ') || text.starts_with('-') { format!("({text})") } else { text.to_string() }
+}
+
+fn subscript(index: usize) -> String {
+    index.to_string().bytes().filter_map(|digit| char::from_u32('₀' as u32 + u32::from(digit - b'0'))).collect()
+}

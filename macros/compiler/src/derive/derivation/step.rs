@@ -1,0 +1,182 @@
+//! How a step goes and how accurate it is, in words.
+
+use clebsch_symbolic::Group;
+
+use super::Lowered;
+use super::equations::{how, part};
+use crate::derive::{Collocation, Formulas, Solution};
+use crate::model::{Order, Space};
+
+/// How sums are compensated.
+const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
+
+/// How a step goes and how accurate it is.
+pub(super) fn scheme(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let model = &formulas.model;
+    let mut text = format!("{}\n{}", order(formulas), stagger(formulas));
+    if let Some(stages) = formulas.stages() {
+        text += &format!(
+            "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
+            model.order,
+            if formulas.potential_energy.is_zero() { "" } else { "; kicks between them are merged" }
+        );
+    }
+    if let Some(collocation) = &formulas.collocation {
+        return collocated(formulas, collocation);
+    }
+    if let Some(splitting) = &formulas.splitting {
+        text = split(model.order, splitting.has_gradient);
+    }
+    if formulas.is_exact && !formulas.links.is_empty() {
+        text += "Between kicks a site moves exactly.\n";
+    } else if formulas.is_exact {
+        text = "No potential acts, and a step is the exact motion of the time h: there is no error in h.\n".to_string();
+    }
+    text += &equations(formulas, lowered);
+    if formulas.is_compensated() {
+        text += COMPENSATED;
+    }
+    text + &spaces(formulas) + &tolerance(formulas) + &iterations(formulas)
+}
+
+/// How the momentum equations of a step are solved; both halves of a composed step tell the same, once.
+fn equations(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+    let mut told: Vec<String> = Vec::new();
+    for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.parts) {
+        for (equation, iteration) in substep.equations.iter().zip(iterations) {
+            let part = part(formulas, equation);
+            let how = how(formulas, equation, iteration);
+            told.push(format!("The momentum equation for {part} {how}.\n"));
+        }
+        if formulas.keeps_momentum(substep) && !formulas.turns_whole() {
+            told.push("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
+        }
+    }
+    let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
+    first.map(|(_, line)| line.as_str()).collect()
+}
+
+/// The order of a step of the discrete Lagrangian, and why.
+fn order(formulas: &Formulas<'_>) -> &'static str {
+    let second = if formulas.model.order == Order::First { Order::First } else { Order::Second };
+    match (second, formulas.parts) {
+        (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
+        (Order::Second, 1) if formulas.lagrangian.couples => {
+            "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
+        }
+        (Order::Second, 1) if formulas.potential_energy.is_zero() && formulas.links.is_empty() => {
+            "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), so the step is of second order."
+        }
+        (Order::Second, 1) => {
+            "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), with −h/2·V at each end: half kick, drift, half kick, second order, one gradient a step."
+        }
+        _ => {
+            "The discrete Lagrangian is not time-symmetric, ℓd(q, F; h) ≠ −ℓd(Φ_F q, F⁻¹; −h): half a step is composed with half a step of its adjoint, which is of second order and costs two solves."
+        }
+    }
+}
+
+/// By how much the momentum of a step of first order is ahead of its configuration.
+fn stagger(formulas: &Formulas<'_>) -> &'static str {
+    if formulas.stagger.is_none() {
+        return "";
+    }
+    match (formulas.is_staggered, formulas.model.force.is_some()) {
+        (true, _) => {
+            "The momentum N is ahead of its configuration by half of that kick. Taken back by it, π = N − ½ J(q, ∂(U₁ − U₀)), it is that of the step of second order, \
+             half kick, drift, half kick: `synchronized` reads π, and `staggered_state` starts from it.\n"
+        }
+        (false, true) => {
+            "`synchronized` takes back half of the kick of the potential alone; the motion stays of first order, as the force acts with the velocity before it.\n"
+        }
+        (false, false) => {
+            "`synchronized` takes back half of that kick; the motion stays of first order, as the cost is not time-symmetric.\n"
+        }
+    }
+}
+
+/// What keeps configurations on their spaces.
+fn spaces(formulas: &Formulas<'_>) -> String {
+    let is = |which: fn(&Space) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
+    let rotations = is(|space| matches!(space, Space::Group(group) if group.is_orthogonal()));
+    let lengths = is(|space| matches!(space, Space::Unit | Space::Group(Group::UnitQuaternions)));
+    let (what, how) = match (rotations, lengths) {
+        (false, false) => return String::new(),
+        (true, false) => ("orthogonal matrices", "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε"),
+        (false, true) => ("what has length one", "by q(3 − |q|²)/2 once |q|² is off by 8ε"),
+        (true, true) => (
+            "orthogonal matrices and what has length one",
+            "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε, by q(3 − |q|²)/2 once |q|² is off by 8ε",
+        ),
+    };
+    format!("Rounding is taken off {what}, {how}: they stay there for any number of steps of (q, N).\n")
+}
+
+/// How much work a step may be.
+fn iterations(formulas: &Formulas<'_>) -> String {
+    let Some(iterations) = &formulas.model.iterations else { return String::new() };
+    format!(
+        "At most {} iterations for each momentum equation, as asked for; a step that needs more is an error.\n",
+        iterations.value
+    )
+}
+
+/// What an iteration that ends early leaves as it is, and what it does not.
+fn tolerance(formulas: &Formulas<'_>) -> String {
+    let Some(tolerance) = &formulas.model.tolerance else { return String::new() };
+    let kept = formulas.conserved_by_any_element();
+    let kept: Vec<&str> = kept.into_iter().map(|momentum| momentum.name.as_str()).collect();
+    let kept = if kept.is_empty() {
+        "No momentum is conserved to rounding".to_string()
+    } else {
+        format!("As N⁺ is Ad* of N, conserved to rounding all the same: the momentum {}", kept.join("; "))
+    };
+    let mut equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
+    let (ends, x) = if equations.any(|equation| equation.solution == Solution::FreeRotation) {
+        ("Series of d end before terms that are below", "d")
+    } else {
+        ("Iterations end before a correction that is below", "x")
+    };
+    format!(
+        "{ends} {:e} of {x}, as asked for. F lies on its group whatever {x} is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
+        tolerance.value
+    )
+}
+
+/// How a step of order 16 goes.
+fn collocated(formulas: &Formulas<'_>, collocation: &Collocation<'_>) -> String {
+    let mut text = String::from(
+        "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic, and \
+         what is quadratic in (q, p) is kept, the momenta of symmetries and the orbit of q among it. A step starts from a covector p with J(q, p) = N; N⁺ − N = J(q⁺, p⁺) − J(q, p).\n",
+    );
+    if collocation.is_affine {
+        text += "The action moves the origin: J is affine in q.\n";
+    }
+    let most = formulas.model.iterations.as_ref().map_or(64, |iterations| iterations.value);
+    text += match &formulas.model.tolerance {
+        None => format!("Slopes are found by sweeps over all stages, {most} at most, until only rounding changes.\n"),
+        Some(tolerance) => format!(
+            "Slopes are found by sweeps over all stages, {most} at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
+             energy, momenta and the orbit drift with it.\n",
+            tolerance.value
+        ),
+    }
+    .as_str();
+    if formulas.is_compensated() {
+        text += COMPENSATED;
+    }
+    text + &spaces(formulas)
+}
+
+/// How a splitting goes.
+fn split(order: Order, has_gradient: bool) -> String {
+    let (kicks, kind) = match (order, has_gradient) {
+        (Order::Sixth, true) => (5, "with force gradients, of order (8, 6, 6) in V, V² and V³"),
+        (_, true) => (4, "with force gradients at the nodes of Gauss and Legendre, of order (8, 4) in V and V²"),
+        (Order::Sixth, false) => (10, "without force gradients, as the potential is opaque (Blanes and Moan)"),
+        (_, false) => (6, "without force gradients, as the potential is opaque (Blanes and Moan)"),
+    };
+    format!(
+        "The drift is exact, so drifts and kicks in turn make a step of order {order}: {kicks} kicks {kind}, the same forwards and backwards. A part a of the drift with the momentum μ is the whole drift with the momentum a μ.\n"
+    )
+}
