@@ -5,7 +5,8 @@ use clebsch_symbolic::{Expr, Property, Role, identity};
 use super::equation::{Sources, is_moving};
 use super::exact::{by_inertia, inertia_inverse};
 use super::{Energy, Symbols};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Isotropy, Model, Order};
 
 /// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
@@ -115,18 +116,11 @@ fn lift<'g>(
         let returned: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&back)).collect();
         identity::equal(&returned, momentum_map).then(|| along(&scaled(&symbols.momenta)))
     });
-    match lifted {
-        Some(covectors) => Ok(covectors.into_iter().map(|(_, covector)| covector).collect()),
-        None => {
-            let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(graph)).collect();
-            Err(refused(
-                model,
-                &format!("`order = 16` knows no covector of a momentum for this action of `{}`", groups.join(" × ")),
-                "write `order = 8`",
-                "it knows p = λ μ_Q(q), for rotations and translations of what each factor moves by itself",
-            ))
-        }
-    }
+    lifted.map(|covectors| covectors.into_iter().map(|(_, covector)| covector).collect()).ok_or_else(|| {
+        let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(graph)).collect();
+        let action = Found::somewhere().named(groups.join(" × "));
+        features::refusal((Feature::Collocation, asked(model)), (Feature::UnliftedMomentum, action)).into()
+    })
 }
 
 /// Whether J(0, p) is not zero.
@@ -137,57 +131,19 @@ fn is_affine<'g>(model: &Model<'g>, momentum_map: &[Expr<'g>]) -> bool {
 
 fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> Result<(), Diagnostics> {
     let model = sources.model;
-    let eighth = "write `order = 8`";
-    if model.configurations.is_empty() {
-        return Err(refused(
-            model,
-            "`order = 16` moves a configuration, and there is none",
-            "leave out `momentum` from `emit`, or write `order = 8`",
-            "its stages are pairs (q, p)",
-        ));
-    }
-    if model.force.is_some() {
-        return Err(refused(
-            model,
-            "`order = 16` knows no forces",
-            "write `order = 2`",
-            "forces act at both ends of a step, of second order",
-        ));
-    }
-    if model.has_variations() {
-        return Err(refused(
-            model,
-            "a step of order 16 cannot be differentiated by `emit`",
-            "write `order = 8`; a struct that is generic over its scalar can be stepped with dual numbers",
-            "derivatives are derived for steps of a discrete Lagrangian and for what is composed of them",
-        ));
-    }
-    if energy.general.is_some() || is_moving(model, sources.inertia) {
-        return Err(refused(
-            model,
-            "`order = 16` needs a kinetic energy with a constant inertia",
-            eighth,
-            "its equations are those of ½ (J − A)·Σ⁻¹(J − A) + V, with Σ⁻¹ made once",
-        ));
-    }
-    if let Some(factor) = model.factors.iter().find(|factor| !factor.moves) {
-        let name = &factor.name;
-        return Err(refused(
-            model,
-            &format!("`order = 16` moves what a momentum is made of, and `{name}` moves nothing"),
-            eighth,
-            "its stages are pairs (q, p), and J(q, p) has no part for this factor",
-        ));
-    }
-    if !is_free && model.isotropy == Isotropy::Free {
-        return Err(refused(
-            model,
-            "with `isotropy = free` momenta are not those of a covector, which `order = 16` moves",
-            "write `order = 8`, or declare the whole attitude",
-            "its stages are pairs (q, p), and no p has a momentum J(q, p) about an axis that q does not show",
-        ));
-    }
-    Ok(())
+    features::check((Feature::Collocation, asked(model)), |feature| match feature {
+        Feature::Momentum => Found::when(model.configurations.is_empty()),
+        Feature::Forces => Found::when(model.force.is_some()),
+        Feature::Tangent => Found::when(model.has_variations()),
+        Feature::GeneralLagrangian => Found::when(energy.general.is_some()),
+        Feature::MovingInertia => Found::when(is_moving(model, sources.inertia)),
+        Feature::UnmovedFactor => {
+            let factor = model.factors.iter().find(|factor| !factor.moves)?;
+            Some(Found::somewhere().named(&factor.name))
+        }
+        Feature::FreeIsotropy => Found::when(!is_free && model.isotropy == Isotropy::Free),
+        _ => None,
+    })
 }
 
 /// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
@@ -201,19 +157,15 @@ fn check_linear<'g>(
         general.iter().zip(&symbols.covectors).map(|((_, q), direction)| (*q, *direction)).collect();
     let slope = |velocity: &Expr<'g>| velocity.substitute(general).differential(&directions).expand();
     let bends = |velocity: &Expr<'g>| general.iter().any(|(_, q)| slope(velocity).depends_on(*q));
-    match generator.iter().any(bends) {
-        false => Ok(()),
-        true => Err(refused(
-            model,
-            "`order = 16` needs an action that is linear in the configuration, or affine",
-            "write `order = 8`",
-            "collocation keeps what is quadratic in (q, p), as the momentum of a linear action is",
-        )),
+    if generator.iter().any(bends) {
+        let action = (Feature::BentAction, Found::somewhere());
+        return Err(features::refusal((Feature::Collocation, asked(model)), action).into());
     }
+    Ok(())
 }
 
-fn refused(model: &Model<'_>, text: &str, help: &str, note: &str) -> Diagnostics {
+/// Where order 16 is asked for.
+fn asked(model: &Model<'_>) -> Found {
     // by construction: no other order is there without being written
-    let span = model.spans.order.unwrap_or_else(proc_macro2::Span::call_site);
-    Diagnostic::new(span, text.to_string()).help(help).note(note).into()
+    Found::at(model.spans.order.unwrap_or_else(proc_macro2::Span::call_site))
 }

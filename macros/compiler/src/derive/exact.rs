@@ -6,8 +6,9 @@ use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identit
 use super::equation::{Sources, is_diagonal};
 use super::structure::Structure;
 use super::{DiscreteLagrangian, Equation, Solution, Substep, Symbols, action, velocity};
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Discretization, Factor, Kinetic, Model, Order, Side};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
+use crate::model::{Discretization, Kinetic, Model, Order, Side};
 
 /// A step of drifts and kicks, with a force gradient where the potential is a formula.
 pub struct Splitting<'g> {
@@ -50,75 +51,45 @@ pub(super) fn stand_in<'g>(
 }
 
 fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
-    let refused = |message: String, help: &str, note: &str| -> Result<(), Diagnostics> {
-        Err(Diagnostic::new(model.spans.kinetic.place, message).help(help).note(note).into())
-    };
     let known = |group: Group| {
         group.is_translation() || matches!(group, Group::SpecialOrthogonal(3 | 4) | Group::UnitQuaternions)
     };
-    if let Some(factor) = model.factors.iter().find(|factor| !known(factor.group)) {
-        let name = factor.group.name(model.graph);
-        return refused(
-            format!(
-                "`discretization = exact` knows the free motion on `SO<3>`, `SU<2>`, `SO<4>` and `Translation<n>`, not on `{name}`"
-            ),
-            "write `discretization = exponential`, which is exact where the kinetic energy is the same for all axes, or leave the key out",
-            "the free motion of other groups is no map of Moser and Veselov with constants that are known",
-        );
-    }
-    let turns_in_four = model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4));
-    if turns_in_four && (model.factors.len() > 1 || model.potential.is_some() || model.opaque.is_some()) {
-        return refused(
-            "`discretization = exact` knows the free motion on `SO<4>` where nothing else moves or acts".into(),
-            "leave out the potential and the other factors, or the key",
-            "its constants are those of one motion: a kick ends the motion, and to find those of the next takes much longer than a step",
-        );
-    }
-    if model.force.is_some() {
-        return refused(
-            "`discretization = exact` knows no forces".into(),
-            "leave the key out, or write `discretization = moser_veselov`",
-            "the velocity that a force sees is made of the group element of a step, by a discretisation that is a formula of it",
-        );
-    }
-    if model.has_variations() {
-        return refused(
-            "`discretization = exact` cannot be differentiated twice".into(),
-            "leave out `emit = [tangent]` or `emit = [boundary]`, or write another discretization; a struct that is generic over its scalar can be stepped with dual numbers",
-            "its discrete Lagrangian is the action of the free motion, which is no formula of the group element",
-        );
-    }
+    let velocity = || Found::somewhere().named(velocities[0]);
+    features::check((Feature::ExactDiscretization, Found::at(model.spans.kinetic.place)), |feature| match feature {
+        Feature::UnknownFreeMotion => {
+            let factor = model.factors.iter().find(|factor| !known(factor.group))?;
+            Some(Found::somewhere().named(factor.group.name(model.graph)))
+        }
+        Feature::RotationsOfFourSpace => {
+            let turns = model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4));
+            let is_alone = model.factors.len() == 1 && model.potential.is_none() && model.opaque.is_none();
+            Found::when(turns && !is_alone)
+        }
+        Feature::Forces => Found::when(model.force.is_some()),
+        Feature::Tangent => Found::when(model.has_variations()),
+        Feature::VaryingEnergy => (!is_constant_form(model, energy, velocities)).then(velocity),
+        Feature::NoDistributionOfMass => (!has_mass(model, energy, velocities)).then(velocity),
+        _ => None,
+    })
+}
+
+/// Whether an energy is a constant quadratic form of each velocity alone.
+fn is_constant_form<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
     let moves = energy.depends_on(model.time) || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
     let quadratic = |velocity: &Expr<'g>| {
         let gradient = energy.gradient(*velocity);
         let inertia = gradient.matrix_of_linear(*velocity);
         !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity])
     };
-    if moves || !velocities.iter().all(quadratic) {
-        let velocity = velocities[0];
-        return refused(
-            "`discretization = exact` needs a constant quadratic form of the velocity of each factor".into(),
-            &format!(
-                "write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`, or leave the key out"
-            ),
-            "the free motion conserves the energy and the length of the momentum, and is known in terms of both",
-        );
-    }
-    let has_mass = |(factor, velocity): (&Factor<'g>, &Expr<'g>)| {
+    !moves && velocities.iter().all(quadratic)
+}
+
+/// Whether a distribution of mass has the energy, on the factors where this matters.
+fn has_mass<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
+    model.factors.iter().zip(velocities).all(|(factor, velocity)| {
         factor.group != Group::SpecialOrthogonal(4)
             || velocity::mass_matrix(factor.group, energy.gradient(*velocity).matrix_of_linear(*velocity)).is_some()
-    };
-    if !model.factors.iter().zip(velocities).all(has_mass) {
-        let velocity = velocities[0];
-        return refused(
-            "`discretization = exact` needs the kinetic energy of a mass distribution on `SO<4>`".into(),
-            &format!(
-                "write `(self.mass * {velocity}.matrix() * {velocity}.matrix().transpose()).trace() / 2` with a symmetric matrix `mass`, or leave the key out"
-            ),
-            "other quadratic forms of the velocity have no integrals beside the energy and those of the group: their motions are chaotic",
-        );
-    }
-    Ok(())
+    })
 }
 
 /// Whether a solution gives F − I and the next momentum themselves, not chart coordinates: the free motion of four dimensions, which is alone.

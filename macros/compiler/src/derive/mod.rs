@@ -40,6 +40,7 @@ use std::fmt;
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Isotropy, Model, Order, Space};
 
 pub(crate) use action::generator_columns;
@@ -166,7 +167,6 @@ pub struct Substep<'g> {
 /// # Errors
 /// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
-    symbols::check_chart(&model)?;
     variation::check(&model)?;
     let mut symbols = Symbols::new(&model);
     let generator = action::generator(&model, &symbols);
@@ -205,7 +205,8 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian);
     let stepped = if edges.len() == 1 { 1 } else { 2 };
     if let Some(control) = model.control.as_ref().filter(|_| stepped == 2) {
-        return Err(composed(control).into());
+        let price = (Feature::Effort, Found::at(control.written.place));
+        return Err(features::refusal(price, (Feature::AdjointPair, Found::somewhere())).into());
     }
     let forces = |parts| covector.as_ref().map(|covector| force::on_edge(&model, covector, parts));
     if edges.len() == 1 && forces(1).is_some_and(|force| force.start_moving.is_some()) {
@@ -321,16 +322,6 @@ fn steered<'g>(
         generator,
         momentum_map,
     }
-}
-
-/// A step of two edges is not steered.
-fn composed(control: &crate::model::Control<'_>) -> Diagnostic {
-    Diagnostic::new(
-        control.written.place,
-        "this step is composed of two, and the inputs of such steps cannot be chosen yet",
-    )
-    .help("write `order = 1`, or a cost that is its own adjoint, or a `lagrangian`")
-    .note("a cost that changes when the step is run back has order 1, and is composed with its adjoint for order 2")
 }
 
 /// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.

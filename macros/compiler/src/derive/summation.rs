@@ -11,7 +11,8 @@
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
 use super::{Formulas, Substep, increments, inverse_by};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Factor, Located, Model, Summation};
 
 impl<'g> Formulas<'g> {
@@ -113,32 +114,20 @@ fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
 pub(super) fn check(formulas: &Formulas<'_>) -> Result<(), Diagnostics> {
     // collocation adds changes to q and N whatever they are
     let Some(summation) = place(&formulas.model).filter(|_| formulas.collocation.is_none()) else { return Ok(()) };
-    let refused = |text: &str, note: &str| -> Result<(), Diagnostics> {
-        let error = Diagnostic::new(summation.span, text.to_string());
-        Err(error.help("leave out `summation`").note(note).into())
-    };
-    if formulas.turns_whole() {
-        return refused(
-            "the free motion on `SO<4>` finds the next momentum from the group element, so there is no sum to compensate",
-            "it takes steps of any size: with longer ones there are fewer to round",
-        );
-    }
-    if formulas.substeps.iter().take(formulas.parts).any(|substep| substep.other.is_some()) {
-        return refused(
-            "this cost makes the momentum anew in each step, so there is no sum to compensate",
-            "where a cost couples the configuration and the group element, N⁺ is the other trivialisation of its slope, and not N with something added",
-        );
-    }
-    // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S
-    let near = formulas.symbols.increments.as_slice();
-    let leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
-    if let Some((leaf, _)) = leaves.into_iter().find(|(leaf, added)| !cancels(*added, leaf.symbol, near)) {
-        return refused(
-            &format!("the action does not add to `{}`, so there is no sum to compensate", leaf.name),
-            "with F = I + D an action has to be a polynomial in D, as linear and affine ones are",
-        );
-    }
-    Ok(())
+    features::check((Feature::Summation, Found::at(summation.span)), |feature| match feature {
+        Feature::FreeMotionOfFourSpace => Found::when(formulas.turns_whole()),
+        Feature::CoupledCost => {
+            Found::when(formulas.substeps.iter().take(formulas.parts).any(|substep| substep.other.is_some()))
+        }
+        Feature::OtherSum => {
+            // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S
+            let near = formulas.symbols.increments.as_slice();
+            let leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
+            let (leaf, _) = leaves.into_iter().find(|(leaf, added)| !cancels(*added, leaf.symbol, near))?;
+            Some(Found::somewhere().named(&leaf.name))
+        }
+        _ => None,
+    })
 }
 
 /// Whether `from` is in no term without D, or cancels in their sum.

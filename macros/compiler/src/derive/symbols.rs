@@ -3,7 +3,8 @@
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
 use super::{Equation, Solution, Substep};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Kinetic, Model};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
@@ -202,32 +203,11 @@ pub(super) fn check_poles(
     let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
     let has_poles =
         |equation: &Equation<'_>| equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates);
-    match chosen.filter(|_| substeps.iter().flat_map(|substep| &substep.equations).any(has_poles)) {
-        None => Ok(()),
-        Some(chosen) => {
-            let text = "the momentum equation of this step has poles in the exponential chart";
-            let error = Diagnostic::new(chosen.span, text);
-            let error = error.help("leave out `chart`: then Cayley's is chosen, in which it has none");
-            let note =
-                "it divides by what vanishes where F turns by π, and beside that what is computed has lost its digits";
-            Err(error.note(note).into())
-        }
-    }
-}
-
-/// Every factor has to have the chart that the user has chosen.
-pub(super) fn check_chart(model: &Model<'_>) -> Result<(), Diagnostics> {
-    let missing = model.factors.iter().find(|factor| {
-        model.chart.as_ref().is_some_and(|chart| chart.value == ChartChoice::Cayley)
-            && !factor.group.is_translation()
-            && !factor.group.has_cayley_chart(model.graph)
-    });
-    let Some(factor) = missing else { return Ok(()) };
-    let name = factor.group.name(model.graph);
-    let error = Diagnostic::new(factor.span, format!("`{name}` has no Cayley chart"))
-        .help("write `chart = exponential`, or leave the choice to the group")
-        .note(format!("(I - Z)⁻¹(I + Z) is not in {name} for every Z of its Lie algebra"));
-    Err(error.into())
+    let Some(chosen) = chosen else { return Ok(()) };
+    features::check((Feature::ExponentialChart, Found::at(chosen.span)), |feature| {
+        let mut equations = substeps.iter().flat_map(|substep| &substep.equations);
+        Found::when(feature == Feature::Poles && equations.any(has_poles))
+    })
 }
 
 /// The chart coordinates and their directions, numbered through all factors.

@@ -3,36 +3,29 @@
 use clebsch_symbolic::{Expr, identity};
 
 use super::{ConservedMomentum, Formulas, Solution, Substep};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Model, Side};
 
 /// A tolerance ends an iteration, or the series of the free rotations between kicks; a number of iterations limits one.
 pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
     let solutions: Vec<Solution> =
         substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
-    if let Some(iterations) =
-        model.iterations.as_ref().filter(|_| !collocates && !solutions.contains(&Solution::Newton))
-    {
-        let error = Diagnostic::new(iterations.span, "the momentum equation of this step is solved without iteration");
-        return Err(error.help("leave out `iterations`: every step takes the same number of operations").into());
+    let is_iterated = collocates || solutions.contains(&Solution::Newton);
+    if let Some(iterations) = &model.iterations {
+        let asked = (Feature::Iterations, Found::at(iterations.span));
+        features::check(asked, |feature| Found::when(feature == Feature::ExplicitEquation && !is_iterated))?;
     }
-    let Some(tolerance) = model.tolerance.as_ref() else { return Ok(()) };
+    let Some(tolerance) = &model.tolerance else { return Ok(()) };
     let turns_freely = solutions.contains(&Solution::FreeRotation);
     // without kicks d is found once, to round-off
-    if collocates || solutions.contains(&Solution::Newton) || turns_freely && model.potential.is_some() {
-        return Ok(());
-    }
-    let (text, note) = match turns_freely {
-        true => (
-            "the free motion is found once for all steps, to round-off",
-            "the series of a free rotation are evaluated again after each kick",
-        ),
-        false => (
-            "the momentum equation of this step is solved without iteration",
-            "a tolerance says where an iteration ends",
-        ),
-    };
-    Err(Diagnostic::new(tolerance.span, text).help("leave out `tolerance`").note(note).into())
+    let is_series = turns_freely && model.potential.is_some();
+    features::check((Feature::Tolerance, Found::at(tolerance.span)), |feature| match feature {
+        _ if is_iterated || is_series => None,
+        Feature::FreeMotion => Found::when(turns_freely),
+        Feature::ExplicitEquation => Found::when(!turns_freely),
+        _ => None,
+    })
 }
 
 impl<'g> Formulas<'g> {

@@ -5,7 +5,8 @@ use clebsch_symbolic::{Chart, Expr, Property, Shape};
 
 use super::trivialisation::Covector;
 use super::{Bend, DiscreteLagrangian, EdgeForce, Symbols, action, cayley, control};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Factor, Model, Side};
 
 /// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors.
@@ -109,15 +110,12 @@ fn is_free(symbol: Expr<'_>, (i, j): (usize, usize)) -> bool {
 /// Second derivatives need a potential that can be differentiated twice.
 pub(super) fn check(model: &Model<'_>) -> Result<(), Diagnostics> {
     let Some(opaque) = model.opaque.as_ref().filter(|_| model.has_variations()) else { return Ok(()) };
-    let (asked, help) = match model.emit {
-        _ if model.control.is_some() => ("effort", "write the potential as a closure, or leave out the effort"),
-        emit if emit.tangent => ("emit = [tangent]", "write the potential as a closure, or leave out the word"),
-        _ => ("emit = [boundary]", "write the potential as a closure, or leave out the word"),
-    };
-    let error = Diagnostic::new(opaque.place, format!("`{asked}` needs a potential that is a formula"))
-        .help(help)
-        .note("it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives");
-    Err(error.into())
+    features::check((Feature::OpaquePotential, Found::at(opaque.place)), |feature| match feature {
+        Feature::Effort => Found::when(model.control.is_some()),
+        Feature::Tangent => Found::when(model.emit.tangent),
+        Feature::Boundary => Found::when(model.emit.boundary),
+        _ => None,
+    })
 }
 
 /// What variations are made for.

@@ -4,7 +4,8 @@ use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
 use super::exact;
 use super::symbols::logarithm;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Factor, Kinetic, Model};
 
 /// The cost K(t, h, q, F), as declared or made from the Lagrangian.
@@ -73,9 +74,11 @@ fn moser_veselov<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>
         let quadratic =
             !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity]);
         if !quadratic {
-            return Err(not_quadratic(model, *velocity));
+            return Err(refused(model, Feature::CoupledVelocities, velocity));
         }
-        let Some(mass) = mass_matrix(factor.group, inertia) else { return Err(no_mass_matrix(model, factor)) };
+        let Some(mass) = mass_matrix(factor.group, inertia) else {
+            return Err(refused(model, Feature::NoMassMatrix, factor.group.name(graph)));
+        };
         let identity = factor.group.identity(graph);
         let f = factor.symbol;
         cost = cost
@@ -137,22 +140,8 @@ fn independent<'g>(units: Vec<(Expr<'g>, Vec<Expr<'g>>)>) -> (Vec<Expr<'g>>, Vec
     units.into_iter().enumerate().filter(|(index, _)| pivots.contains(index)).map(|(_, unit)| unit).unzip()
 }
 
-fn not_quadratic<'g>(model: &Model<'g>, velocity: Expr<'g>) -> Diagnostics {
-    Diagnostic::new(model.spans.kinetic.place, "the Lagrangian is not a quadratic form of the velocity of each factor")
-        .help(format!(
-            "leave out `discretization = moser_veselov`, or write a kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`"
-        ))
-        .note("the Moser–Veselov discretisation puts (F - I)/h into ½ tr(ξ 𝕄 ξᵀ), which is quadratic and one for each factor")
-        .into()
-}
-
-fn no_mass_matrix<'g>(model: &Model<'g>, factor: &Factor<'g>) -> Diagnostics {
-    let name = factor.group.name(model.graph);
-    Diagnostic::new(
-        model.spans.kinetic.place,
-        format!("this Lagrangian has no Moser–Veselov form on `{name}`"),
-    )
-    .help("leave out `discretization`: the default exists for every Lagrangian")
-    .note("that form is ½ tr(ξ 𝕄 ξᵀ) with a symmetric matrix 𝕄; the inertia of this Lagrangian is of that form for no 𝕄 that holds for all values of its parameters")
-    .into()
+/// The error for a Lagrangian that Moser and Veselov's discretisation cannot have.
+fn refused(model: &Model<'_>, feature: Feature, name: impl ToString) -> Diagnostics {
+    let beside = Found::somewhere().named(name);
+    features::refusal((Feature::MoserVeselov, Found::at(model.spans.kinetic.place)), (feature, beside)).into()
 }

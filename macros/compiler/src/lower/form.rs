@@ -4,7 +4,8 @@ use clebsch_symbolic::{Expr, Group, Table, View};
 
 use super::too_large;
 use crate::derive::{Formulas, Solution};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
 use crate::model::{CodeForm, Isotropy};
 
 /// The most multiplications of a linearisation that is written out, by estimate.
@@ -67,9 +68,9 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
         None => CodeForm::Unrolled,
     };
     match (code, asked, missing) {
-        (CodeForm::Matrices, Some(asked), Some(why)) => {
-            let error = Diagnostic::new(asked.span, format!("{why} has no code with whole matrices yet"));
-            return Err(error.help("leave out `code`, or write `code = unrolled`").into());
+        (CodeForm::Matrices, Some(asked), Some(missing)) => {
+            let asked = (Feature::Matrices, Found::at(asked.span));
+            return Err(features::refusal(asked, (missing, Found::somewhere())).into());
         }
         (CodeForm::Unrolled, ..) if dimension > MOST_UNKNOWNS => {
             return Err(too_large(
@@ -88,6 +89,7 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
         ));
     }
+    let missing = missing.map(Feature::words);
     Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
 }
 
@@ -109,22 +111,23 @@ fn largest_system(formulas: &Formulas<'_>) -> usize {
 }
 
 /// What of a system has no code with whole matrices.
-pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<&'static str> {
+pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<Feature> {
     let model = &formulas.model;
     let is_quaternion = model.configurations.iter().any(|leaf| leaf.is_quaternion)
         || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions);
     let is_held = !formulas.is_free && model.isotropy == Isotropy::Fixed;
-    let rows = [
-        (model.is_steered() || model.control.is_some(), "a choice of inputs"),
-        (model.power.is_some(), "a power"),
-        (is_quaternion, "a system of quaternions"),
-        (formulas.splitting.is_some() || formulas.turns_whole(), "a step of exact drifts"),
-        (!formulas.weighted().is_empty(), "the free rotation of a body"),
-        (formulas.collocation.is_some(), "`order = 16`"),
-        (is_held && formulas.projection.is_none(), "a configuration that some motions leave where it is"),
-        (formulas.energy.general.is_some(), "a Lagrangian that is not quadratic"),
-    ];
-    rows.into_iter().find_map(|(has, what)| has.then_some(what))
+    let has = |feature: &Feature| match feature {
+        Feature::Inputs => model.is_steered() || model.control.is_some(),
+        Feature::Power => model.power.is_some(),
+        Feature::Quaternions => is_quaternion,
+        Feature::ExactDrifts => formulas.splitting.is_some() || formulas.turns_whole(),
+        Feature::FreeRotation => !formulas.weighted().is_empty(),
+        Feature::Collocation => formulas.collocation.is_some(),
+        Feature::HeldConfiguration => is_held && formulas.projection.is_none(),
+        Feature::GeneralLagrangian => formulas.energy.general.is_some(),
+        _ => false,
+    };
+    features::refused_beside(Feature::Matrices).find(has)
 }
 
 /// About the multiplications of a linearisation of each momentum equation, written out: each column of the Jacobian is a directional

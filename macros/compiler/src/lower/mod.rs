@@ -238,7 +238,7 @@ fn too_large(formulas: &Formulas<'_>, code: CodeForm, size: String) -> Diagnosti
         (CodeForm::Matrices, _) => error,
         (CodeForm::Unrolled, None) => error.help("or write `code = matrices`, whose code grows less with the size"),
         (CodeForm::Unrolled, Some(what)) => {
-            error.note(format!("{what} has no code with whole matrices yet, which grows less with the size"))
+            error.note(format!("{} has no code with whole matrices yet, which grows less with the size", what.words()))
         }
     }
     .into()

@@ -4,15 +4,17 @@ use clebsch_symbolic::Expr;
 use syn::{BinOp, Expr as Syntax};
 
 use super::arguments::Arguments;
+use super::chart::without_cayley_map;
 use super::closures::{Elaborated, default_discretization, scalar, tail, written};
 use super::elaborate::{Context, Elaborator, shortened};
+use super::features::{self, Feature, Found};
 use super::forces::{self, Input};
 use super::leaves::{Expected, leaves, new_value_of};
 use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, Slot};
 use super::value::Value;
 use super::{Bound, Configuration, Control, Discretization, Factor, Kinetic};
 use crate::diagnostic::{Diagnostic, Place};
-use crate::parse::{self, Closure, Declaration, spell};
+use crate::parse::{self, Closure, Declaration, Located, spell};
 
 /// The motion that inputs give, with the input; `None` with an error, which was reported.
 pub(super) fn motion<'g>(
@@ -27,29 +29,7 @@ pub(super) fn motion<'g>(
             let chosen = declaration.dials.discretization.as_ref();
             let discretization =
                 chosen.map_or_else(|| default_discretization(context.graph, Some(system.factors)), |dial| dial.value);
-            if let (Some(dial), Discretization::Projection | Discretization::MoserVeselov | Discretization::Exact) =
-                (chosen, discretization)
-            {
-                let error = Diagnostic::new(dial.span, "controls move by the exponential or by Cayley's map");
-                context
-                    .diagnostics
-                    .push(error.help("write `discretization = exponential` or `discretization = cayley`"));
-                return None;
-            }
-            let leaves =
-                |factor: &&Factor<'g>| !factor.group.is_translation() && !factor.group.has_cayley_chart(context.graph);
-            if let (Some(dial), Discretization::Cayley, Some(factor)) =
-                (chosen, discretization, system.factors.iter().find(leaves))
-            {
-                let name = factor.group.name(context.graph);
-                let error = Diagnostic::new(dial.span, format!("`{name}` has no Cayley map"));
-                context.diagnostics.push(
-                    error
-                        .help("write `discretization = exponential`")
-                        .note(format!("(I - Z)⁻¹(I + Z) is not in {name} for every Z of its Lie algebra")),
-                );
-                return None;
-            }
+            check_discretization(context, chosen, discretization, system.factors)?;
             Some((Kinetic::Controls { velocity, discretization }, input))
         }
         parse::Kinetic::Dynamics(closure) => {
@@ -61,6 +41,31 @@ pub(super) fn motion<'g>(
         }
         parse::Kinetic::Cost(_) | parse::Kinetic::Lagrangian(_) => None,
     }
+}
+
+/// Controls move by the exponential, or by Cayley's map where it stays in the group; `None` where this was refused.
+fn check_discretization(
+    context: &mut Context<'_, '_>,
+    chosen: Option<&Located<Discretization>>,
+    discretization: Discretization,
+    factors: &[Factor<'_>],
+) -> Option<()> {
+    let Some(chosen) = chosen else { return Some(()) };
+    let chosen = Found::at(chosen.span);
+    let refused = match discretization {
+        Discretization::Exponential => return Some(()),
+        Discretization::Cayley => {
+            let group = without_cayley_map(context.graph, factors).map(|factor| factor.group.name(context.graph));
+            let Some(name) = group else { return Some(()) };
+            let beside = Found::somewhere().named(name);
+            features::refusal((Feature::CayleyDiscretization, chosen), (Feature::NoCayleyMap, beside))
+        }
+        Discretization::Projection | Discretization::MoserVeselov | Discretization::Exact => {
+            features::refusal((Feature::OtherDiscretization, chosen), (Feature::Controls, Found::somewhere()))
+        }
+    };
+    context.diagnostics.push(refused);
+    None
 }
 
 /// A closure whose last argument introduces the input.

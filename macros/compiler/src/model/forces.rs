@@ -5,6 +5,7 @@ use clebsch_symbolic::{Expr, Group, Property, Role, Shape};
 use super::arguments::{Arguments, Taken};
 use super::closures::{tail, written};
 use super::elaborate::{Context, Elaborator, shortened};
+use super::features::{self, Feature, Found};
 use super::groups::Names;
 use super::leaves::{Expected, leaf_names, leaves};
 use super::spaces::read_spaces;
@@ -264,14 +265,10 @@ fn two_inputs(closure: &Closure) -> Diagnostic {
         .note("a step has one input, `stepper.step_with(&state, &input)`")
 }
 
-/// Nothing acts: what a declaration without forces has.
+/// What forces do not go with.
 pub(super) fn check_dials(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let Some(force) = declaration.force.as_ref().or(declaration.force_on.as_ref()) else { return };
-    if declaration.dials.emit.boundary {
-        let error =
-            Diagnostic::new(force.head, "a system with forces has no action that fixed endpoints could make critical")
-                .help("leave out `boundary` from `emit`, or the force")
-                .note("forces that are gradients belong in the potential");
-        diagnostics.push(error);
-    }
+    let boundary = |feature| Found::when(feature == Feature::Boundary && declaration.dials.emit.boundary);
+    let refused = features::refusals_of((Feature::Forces, Found::at(force.head)), boundary);
+    refused.for_each(|error| diagnostics.push(error));
 }

@@ -4,6 +4,7 @@ use clebsch_symbolic::Group;
 use syn::{GenericArgument, Generics, PathSegment, Type};
 
 use super::declared::DeclaredGroups;
+use super::features::{self, Feature, Found};
 use super::sizes::{LARGEST, size_argument};
 use super::vectors::{arguments, last_segment, named_shape};
 use super::{Configuration, Factor, Space};
@@ -148,15 +149,9 @@ pub(super) fn check_large(
             "only rotations of a unit vector may have more: the others are found by an equation in all of them",
         ));
     }
-    match declaration.symmetries.first() {
-        Some(symmetry) => Err(Diagnostic::new(
-            Place::of(&symmetry.body),
-            format!("a symmetry is offered, but `{text}` has more than {COMBINED} dimensions"),
-        )
-        .help("leave out `symmetry`: which components of the momentum are conserved is found without it")
-        .note("in larger groups single components are looked at, not what combines them")),
-        None => Ok(()),
-    }
+    let Some(symmetry) = declaration.symmetries.first() else { return Ok(()) };
+    let offered = Found::at(Place::of(&symmetry.body)).named(text);
+    Err(features::refusal((Feature::Symmetry, offered), (Feature::LargeGroup, Found::somewhere())))
 }
 
 /// The error for a type that is no group, where a group is expected.

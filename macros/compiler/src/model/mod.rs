@@ -9,6 +9,7 @@ mod closures;
 mod control;
 mod declared;
 mod elaborate;
+pub(crate) mod features;
 mod fields;
 mod forces;
 mod groups;

@@ -2,8 +2,9 @@
 
 use clebsch_symbolic::Expr;
 
+use super::features::{self, Feature, Found};
 use super::{Isotropy, Kinetic, Model, Structure, Written};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
 
 /// The model without its configuration, where the momentum is stepped alone.
 ///
@@ -36,6 +37,7 @@ pub(super) fn alone(model: Model<'_>) -> Result<Model<'_>, Diagnostics> {
 fn check<'g>(model: &Model<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &mut Diagnostics) {
     let read = |part: &Expr<'g>| model.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
     let Some(leaf) = parts.iter().find_map(read) else { return };
-    let message = format!("`emit = [momentum]` steps the momentum alone, and this depends on `{}`", leaf.name);
-    diagnostics.push(Diagnostic::new(written.place, message).help("leave out the word `momentum`"));
+    let dependent = Found::at(written.place).named(&leaf.name);
+    diagnostics
+        .push(features::refusal((Feature::DependsOnConfiguration, dependent), (Feature::Momentum, Found::somewhere())));
 }

@@ -10,11 +10,12 @@ use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 use proc_macro2::Ident;
 use syn::{Generics, Type};
 
+use super::features::{self, Feature, Found};
 use super::sizes::const_generic;
 use super::value::Value;
 use super::{Configuration, Item, Kinetic, Leaf, Model, Order, Parameter, ScalarType, Structure};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place as Where};
-use crate::parse::{self, Declaration, Located};
+use crate::parse::{Closure, Declaration, Potential};
 pub use bounds::Linear;
 
 /// What makes a power of the model of a site.
@@ -269,34 +270,38 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
 
 /// Reports what a power cannot have yet.
 pub(super) fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    let mut later = |place: Where, what: &str| {
-        let error = Diagnostic::later(place, format!("{what} of a power"));
-        diagnostics.push(error.help("write a number in place of the const generic: then all sites are written out"));
-    };
-    if let Some(parse::Potential::Opaque(opaque)) = &declaration.potential {
-        later(opaque.place, "an opaque potential");
-    }
-    let forces = declaration.force.iter().chain(&declaration.force_on);
-    let others = forces.chain(&declaration.endpoint).chain(&declaration.symmetries);
-    let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
-    for closure in others.chain(steered).chain(declaration.control.iter().map(|control| &control.price)) {
-        later(closure.key.span().into(), &format!("`{}`", closure.key));
-    }
     let dials = &declaration.dials;
-    if let Some(Located { value, span }) = &dials.order
-        && !matches!(value, Order::First | Order::Second)
-    {
-        later((*span).into(), &format!("`order = {}`", value.number()));
-    }
-    if let Some(Located { span, .. }) = &dials.summation {
-        later((*span).into(), "`summation`");
-    }
-    let (all, ident) = (dials.emit, declaration.ident.span());
-    for (asked, word) in [(all.tangent, "tangent"), (all.boundary, "boundary"), (all.momentum, "momentum")] {
-        if asked {
-            later(ident.into(), &format!("`emit = [{word}]`"));
+    let key = |closure: &Option<Closure>| closure.as_ref().map(|closure| Found::at(closure.key.span()));
+    let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
+    let order = |fits: fn(Order) -> bool| {
+        let order = dials.order.as_ref().filter(|order| fits(order.value))?;
+        Some(Found::at(order.span).named(order.value.number()))
+    };
+    let found = |feature| match feature {
+        Feature::OpaquePotential => {
+            declaration.potential.as_ref().and_then(Potential::opaque).map(|opaque| Found::at(opaque.place))
         }
-    }
+        Feature::Force => key(&declaration.force),
+        Feature::ForceOn => key(&declaration.force_on),
+        Feature::Endpoint => key(&declaration.endpoint),
+        Feature::Symmetry => declaration.symmetries.first().map(|closure| Found::at(closure.key.span())),
+        Feature::Controls | Feature::Dynamics => {
+            let motion = declaration.kinetic.closure();
+            (format!("`{}`", motion.key) == feature.words()).then(|| Found::at(motion.key.span()))
+        }
+        Feature::Effort if !declaration.kinetic.is_steered() => {
+            declaration.control.as_ref().map(|control| Found::at(control.price.key.span()))
+        }
+        Feature::Composition => order(|order| order.stages().is_some()),
+        Feature::Sixteenth => order(|order| order == Order::Sixteenth),
+        Feature::Summation => dials.summation.as_ref().map(|summation| Found::at(summation.span)),
+        Feature::Tangent => emitted(dials.emit.tangent),
+        Feature::Boundary => emitted(dials.emit.boundary),
+        Feature::Momentum => emitted(dials.emit.momentum),
+        _ => None,
+    };
+    let refused = features::refusals_of((Feature::Power, Found::somewhere()), found);
+    refused.for_each(|error| diagnostics.push(error));
 }
 
 /// The model of a site with what ties it to others.

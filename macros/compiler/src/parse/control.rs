@@ -6,7 +6,7 @@ use syn::ext::IdentExt;
 use syn::{Type, parse_quote, parse_quote_spanned};
 
 use super::keys::Keys;
-use super::{Argument, Closure, Kinetic, Order, Pattern};
+use super::{Argument, Closure, Kinetic, Pattern};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 
 /// What a choice of inputs costs, and what it is bound by.
@@ -27,22 +27,11 @@ pub(super) struct Read {
 
 /// Takes the keys that say what is steered, and with them action and cost where inputs, not momenta, move the configuration.
 pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Read> {
-    let steered = [("controls", keys.controls.take()), ("dynamics", keys.dynamics.take())];
-    let mut steered = steered.into_iter().filter_map(|(_, closure)| closure);
     let bounds = keys.bounds.take();
-    let Some(motion) = steered.next() else {
+    let Some(motion) = keys.controls.take().or_else(|| keys.dynamics.take()) else {
         let control = control_of_forces(keys, bounds, diagnostics);
         return control.map(|control| Read { action: keys.action.take(), kinetic: None, control: Some(control) });
     };
-    if let Some(second) = steered.next() {
-        let error = Diagnostic::new(
-            second.key.span(),
-            "there are `controls` and `dynamics`, but one thing moves a configuration",
-        );
-        diagnostics
-            .push(error.help("keep `controls` for motions of a group, `dynamics` for any map of a vector space"));
-    }
-    refuse(keys, &motion.key, diagnostics);
     let price = keys.cost.take();
     if price.is_none() && !keys.was_given("cost") {
         diagnostics.push(missing_price(&motion));
@@ -88,60 +77,6 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics
     }
 }
 
-/// What is looked for by its action is a path of steps of second order: some of those of a composition run back in time.
-pub(super) fn check_order(keys: &Keys, diagnostics: &mut Diagnostics) {
-    let is_one_step = |order: Order| matches!(order, Order::First | Order::Second);
-    let Some(order) = keys.dials.order.as_ref().filter(|order| !is_one_step(order.value)) else { return };
-    let asked = [(keys.dials.emit.boundary, "emit = [boundary]"), (keys.was_given("effort"), "effort")];
-    for (_, word) in asked.into_iter().filter(|(asked, _)| *asked) {
-        let error =
-            Diagnostic::new(order.span, format!("`{word}` is for steps of order 2, not of order {}", order.value));
-        diagnostics.push(error.help("write `order = 2`").note(match order.value {
-            Order::Sixteenth => "a step of order 16 collocates Hamilton's equations and has no discrete Lagrangian",
-            _ => "a composed step runs back in some of its parts, where the least action is the greatest",
-        }));
-    }
-}
-
-/// Where inputs move the configuration there is no mechanics.
-fn refuse(keys: &Keys, motion: &Ident, diagnostics: &mut Diagnostics) {
-    let (kept, why) = (
-        format!("leave it out, or leave out `{motion}`"),
-        "the inputs move the configuration directly, without mass, momentum or force",
-    );
-    for name in [
-        "lagrangian",
-        "potential",
-        "force",
-        "force_on",
-        "symmetry",
-        "order",
-        "tolerance",
-        "iterations",
-        "summation",
-        "isotropy",
-        "chart",
-    ] {
-        if let Some(span) = keys.place_of(name) {
-            let error = Diagnostic::new(span, format!("a system with `{motion}` has no `{name}`")).help(&kept);
-            diagnostics.push(error.note(why));
-        }
-    }
-    if let Some(span) = keys.place_of("effort") {
-        let error = Diagnostic::new(span, format!("the price of `{motion}` is the `cost`"));
-        diagnostics.push(error.help("write `cost = |h, u| h * u.norm_squared() / 2`"));
-    }
-    for (asked, word) in [(keys.dials.emit.tangent, "tangent"), (keys.dials.emit.boundary, "boundary")] {
-        if let Some(span) = keys.place_of("emit").filter(|_| asked) {
-            let error = Diagnostic::new(
-                span,
-                format!("`emit = [{word}]` is for steps in time, and a system with `{motion}` has none"),
-            );
-            diagnostics.push(error.help("leave out the word: what solving for the inputs needs is always there"));
-        }
-    }
-}
-
 fn missing_price(motion: &Closure) -> Diagnostic {
     let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
     Diagnostic::new(motion.key.span(), format!("there are `{}`, but no cost to choose them by", motion.key))
@@ -150,13 +85,8 @@ fn missing_price(motion: &Closure) -> Diagnostic {
 
 /// The translations that `dynamics` are made of: the action x ↦ x + a, and the closure without the type of x.
 fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &mut Diagnostics) -> Option<(Closure, Closure)> {
-    if let Some(action) = keys.action.take() {
-        let error = Diagnostic::new(action.key.span(), "a system with `dynamics` has no action");
-        diagnostics.push(
-            error.help("leave it out: the typed argument of `dynamics` is the configuration, and any map moves it"),
-        );
-        return None;
-    }
+    // an action beside it has been refused
+    keys.action.take().is_none().then_some(())?;
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).collect();
     let &[state, _] = typed.as_slice() else {

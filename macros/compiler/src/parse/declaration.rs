@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::keys::{Dials, Keys};
-use super::{Closure, Control, DeclaredGroup, Field, Opaque, control, momentum};
+use super::{Closure, Control, DeclaredGroup, Field, Opaque, combinations, control};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -115,6 +115,7 @@ pub(super) fn assemble(
     fields: Vec<Field>,
     mut diagnostics: Diagnostics,
 ) -> Result<Declaration, Diagnostics> {
+    combinations::check(&keys, &mut diagnostics);
     let steered = control::read(&mut keys, &mut diagnostics);
     // a closure that was given and could not be read has its own error
     let given = |name: &str| keys.was_given(name);
@@ -126,26 +127,14 @@ pub(super) fn assemble(
         diagnostics.push(missing_kinetic(&input.ident));
     }
     let kinetic = match (keys.cost.take(), keys.lagrangian.take()) {
-        (Some(_), Some(lagrangian)) => {
-            diagnostics.push(two_kinetic(&lagrangian.key));
-            None
-        }
-        (Some(cost), None) => Some(Kinetic::Cost(cost)),
+        (Some(cost), _) => Some(Kinetic::Cost(cost)),
         (None, lagrangian) => lagrangian.map(Kinetic::Lagrangian),
     };
     let (action, kinetic, control) = match steered {
         Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
         None => (keys.action.take(), kinetic, None),
     };
-    control::check_order(&keys, &mut diagnostics);
-    momentum::check(&keys, &mut diagnostics);
     control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
-    if let (Some(Kinetic::Cost(_)), Some(discretization)) = (&kinetic, &keys.dials.discretization) {
-        diagnostics.push(
-            Diagnostic::new(discretization.span, "a cost is discrete already, there is nothing to discretise")
-                .help("remove `discretization`, or declare a `lagrangian` instead of the `cost`"),
-        );
-    }
     let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, .. } = keys;
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
@@ -186,9 +175,4 @@ fn missing_kinetic(ident: &Ident) -> Diagnostic {
     Diagnostic::new(ident.span(), format!("`{ident}` has neither a cost nor a lagrangian"))
         .help("write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`")
         .note("without kinetic energy nothing says how a momentum moves the configuration")
-}
-
-fn two_kinetic(key: &Ident) -> Diagnostic {
-    Diagnostic::new(key.span(), "there is a cost and a lagrangian, but a step needs one kinetic energy")
-        .help("keep one of the two: the `lagrangian` is discretised for you, the `cost` is discrete as it stands")
 }

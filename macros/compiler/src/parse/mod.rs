@@ -3,13 +3,13 @@
 mod attribute;
 mod bounds;
 mod closure;
+mod combinations;
 mod control;
 mod declaration;
 mod dials;
 mod field;
 mod groups;
 mod keys;
-mod momentum;
 mod opaque;
 mod print;
 mod spelling;

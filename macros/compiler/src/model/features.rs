@@ -1,0 +1,136 @@
+//! Which features of a declaration do not go together: one table, used by every refusal and printed in `docs/features.md`.
+//!
+//! A stage says which features it has found and where; [`refusals`] looks the combinations up. A rule for a new feature is a row.
+
+mod feature;
+#[cfg(test)]
+mod markdown;
+mod rows;
+
+use proc_macro2::Span;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+pub(crate) use feature::Feature;
+use rows::ROWS;
+
+/// Features that do not go with each other: each of the first with each of the second.
+struct Row {
+    /// The features that are refused; the error is at their place.
+    refused: &'static [Feature],
+    /// The features beside which they are refused.
+    beside: &'static [Feature],
+    /// What is wrong. `{refused}` and `{beside}` are the two features, `{name}` is a name that the declaration gives.
+    message: &'static str,
+    /// The mathematical reason; empty where the message says it.
+    why: &'static str,
+    /// What to write instead.
+    help: &'static str,
+}
+
+/// A feature that a stage has found.
+#[derive(Clone)]
+pub(crate) struct Found {
+    place: Option<Place>,
+    name: String,
+}
+
+impl Found {
+    /// A feature with a place.
+    pub fn at(place: impl Into<Place>) -> Found {
+        Found { place: Some(place.into()), name: String::new() }
+    }
+
+    /// A feature without a place of its own.
+    pub fn somewhere() -> Found {
+        Found { place: None, name: String::new() }
+    }
+
+    /// A feature without a place of its own, if it is there.
+    pub fn when(found: bool) -> Option<Found> {
+        found.then(Found::somewhere)
+    }
+
+    /// Where it is.
+    fn place(&self) -> Place {
+        // by construction: what is refused has a place
+        self.place.unwrap_or_else(|| Span::call_site().into())
+    }
+
+    /// The same with the name that messages give.
+    #[must_use]
+    pub fn named(self, name: impl ToString) -> Found {
+        Found { name: name.to_string(), ..self }
+    }
+}
+
+/// An error for each combination of found features that the table refuses, in the order of the table.
+pub(crate) fn refusals(found: impl Fn(Feature) -> Option<Found>) -> Vec<Diagnostic> {
+    let error = |(row, refused, beside): (&Row, Feature, Feature)| {
+        let (refused, beside) = ((refused, found(refused)?), (beside, found(beside)?));
+        Some(row.diagnostic(refused, beside))
+    };
+    combinations().filter_map(error).collect()
+}
+
+/// The same for one feature: what else is found that it does not go with.
+pub(crate) fn refusals_of(
+    (feature, itself): (Feature, Found),
+    found: impl Fn(Feature) -> Option<Found>,
+) -> impl Iterator<Item = Diagnostic> {
+    combinations().filter_map(move |(row, refused, beside)| {
+        if refused == feature {
+            Some(row.diagnostic((refused, itself.clone()), (beside, found(beside)?)))
+        } else if beside == feature {
+            Some(row.diagnostic((refused, found(refused)?), (beside, itself.clone())))
+        } else {
+            None
+        }
+    })
+}
+
+/// Whether a feature goes with what else is found.
+///
+/// # Errors
+/// The first combination that the table refuses.
+pub(crate) fn check(itself: (Feature, Found), found: impl Fn(Feature) -> Option<Found>) -> Result<(), Diagnostics> {
+    refusals_of(itself, found).next().map_or(Ok(()), |error| Err(error.into()))
+}
+
+/// The error for two features that the table refuses.
+pub(crate) fn refusal(refused: (Feature, Found), beside: (Feature, Found)) -> Diagnostic {
+    let is_pair = |(_, one, other): &(&Row, Feature, Feature)| (*one, *other) == (refused.0, beside.0);
+    match combinations().find(is_pair) {
+        Some((row, ..)) => row.diagnostic(refused, beside),
+        // by construction: a stage refuses what is in the table
+        None => {
+            let message = format!("{} does not go with {}", refused.0.words(), beside.0.words());
+            Diagnostic::new(refused.1.place(), message)
+        }
+    }
+}
+
+/// Every row for each of its pairs: what is refused, and beside what.
+fn combinations() -> impl Iterator<Item = (&'static Row, Feature, Feature)> {
+    let of_row = |row: &'static Row| {
+        row.beside.iter().flat_map(move |beside| row.refused.iter().map(move |refused| (row, *refused, *beside)))
+    };
+    ROWS.iter().flat_map(of_row)
+}
+
+/// The features beside which one is refused, in the order of the table.
+pub(crate) fn refused_beside(feature: Feature) -> impl Iterator<Item = Feature> {
+    ROWS.iter().filter(move |row| row.refused.contains(&feature)).flat_map(|row| row.beside.iter().copied())
+}
+
+impl Row {
+    fn diagnostic(&self, refused: (Feature, Found), beside: (Feature, Found)) -> Diagnostic {
+        let name = if refused.1.name.is_empty() { &beside.1.name } else { &refused.1.name };
+        let fill = |text: &str| filled(text, refused.0.words(), beside.0.words(), name);
+        let error = Diagnostic::new(refused.1.place(), fill(self.message)).help(fill(self.help));
+        if self.why.is_empty() { error } else { error.note(fill(self.why)) }
+    }
+}
+
+fn filled(text: &str, refused: &str, beside: &str, name: &str) -> String {
+    text.replace("{refused}", refused).replace("{beside}", beside).replace("{name}", name)
+}
