@@ -22,3 +22,4 @@ pub mod fixtures {
 }
 
 pub mod oracle;
+pub mod scenes;

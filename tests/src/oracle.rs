@@ -4,6 +4,7 @@
 //! on a Cayley vector, SO(4) by a Riccati equation, and exact motions come from the equations of motion by a classical method.
 //! [`precise`] solves the unsimplified equations of any problem to 30 digits.
 
+pub mod bits;
 pub mod body;
 pub mod dual;
 pub mod flat;

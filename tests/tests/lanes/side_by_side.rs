@@ -1,6 +1,7 @@
 //! The same steps in lanes and one by one.
 
 use clebsch::{Body, Clebsch, Error, F32x8, F64x4, F64x8, Mask, Scalar, Space, State, Stepper};
+use clebsch_tests::oracle::bits::Bits;
 use std::cell::RefCell;
 
 /// Steps in lanes of this type, for what is written for any.
@@ -9,23 +10,6 @@ pub trait Lanes: Scalar<Lane: Bits> {}
 impl Lanes for F64x8 {}
 impl Lanes for F64x4 {}
 impl Lanes for F32x8 {}
-
-/// A number bit for bit.
-pub trait Bits: Scalar {
-    fn bits(self) -> u64;
-}
-
-impl Bits for f64 {
-    fn bits(self) -> u64 {
-        self.to_bits()
-    }
-}
-
-impl Bits for f32 {
-    fn bits(self) -> u64 {
-        self.to_bits().into()
-    }
-}
 
 /// All scalars of a space, bit for bit.
 pub fn bits<T: Bits>(space: &impl Space<T>) -> Vec<u64> {
