@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clebsch_compiler::{Graph, WORK, compile, expand};
 use clebsch_symbolic::work;
-use proc_macro2::TokenStream;
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
 
 /// The files of a folder of fixtures, in order.
@@ -73,4 +73,104 @@ fn rejected_fixtures_have_errors_that_help() {
             assert!(rest.contains("help: ") || rest.contains("note: "), "{} only says: {first}", file.display());
         }
     }
+}
+
+/// The generated code of a fixture.
+fn generated(file: &Path) -> TokenStream {
+    expand(item(file))
+}
+
+/// `a + -b`, `a * (-b)`, `(-a) * b`: how often one sign follows another, or stands before a factor.
+fn double_signs(tokens: TokenStream) -> usize {
+    let trees: Vec<TokenTree> = tokens.into_iter().collect();
+    let is_operator = |tree: Option<&TokenTree>| match tree {
+        Some(TokenTree::Punct(punct)) => "+-*/".contains(punct.as_char()),
+        _ => false,
+    };
+    let begins_with_sign = |tree: &TokenTree| match tree {
+        TokenTree::Punct(punct) => punct.as_char() == '-' && punct.spacing() == Spacing::Alone,
+        TokenTree::Literal(literal) => literal.to_string().starts_with('-'),
+        _ => false,
+    };
+    let is_negative = |tree: &TokenTree| match tree {
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis => {
+            group.stream().into_iter().next().is_some_and(|first| begins_with_sign(&first))
+        }
+        tree => begins_with_sign(tree),
+    };
+    let mut count = 0;
+    for (position, tree) in trees.iter().enumerate() {
+        let before = position.checked_sub(1).and_then(|before| trees.get(before));
+        let is_factor = matches!(tree, TokenTree::Group(_)) && is_operator(trees.get(position + 1));
+        // a group behind a name is what a function is called with
+        let is_called = matches!(before, Some(TokenTree::Ident(_)));
+        count += usize::from(is_negative(tree) && !is_called && (is_operator(before) || is_factor));
+        if let TokenTree::Group(group) = tree {
+            count += double_signs(group.stream());
+        }
+    }
+    count
+}
+
+#[test]
+fn no_sign_stands_before_a_factor_or_behind_another() {
+    let (doubled, single) = ("a * (-b) - (-c) + -d - -1.0 + (-e) * f", "-a - b * (c - d) - f(-e) + [-g, h][0]");
+    let count = |text: &str| double_signs(text.parse().expect("tokens"));
+    assert_eq!((count(doubled), count(single)), (5, 0));
+    for file in fixtures("accept") {
+        assert_eq!(double_signs(generated(&file)), 0, "{}", file.display());
+    }
+}
+
+/// The terms of a printed sum with their signs.
+fn signed_terms(text: &str) -> Vec<(bool, String)> {
+    let mut terms = vec![(false, String::new())];
+    let mut depth = 0;
+    for word in text.split(' ') {
+        match word {
+            "+" | "-" if depth == 0 => terms.push((word == "-", String::new())),
+            _ => {
+                let last = terms.len() - 1;
+                terms[last].1 += word;
+            }
+        }
+        depth += word.matches('(').count() as i64 - word.matches(')').count() as i64;
+    }
+    for (is_negative, term) in &mut terms {
+        if let Some(rest) = term.strip_prefix('-') {
+            (*is_negative, *term) = (!*is_negative, rest.to_string());
+        }
+    }
+    terms.sort();
+    terms
+}
+
+/// Names and values of the constants of a fixture, as its program prints them.
+fn constants(file: &Path) -> Vec<(String, String)> {
+    let graph = Graph::new();
+    let program = compile(&graph, item(file)).unwrap_or_else(|errors| panic!("{}: {errors}", file.display()));
+    let text = program.to_string();
+    let lines = text.lines().skip_while(|line| !line.starts_with("constants:")).skip(1);
+    let lines = lines.take_while(|line| line.starts_with(' ')).filter_map(|line| line.trim().split_once(" = "));
+    let shared: Vec<(String, String)> = lines.map(|(name, value)| (name.to_string(), value.to_string())).collect();
+    shared.into_iter().filter(|(name, _)| program.constant_names.contains(name)).collect()
+}
+
+#[test]
+fn no_constant_is_the_negative_of_another() {
+    assert_eq!(signed_terms("a*(b + c) - d"), [(false, "a*(b+c)".to_string()), (true, "d".to_string())]);
+    let mut seen = 0;
+    for file in fixtures("accept") {
+        let constants = constants(&file);
+        seen += constants.len();
+        let values: Vec<_> = constants.iter().map(|(_, value)| signed_terms(value)).collect();
+        for (position, value) in values.iter().enumerate() {
+            let mut negative: Vec<_> = value.iter().map(|(sign, term)| (!sign, term.clone())).collect();
+            negative.sort();
+            let other = values[position + 1..].iter().position(|other| *other == negative);
+            let other = other.map(|other| &constants[position + 1 + other]);
+            assert_eq!(other, None, "{}: {:?}", file.display(), constants[position]);
+        }
+    }
+    assert!(seen > 300, "{seen} constants");
 }

@@ -41,6 +41,11 @@ impl<K: Hash + Eq> Interner<K> {
         (self.values.len() - 1, true)
     }
 
+    /// All values, in the order of their positions.
+    pub fn into_values(self) -> Vec<K> {
+        self.values
+    }
+
     fn find(&self, hash: u64, value: &K) -> Option<usize> {
         if self.slots.is_empty() {
             return None;

@@ -166,7 +166,9 @@ fn energy(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
         .collect();
     let term = |(i, j, text): &(usize, usize, String)| {
         let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
-        if text == "1" { square } else { format!("{} {square}", grouped(text)) }
+        let size = text.strip_prefix('-').filter(|rest| is_one_term(rest));
+        let text = size.unwrap_or(text);
+        (size.is_some(), if text == "1" { square } else { format!("{} {square}", grouped(text)) })
     };
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
@@ -183,10 +185,31 @@ fn energy(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
     match &lowered.energy {
         None => format!("Kinetic energy is {signature}.\n"),
         Some(terms) => {
-            let terms = terms.iter().map(term).collect::<Vec<_>>().join(" + ");
+            let terms = terms.iter().map(term).fold(String::new(), |sum, (is_negative, term)| {
+                let sign = match (sum.is_empty(), is_negative) {
+                    (true, false) => "",
+                    (true, true) => "-",
+                    (false, false) => " + ",
+                    (false, true) => " - ",
+                };
+                sum + sign + &term
+            });
             format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
         }
     }
+}
+
+/// Whether no sum stands outside of brackets.
+fn is_one_term(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().all(|character| {
+        depth += match character {
+            '(' => 1,
+            ')' => -1,
+            _ => 0,
+        };
+        depth > 0 || character != ' '
+    })
 }
 
 fn grouped(text: &str) -> String {

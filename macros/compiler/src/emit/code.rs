@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, 
 use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
-use crate::lower::{Code, Input, Kernel};
+use crate::lower::{Code, Input, Kernel, is_in_brackets};
 use crate::model::{Access, Model, Part, ScalarType, Structure};
 
 /// Where a function finds its inputs.
@@ -197,6 +197,10 @@ impl Scope<'_, '_> {
         work::spend(4);
         match code {
             Code::Read(input) => tokens.extend(self.read(input)),
+            Code::Number(value) if value.is_negative() && !tight => {
+                operator(tokens, '-');
+                tokens.extend(self.number(&value.abs()));
+            }
             Code::Number(value) => tokens.extend(self.number(value)),
             Code::Constant(index) => {
                 tokens.extend(self.constants.clone());
@@ -214,7 +218,7 @@ impl Scope<'_, '_> {
                 group(tokens, Delimiter::Bracket, index.into());
             }
             Code::Local(index) => word(tokens, &format!("t{index}")),
-            Code::Sum(constant, terms) if tight && !is_single(constant, terms) => {
+            Code::Sum(constant, terms) if tight && is_in_brackets(constant, terms) => {
                 let mut inner = TokenStream::new();
                 self.write_sum(&mut inner, constant, terms);
                 group(tokens, Delimiter::Parenthesis, inner);
@@ -306,11 +310,9 @@ impl Scope<'_, '_> {
         let zero = integer(0);
         let mut is_first = *constant == zero;
         if !is_first {
-            tokens.extend(self.number(constant));
+            self.write(tokens, &Code::Number(constant.clone()), false);
         }
-        // positive terms first, so that no sum begins with a sign
-        let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(coefficient, _)| *coefficient < zero);
-        for (coefficient, term) in positive.into_iter().chain(negative) {
+        for (coefficient, term) in terms {
             match (is_first, *coefficient < zero) {
                 (true, false) => {}
                 (_, true) => operator(tokens, '-'),
@@ -355,11 +357,6 @@ impl Scope<'_, '_> {
             _ => float(value),
         }
     }
-}
-
-/// Whether a sum is written as one positive number or term.
-fn is_single(constant: &Rational, terms: &[(Rational, Code)]) -> bool {
-    terms.len() + usize::from(*constant != integer(0)) == 1 && terms.first().is_none_or(|(c, _)| !c.is_negative())
 }
 
 fn operator(tokens: &mut TokenStream, symbol: char) {

@@ -132,13 +132,11 @@ impl Scope<'_, '_> {
         Some(self.place(input.role, whole.shape))
     }
 
-    /// Σ c_i A_i, those that are added first.
+    /// Σ c_i A_i.
     fn weighted_sum(&self, weights: &[Rational], operands: &[Code]) -> TokenStream {
         let (one, zero) = (integer(1), integer(0));
-        let mut terms: Vec<_> = weights.iter().zip(operands).collect();
-        terms.sort_by_key(|(weight, _)| **weight < zero);
         let mut tokens = TokenStream::new();
-        for (position, (weight, operand)) in terms.into_iter().enumerate() {
+        for (position, (weight, operand)) in weights.iter().zip(operands).enumerate() {
             let (operand, size) = (self.code(operand, true), weight.abs());
             let term = match size == one {
                 true => quote!(#operand),
@@ -149,7 +147,7 @@ impl Scope<'_, '_> {
             };
             tokens = match (position, *weight < zero) {
                 (0, false) => term,
-                (0, true) => quote!(-(#term)),
+                (0, true) => quote!(-#term),
                 (_, false) => quote!(#tokens + #term),
                 (_, true) => quote!(#tokens - #term),
             };

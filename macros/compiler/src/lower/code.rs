@@ -6,7 +6,7 @@ use super::scalar::{Callee, Output};
 use super::{Cost, Input};
 
 /// Straight-line code of one output entry or shared term.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Code {
     /// An entry of an argument.
     Read(Input),
@@ -41,7 +41,7 @@ pub enum Code {
 }
 
 /// An operation on whole matrices, for code that keeps them.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Whole {
     /// What is done.
     pub operation: MatrixOperation,
@@ -54,7 +54,7 @@ pub struct Whole {
 }
 
 /// What is done with whole matrices.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum MatrixOperation {
     /// An argument, by its first entry.
     Argument(Input),
@@ -147,6 +147,44 @@ impl Kernel {
         depends
     }
 
+    /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
+    pub(super) fn without_unused(self) -> Kernel {
+        let mut uses = vec![0_usize; self.locals.len()];
+        let count = |code: &Code, uses: &mut [usize]| code.locals().into_iter().for_each(|index| uses[index] += 1);
+        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|entry| count(entry, &mut uses));
+        for index in (0..self.locals.len()).rev() {
+            if uses[index] > 0 {
+                count(&self.locals[index], &mut uses);
+            }
+        }
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        let alone: Vec<usize> = outputs
+            .filter_map(|entry| match entry {
+                Code::Local(index) if uses[*index] == 1 => Some(*index),
+                _ => None,
+            })
+            .collect();
+        let mut places: Vec<Code> = Vec::new();
+        let mut locals = Vec::new();
+        for (index, code) in self.locals.iter().enumerate() {
+            if uses[index] == 0 {
+                places.push(Code::Local(index));
+                continue;
+            }
+            let code = code.with_locals(&|other| places[other].clone());
+            if alone.contains(&index) {
+                places.push(code);
+            } else {
+                places.push(Code::Local(locals.len()));
+                locals.push(code);
+            }
+        }
+        let renamed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
+        let outputs = self.outputs.iter();
+        let outputs = outputs.map(|(shape, entries)| (*shape, entries.iter().map(renamed).collect())).collect();
+        Kernel { locals, outputs }
+    }
+
     /// Which of its terms an output is made of.
     pub fn needed_by(&self, output: usize) -> Vec<bool> {
         let mut needed = vec![false; self.locals.len()];
@@ -165,6 +203,16 @@ impl Kernel {
         let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
         self.locals.iter().chain(outputs).for_each(|code| code.take(&mut arguments));
         arguments
+    }
+}
+
+/// Whether a sum is written in brackets beside a multiplication: unless it is a number, or one term with a positive number before it. One term
+/// alone has brackets that decide how it is rounded.
+pub fn is_in_brackets(constant: &Rational, terms: &[(Rational, Code)]) -> bool {
+    match terms {
+        [] => constant.is_negative(),
+        [(weight, _)] => *constant != integer(0) || weight.is_negative() || *weight == integer(1),
+        _ => true,
     }
 }
 
@@ -268,7 +316,7 @@ impl Code {
     /// The shared terms that it stands on, by their indices.
     pub(super) fn locals(&self) -> Vec<usize> {
         match self {
-            Code::Local(index) => vec![*index],
+            Code::Local(index) | Code::Output(index, ..) => vec![*index],
             _ => self.parts().into_iter().flat_map(Code::locals).collect(),
         }
     }
@@ -286,6 +334,15 @@ impl Code {
             Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
             Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
             Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
+            Code::Call(callee, arguments) => {
+                let inner = |(shape, entries): &(Shape, Vec<Code>)| (*shape, entries.iter().map(inner).collect());
+                Code::Call(callee.clone(), arguments.iter().map(inner).collect())
+            }
+            Code::Output(index, callee, output) => match other(*index) {
+                Code::Local(index) => Code::Output(index, callee.clone(), *output),
+                // by construction: calls are terms wherever they are put in
+                _ => self.clone(),
+            },
             Code::Whole(whole) => {
                 let operands = whole.operands.iter().map(inner).collect();
                 Code::Whole(Box::new(Whole { operands, ..(**whole).clone() }))

@@ -5,7 +5,7 @@ use clebsch_symbolic::integer;
 use super::{Code, Kernel};
 
 /// The operations of a kernel.
-#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
+#[derive(Copy, Clone, PartialEq, Eq, Hash, Default, Debug)]
 pub struct Cost {
     /// Additions and subtractions.
     pub additions: usize,

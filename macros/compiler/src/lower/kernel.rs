@@ -1,5 +1,6 @@
 //! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
 
+mod hoisted;
 mod shorten;
 
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
@@ -7,25 +8,10 @@ use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, i
 use super::balance;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
+use super::signs;
 use super::{Code, Kernel, Node, Rate, Scalar, Scalars};
+pub use hoisted::Hoisted;
 use shorten::delay_of_term;
-
-/// Values that are computed less often than the kernels that use them.
-#[derive(Clone, Default, Debug)]
-pub struct Hoisted {
-    /// In the order in which they were met.
-    pub scalars: Vec<Scalar>,
-}
-
-impl Hoisted {
-    fn index(&mut self, scalar: Scalar) -> usize {
-        work::spend(1 + self.scalars.len() / 32);
-        self.scalars.iter().position(|&known| known == scalar).unwrap_or_else(|| {
-            self.scalars.push(scalar);
-            self.scalars.len() - 1
-        })
-    }
-}
 
 /// Where a kernel finds what changes less often than itself.
 pub enum Hoisting<'a> {
@@ -50,7 +36,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting:
     if !builder.scalars.keeps_sums {
         builder.shorten(&outputs);
     }
-    builder.code(&outputs)
+    signs::moved(builder.code(&outputs))
 }
 
 fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
@@ -453,16 +439,23 @@ impl Builder<'_, '_> {
     fn leaf(&mut self, scalar: Scalar) -> Code {
         let hoisted = self.is_hoisted(scalar);
         let rate = self.scalars.rate(scalar);
-        match (&mut self.hoisting, self.scalars.node(scalar)) {
-            (Hoisting::Terms(_, terms), _) if rate == Rate::Step => Code::Term(terms.index(scalar)),
-            (Hoisting::Terms(constants, _) | Hoisting::Constants(constants), _) if hoisted => {
-                Code::Constant(constants.index(scalar))
-            }
-            (_, Node::Input(input)) => Code::Read(input.clone()),
-            (_, Node::Pi) => Code::Pi,
-            (_, Node::Sum(value, _)) => Code::Number(value.clone()),
+        let (known, kind): (_, fn(usize) -> Code) = match &mut self.hoisting {
+            Hoisting::Terms(_, terms) if rate == Rate::Step => (terms, Code::Term),
+            Hoisting::Terms(constants, _) | Hoisting::Constants(constants) if hoisted => (constants, Code::Constant),
+            _ => return self.entry(scalar),
+        };
+        let (is_negative, place) = known.index(self.scalars, scalar);
+        if is_negative { Code::Sum(integer(0), vec![(integer(-1), kind(place))]) } else { kind(place) }
+    }
+
+    /// What is simply read.
+    fn entry(&self, scalar: Scalar) -> Code {
+        match self.scalars.node(scalar) {
+            Node::Input(input) => Code::Read(input.clone()),
+            Node::Pi => Code::Pi,
+            Node::Sum(value, _) => Code::Number(value.clone()),
             // by construction: leaves are entries or have been taken out
-            (_, node) => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
+            node => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
         }
     }
 }

@@ -11,6 +11,7 @@ use clebsch_symbolic::{
     Algebra, Expr, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
 };
 
+use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
@@ -20,7 +21,7 @@ use words::{Weighted, cheapest_cut, common_letter};
 pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
     let mut lowering = Matrices::default();
     let outputs = expressions.iter().map(|&expr| (expr.shape(), vec![lowering.value(expr)])).collect();
-    Kernel { locals: lowering.locals, outputs }
+    signs::moved(Kernel { locals: lowering.locals, outputs })
 }
 
 /// Vectors, one after the other in one output.
@@ -32,7 +33,7 @@ pub(super) fn stack(expressions: &[Expr<'_>]) -> Kernel {
 pub(super) fn list(expressions: &[Expr<'_>]) -> Kernel {
     let mut lowering = Matrices::default();
     let entries: Vec<Code> = expressions.iter().map(|&expr| lowering.value(expr)).collect();
-    Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] }
+    signs::moved(Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] })
 }
 
 /// The largest entry of each expression, in one output.
@@ -46,7 +47,7 @@ pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
         }
     };
     let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
-    Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] }
+    signs::moved(Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] })
 }
 
 /// Vectors, one after the other.

@@ -18,6 +18,7 @@ mod names;
 mod pairs;
 mod print;
 mod scalar;
+mod signs;
 mod stepping;
 mod sums;
 mod told;
@@ -29,7 +30,7 @@ use crate::derive::{self, Formulas, Stencil, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Factor, Isotropy, Space};
 
-pub use code::{Code, Kernel, MatrixOperation, Whole};
+pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
 pub use cost::Cost;
 pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
@@ -149,11 +150,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
     let after = legendre_next(&formulas);
     let names = names::constants(&scalars, &hoisted);
-    let constants = kernel::kernel(
-        &mut scalars,
-        &hoisted.scalars.iter().map(|&scalar| (Shape::scalar(), vec![scalar])).collect::<Vec<_>>(),
-        Hoisting::Nothing,
-    );
+    let constants = hoisted.kernel(&mut scalars, Hoisting::Nothing);
     let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| stack(scalars, &replaced(parts, &inverses));
     let links = formulas.links.iter().map(|link| {
         let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();

@@ -9,7 +9,7 @@ const LONGEST_NAME: usize = 24;
 /// A distinct identifier for each constant.
 pub fn constants(scalars: &Scalars, hoisted: &Hoisted) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for (index, &scalar) in hoisted.scalars.iter().enumerate() {
+    for (index, (scalar, _)) in hoisted.kept().enumerate() {
         let name = describe(scalars, scalar).filter(|name| name.len() <= LONGEST_NAME && !names.contains(name));
         names.push(name.unwrap_or_else(|| format!("k{index}")));
     }

@@ -239,12 +239,7 @@ impl Program<'_> {
                 for (coefficient, term) in &terms {
                     let negative = *coefficient < integer(0);
                     let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
-                    text += match (text.is_empty(), negative) {
-                        (true, false) => "",
-                        (true, true) => "-",
-                        (false, false) => " + ",
-                        (false, true) => " - ",
-                    };
+                    text += sign(text.is_empty(), negative);
                     let scaled = magnitude != integer(1);
                     text += &if scaled { format!("{magnitude}*{}", self.text(term, 1)) } else { self.text(term, 1) };
                 }
@@ -298,11 +293,13 @@ impl Program<'_> {
             MatrixOperation::Argument(input) => (input.name.clone(), false),
             MatrixOperation::Entries => (format!("[{}]", operands.join(", ")), false),
             MatrixOperation::Sum(weights) => {
-                let weighted = |(weight, operand): (&clebsch_symbolic::Rational, &String)| match weight {
-                    one if *one == integer(1) => operand.clone(),
-                    _ => format!("{weight}*{operand}"),
-                };
-                (weights.iter().zip(&operands).map(weighted).collect::<Vec<_>>().join(" + "), true)
+                let mut text = String::new();
+                for (weight, operand) in weights.iter().zip(&operands) {
+                    text += sign(text.is_empty(), weight.is_negative());
+                    let size = weight.abs();
+                    text += &if size == integer(1) { operand.clone() } else { format!("{size}*{operand}") };
+                }
+                (text, true)
             }
             MatrixOperation::Scaled | MatrixOperation::Product => (operands.join("*"), false),
             MatrixOperation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
@@ -316,6 +313,16 @@ impl Program<'_> {
             other => (format!("{other:?}({})", operands.join(", ")).to_lowercase(), false),
         };
         if is_sum && place > 0 { format!("({text})") } else { text }
+    }
+}
+
+/// What stands before a term of a sum.
+pub(crate) fn sign(is_first: bool, is_negative: bool) -> &'static str {
+    match (is_first, is_negative) {
+        (true, false) => "",
+        (true, true) => "-",
+        (false, false) => " + ",
+        (false, true) => " - ",
     }
 }
 

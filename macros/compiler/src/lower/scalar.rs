@@ -127,6 +127,11 @@ impl Scalars {
         self.nodes.value(scalar.0 as usize)
     }
 
+    /// The identity of an expression that is there.
+    pub(super) fn known(&self, node: &Node) -> Option<Scalar> {
+        self.nodes.position(node).map(|position| Scalar(position as u32))
+    }
+
     /// How often its value changes.
     pub fn rate(&self, scalar: Scalar) -> Rate {
         self.rates[scalar.0 as usize]

@@ -321,8 +321,7 @@ fn solve<'g>(
             let linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
             let newton = fixed_point::Newton { linearize: &linearize, predict: predict.as_ref() };
             residual = fixed_point::residual(formulas, equation, &newton, scalars, (hoisted, &mut terms));
-            let outputs: Vec<_> = terms.scalars.iter().map(|&term| (Shape::scalar(), vec![term])).collect();
-            (kernel(scalars, &outputs, Hoisting::Constants(hoisted)), linearize)
+            (terms.kernel(scalars, Hoisting::Constants(hoisted)), linearize)
         }
     };
     let mut solve = Solve {

@@ -1,6 +1,6 @@
 //! The terms that tie sites together: their sum, and its gradient, added up term by term or gathered site by site.
 
-use clebsch_symbolic::{Expr, Rational, Role, Shape, integer};
+use clebsch_symbolic::{Expr, Role, Shape, integer};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -252,10 +252,6 @@ fn place_of(parameter: &Parameter<'_>) -> Option<usize> {
 /// A linear expression in the indices and N, as a signed number.
 fn linear(expr: Expr<'_>, power: &Power<'_>) -> TokenStream {
     let graph = expr.graph();
-    let number = |value: Rational| {
-        let value = value.parts().map_or(0, |(numerator, _)| numerator);
-        Literal::isize_unsuffixed(value as isize)
-    };
     let (mut rest, mut terms) = (expr, Vec::new());
     for symbol in expr.symbols() {
         let name = match symbol.as_symbol().map(|data| data.role) {
@@ -268,20 +264,28 @@ fn linear(expr: Expr<'_>, power: &Power<'_>) -> TokenStream {
                 quote!((#length as ::core::primitive::isize))
             }
         };
-        let coefficient = expr.gradient(symbol).as_number().unwrap_or_else(|| integer(0));
-        terms.push(match coefficient == integer(1) {
-            true => name,
-            false => {
-                let coefficient = number(coefficient);
-                quote!(#coefficient * #name)
-            }
-        });
+        terms.push((expr.gradient(symbol).as_number().unwrap_or_else(|| integer(0)), Some(name)));
         rest = rest.substitute(&[(symbol, graph.integer(0))]);
     }
     let constant = rest.as_number().unwrap_or_else(|| integer(0));
     if terms.is_empty() || constant != integer(0) {
-        let constant = number(constant);
-        terms.push(quote!(#constant));
+        terms.push((constant, None));
     }
-    quote!(#(#terms)+*)
+    let mut tokens = TokenStream::new();
+    for (weight, name) in terms {
+        let size = weight.abs();
+        let number = Literal::isize_unsuffixed(size.parts().map_or(0, |(numerator, _)| numerator as isize));
+        let term = match name {
+            Some(name) if size == integer(1) => name,
+            Some(name) => quote!(#number * #name),
+            None => quote!(#number),
+        };
+        tokens = match (tokens.is_empty(), weight.is_negative()) {
+            (true, false) => term,
+            (true, true) => quote!(-#term),
+            (false, false) => quote!(#tokens + #term),
+            (false, true) => quote!(#tokens - #term),
+        };
+    }
+    tokens
 }

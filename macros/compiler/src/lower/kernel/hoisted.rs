@@ -1,0 +1,95 @@
+//! Values that are computed less often than the kernels that use them: of a value and its negative, one.
+
+use clebsch_symbolic::{Shape, Zero, integer, work};
+
+use super::{Hoisting, kernel};
+use crate::lower::{Code, Kernel, Node, Scalar, Scalars, signs};
+
+/// Values that are computed less often than the kernels that use them.
+#[derive(Clone, Default, Debug)]
+pub struct Hoisted {
+    /// In the order in which they were met.
+    met: Vec<Met>,
+    /// The number of values that are kept.
+    kept: usize,
+}
+
+/// A value that has been met.
+#[derive(Clone, Debug)]
+struct Met {
+    scalar: Scalar,
+    /// Whether its negative is kept.
+    is_negative: bool,
+    /// Where that stands among what is kept.
+    place: usize,
+}
+
+impl Hoisted {
+    /// Whether the negative of a value is kept, and where.
+    pub(super) fn index(&mut self, scalars: &Scalars, scalar: Scalar) -> (bool, usize) {
+        work::spend(1 + self.met.len() / 32);
+        let known = |wanted: Scalar| self.met.iter().find(|met| met.scalar == wanted);
+        if let Some(met) = known(scalar) {
+            return (met.is_negative, met.place);
+        }
+        let (is_negative, place) = match scalars.negated(scalar).and_then(known) {
+            Some(opposite) => (!opposite.is_negative, opposite.place),
+            None => (scalars.is_negative(scalar), self.kept),
+        };
+        self.kept = self.kept.max(place + 1);
+        self.met.push(Met { scalar, is_negative, place });
+        (is_negative, place)
+    }
+
+    /// What is kept: each value as it was first met, and whether its negative is kept.
+    pub fn kept(&self) -> impl Iterator<Item = (Scalar, bool)> {
+        self.first().map(|(_, met)| (met.scalar, met.is_negative))
+    }
+
+    /// The first of each place, with its number among those that were met.
+    fn first(&self) -> impl Iterator<Item = (usize, &Met)> {
+        let is_first = |(number, met): &(usize, &Met)| self.met[..*number].iter().all(|other| other.place != met.place);
+        self.met.iter().enumerate().filter(is_first)
+    }
+
+    /// Computes what is kept, one output each.
+    pub(in crate::lower) fn kernel(&self, scalars: &mut Scalars, hoisting: Hoisting<'_>) -> Kernel {
+        // with those that are not kept: what they share with others decides how these are rounded
+        let outputs: Vec<_> = self.met.iter().map(|met| (Shape::scalar(), vec![met.scalar])).collect();
+        let Kernel { locals, outputs } = kernel(scalars, &outputs, hoisting);
+        let signed = |(number, met): (usize, &Met)| {
+            let (shape, entries) = &outputs[number];
+            let signed = |code: &Code| if met.is_negative { signs::negative(code.clone()) } else { code.clone() };
+            (*shape, entries.iter().map(signed).collect())
+        };
+        let outputs = self.first().map(signed).collect();
+        Kernel { locals, outputs }.without_unused()
+    }
+}
+
+impl Scalars {
+    /// −x, if it is known; of what is no sum, only where it is.
+    fn negated(&self, scalar: Scalar) -> Option<Scalar> {
+        let minus = integer(-1);
+        match self.node(scalar) {
+            Node::Sum(constant, terms) if constant.is_zero() && terms.len() == 1 && terms[0].1 == minus => {
+                Some(terms[0].0)
+            }
+            Node::Sum(constant, terms) => {
+                let terms = terms.iter().map(|(term, weight)| (*term, weight * &minus)).collect();
+                self.known(&Node::Sum(constant * &minus, terms))
+            }
+            _ => self.known(&Node::Sum(integer(0), vec![(scalar, minus)])),
+        }
+    }
+
+    /// Whether all of its terms are subtracted.
+    fn is_negative(&self, scalar: Scalar) -> bool {
+        match self.node(scalar) {
+            Node::Sum(constant, terms) => {
+                (constant.is_zero() || constant.is_negative()) && terms.iter().all(|(_, weight)| weight.is_negative())
+            }
+            _ => false,
+        }
+    }
+}
