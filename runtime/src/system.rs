@@ -50,7 +50,8 @@ pub trait Clebsch {
     /// Whether a step is the free motion itself, without an error in h and with nothing that acts: then h and N count by their product alone, and the longest
     /// step with a momentum is known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
-    /// The derivation in words and formulas, with operation counts and what was left out and why.
+    /// The derivation in words and formulas, with operation counts and what was left out and why. With `emit = [latex]` the struct has a constant
+    /// `DERIVATION_LATEX` too, the same formulas for a paper.
     const DERIVATION: &'static str;
 
     /// Checks the parameters and computes what no step changes.

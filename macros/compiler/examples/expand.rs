@@ -26,6 +26,7 @@ fn show(stage: &str, item: TokenStream) -> Result<(), Diagnostics> {
         "declaration" => println!("{}", parse::parse(item)?),
         "model" => println!("{}", model::model(&graph, &parse::parse(item)?)?),
         "formulas" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?),
+        "latex" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?.latex()),
         "program" => println!("{}", compile(&graph, item)?),
         "derivation" => println!("{}", emit::derivation(&compile(&graph, item)?)),
         _ => println!("{}", emit::generated(&compile(&graph, item)?)),

@@ -76,12 +76,8 @@ impl Printer<'_> {
                 if latex { "\\operatorname{tr}" } else { "tr" },
                 self.parenthesized(&self.word(word))
             )),
-            Node::Transpose(a) => {
-                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\mathsf T}" } else { "ᵀ" }))
-            }
-            Node::Inverse(a) => {
-                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{-1}" } else { "⁻¹" }))
-            }
+            Node::Transpose(a) => atom(self.raised(*a, "ᵀ", "\\mathsf T")),
+            Node::Inverse(a) => atom(self.raised(*a, "⁻¹", "-1")),
             Node::Determinant(a) => call(if latex { "\\det" } else { "det" }, *a),
             Node::Function(Function::Stumpff(k), a) => call(&self.subscripted("c", *k), *a),
             Node::Analytic(function, a) => call(
@@ -97,26 +93,25 @@ impl Printer<'_> {
             ),
             Node::Opaque(name, output, arguments) => {
                 let arguments: Vec<String> = arguments.iter().map(|&a| self.print(a, Binding::Sum)).collect();
-                let name = self.graph.opaque_name(*name);
-                let name = if *output == 0 {
-                    name
-                } else {
-                    format!("∇{}{name}", if arguments.len() > 1 { output.to_string() } else { String::new() })
-                };
+                let name = self.symbol(&self.graph.opaque_name(*name));
+                let nabla = if latex { "\\nabla " } else { "∇" };
+                let number = if arguments.len() > 1 { output.to_string() } else { String::new() };
+                let name = if *output == 0 { name } else { format!("{nabla}{number}{name}") };
                 atom(format!("{name}({})", arguments.join(", ")))
             }
             Node::Function(function, a) => call(&format!("{}{}", if latex { "\\" } else { "" }, function.name()), *a),
             Node::Block(a, row, column) => atom(self.block(*a, *row, *column, self.graph.shape(id))),
-            Node::Embed(a, row, column) => atom(format!("embed({}, {row}, {column})", self.print(*a, Binding::Sum))),
+            Node::Embed(a, row, column) => {
+                let name = if latex { "\\operatorname{embed}" } else { "embed" };
+                atom(format!("{name}({}, {row}, {column})", self.print(*a, Binding::Sum)))
+            }
             Node::Hadamard(a, b) => {
                 let symbol = if latex { " \\circ " } else { " ∘ " };
                 (format!("{}{symbol}{}", self.print(*a, Binding::Atom), self.print(*b, Binding::Atom)), Binding::Sum)
             }
             Node::DiagonalMatrix(a) => call(if latex { "\\operatorname{diag}" } else { "diag" }, *a),
             Node::Diagonal(a) => call(if latex { "\\operatorname{diagonal}" } else { "diagonal" }, *a),
-            Node::Wedge(_, a) => {
-                atom(format!("{}{}", self.print(*a, Binding::Atom), if latex { "^{\\wedge}" } else { "^" }))
-            }
+            Node::Wedge(_, a) => atom(self.raised(*a, "^", "\\wedge")),
             Node::Components(_, a) => {
                 let inner = self.print(*a, Binding::Sum);
                 atom(if latex { format!("\\langle {inner}, E \\rangle") } else { format!("⟨{inner}, E⟩") })
@@ -129,6 +124,12 @@ impl Printer<'_> {
             Style::Unicode => name.to_string(),
             Style::Latex => latex_name(name),
         }
+    }
+
+    /// An operand with something above it: in Unicode behind it.
+    fn raised(&self, operand: Id, unicode: &str, latex: &str) -> String {
+        let base = self.print(operand, Binding::Atom);
+        if self.style == Style::Latex { raised_in_latex(&base, latex) } else { base + unicode }
     }
 
     fn subscripted(&self, letter: &str, index: u8) -> String {
@@ -242,7 +243,7 @@ impl Printer<'_> {
         }
         let base = self.print(base, Binding::Atom);
         match self.style {
-            Style::Latex => format!("{base}^{{{exponent}}}"),
+            Style::Latex => raised_in_latex(&base, &exponent.to_string()),
             Style::Unicode => match exponent.as_integer() {
                 Some(whole) => format!("{base}{}", superscript(whole)),
                 None => format!("{base}^({exponent})"),
@@ -258,6 +259,12 @@ impl Printer<'_> {
     fn rational(&self, value: &Rational) -> String {
         self.minus(value.to_string().replace('-', "−"))
     }
+}
+
+/// A base with an exponent; one that has an exponent already stands in braces, as LaTeX knows no second one.
+fn raised_in_latex(base: &str, exponent: &str) -> String {
+    let is_raised = base.contains('^') && !base.ends_with("\\right)");
+    if is_raised { format!("{{{base}}}^{{{exponent}}}") } else { format!("{base}^{{{exponent}}}") }
 }
 
 /// A name in LaTeX: Greek letters by their names, subscript digits as subscripts, words upright.
@@ -277,6 +284,9 @@ fn latex_name(name: &str) -> String {
         ('Δ', "\\Delta"),
         ('Σ', "\\Sigma"),
     ];
+    if let Some(before) = name.strip_suffix('⁺') {
+        return format!("{}^+", latex_name(before));
+    }
     let is_subscript = |c: char| ('₀'..='₉').contains(&c);
     let base: String = name.chars().filter(|&c| !is_subscript(c)).collect();
     let digits: String = name
@@ -287,7 +297,7 @@ fn latex_name(name: &str) -> String {
     let letter = greek.iter().find(|(c, _)| base == c.to_string()).map(|(_, text)| text.to_string());
     let text = letter.unwrap_or_else(|| match base.chars().count() {
         1 => base,
-        _ => format!("\\mathrm{{{}}}", base.replace('_', "\\_")),
+        _ => format!("\\mathrm{{{}}}", base.replace('_', "\\_").replace('%', "\\%")),
     });
     if digits.is_empty() { text } else { format!("{text}_{{{digits}}}") }
 }

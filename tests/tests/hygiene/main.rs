@@ -31,6 +31,7 @@ macro_rules! all_of {
             let top = Top { mass_matrix: Matrix3::identity(), weight: 1.0, center: z };
             steps(&top, Matrix3::identity(), zero);
             assert!(Top::GENERATED.contains("linearize"));
+            assert!(Top::DERIVATION_LATEX.starts_with("\\begin{align*}"));
             steps(&Body { inertia: Matrix3::identity() }, Matrix3::identity(), zero);
             steps(&Pair { mass: [1.0, 2.0], coupling: 3.0 }, ([z, z], zero), nalgebra::SVector::zeros());
             steps(&Pendulum(1.0, 2.0), nalgebra::Vector2::y(), nalgebra::Vector1::zeros());

@@ -18,7 +18,7 @@ pub use crate::no_prelude::{Body, Lopsided, Pair, Pendulum, Sites};
     action    = |F: SO<3>, R: SO<3>| R * F,
     cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
     potential = |R| self.weight * (R * self.center).z,
-    emit      = [generated],
+    emit      = [generated, latex],
     crate     = crate::reexported::library::inner::runtime,
 )]
 pub struct Top {

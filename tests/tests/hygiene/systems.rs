@@ -7,7 +7,7 @@ const GRAVITY: f64 = 9.81;
     action    = |F: SO<3>, R: SO<3>| R * F,
     cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
     potential = |R| self.weight * (R * self.center).z,
-    emit      = [generated],
+    emit      = [generated, latex],
 )]
 pub struct Top {
     /// In kg·m².
@@ -74,7 +74,7 @@ pub struct Lopsided {
     action    = |F: [SO<3>; N], q: [Unit<Vector3>; N]| (0..N).map(|i| F[i] * q[i]),
     cost      = |h, F| (0..N).map(|i| self.mass[i] * (F[i] - I).norm_squared()).sum() / (4 * h),
     potential = |q| (0..N).map(|i| (0..i).map(|j| self.mass[j] * GRAVITY * q[i].dot(&q[j])).sum() + (i * q[i].z).sin()).sum() + q[N - 1].z,
-    emit      = [generated],
+    emit      = [generated, latex],
 )]
 pub struct Sites<const N: ::core::primitive::usize> {
     /// In kg.

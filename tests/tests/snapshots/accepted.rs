@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use clebsch_compiler::derive::{Formula, Formulas};
 use clebsch_compiler::lower::Program;
 use clebsch_compiler::parse::Declaration;
 use clebsch_compiler::{emit, parse};
@@ -33,21 +32,13 @@ fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
     assert_snapshot!(format!("{name}.2_model"), formulas.model);
     assert_snapshot!(format!("{name}.3_formulas"), formulas);
     if IN_LATEX.contains(&name) {
-        assert_snapshot!(format!("{name}.3_formulas_latex"), latex(formulas));
+        assert_snapshot!(format!("{name}.3_formulas_latex"), formulas.latex());
     }
     assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
     assert_snapshot!(format!("{name}.5_derivation"), emit::derivation(program));
     if GENERATED.contains(&name) {
         assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
     }
-}
-
-/// Each formula as `symbol = expression` in LaTeX.
-fn latex(formulas: &Formulas<'_>) -> String {
-    let line = |formula: &Formula<'_>| {
-        format!("% {} {}\n{}\n", formula.title, formula.symbol, formula.latex().join(" \\\\\n"))
-    };
-    formulas.listing().map(line).collect()
 }
 
 /// The code of all kernels, or their operation counts where that is long.

@@ -5,7 +5,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{Heat, Id, Reference};
+use super::{Heat, Id, Reference, latex};
 
 /// A derived formula, `symbol = value`.
 #[derive(Clone)]
@@ -99,6 +99,18 @@ impl<'g> Formula<'g> {
     /// The same in LaTeX.
     pub fn latex(&self) -> Vec<String> {
         self.written(Notation::Latex)
+    }
+
+    /// `symbol &= expression` in LaTeX, tuples in parentheses.
+    pub(super) fn equation_in_latex(&self) -> String {
+        let symbol = match self.id {
+            Id::Conserved(_) => format!("\\text{{{}}}", self.symbol),
+            _ => latex::left_side(&self.symbol),
+        };
+        match self.latex().as_slice() {
+            [only] => format!("{symbol} &= {only}"),
+            several => format!("{symbol} &= \\left({}\\right)", several.join(", ")),
+        }
     }
 
     /// The shapes of the right sides.

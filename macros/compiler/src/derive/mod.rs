@@ -20,6 +20,7 @@ mod exact;
 mod force;
 mod formula;
 mod increments;
+mod latex;
 mod naming;
 mod power;
 mod reference;

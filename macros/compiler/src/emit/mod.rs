@@ -24,7 +24,7 @@ mod variation;
 
 use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use crate::lower::Program;
 use crate::model::{Item, Model};
@@ -38,7 +38,15 @@ pub use stub::stub;
 pub fn emit(program: &Program<'_>) -> TokenStream {
     let emitter = Emitter::new(program);
     let items = emitter.items();
-    let generated = program.formulas.model.emit.generated.then(|| emitter.generated(&items));
+    let asked = program.formulas.model.emit;
+    let generated = asked.generated.then(|| {
+        let documentation = "The code that `derive(Clebsch)` has generated for this struct.";
+        emitter.constant("GENERATED", documentation, &pretty(&items))
+    });
+    let latex = asked.latex.then(|| {
+        let documentation = "The formulas of the derivation of this struct in LaTeX, an `align*` of its own.";
+        emitter.constant("DERIVATION_LATEX", documentation, &program.formulas.latex())
+    });
     quote! {
         // the lints of straight-line code are ours to mind, not the user's; signatures are the same for every system, and
         // not every kernel reads all of its arguments
@@ -47,6 +55,7 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
             #items
         };
         #generated
+        #latex
     }
 }
 
@@ -162,15 +171,17 @@ impl<'a, 'g> Emitter<'a, 'g> {
         quote!(#(#types)*)
     }
 
-    fn generated(&self, items: &TokenStream) -> TokenStream {
+    /// A constant of the user's struct that holds a text.
+    fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
         let item = self.model.power.as_ref().map_or(&self.model.item, |power| &power.item);
         let Generics { parameters, arguments, predicates } = Generics::of(item, &self.paths);
-        let (ident, text) = (&item.ident, pretty(items));
+        let (ident, name) = (&item.ident, format_ident!("{name}"));
+        let documentation = docs::lines(&[documentation.to_string()]);
         quote! {
             #[automatically_derived]
             impl<#parameters> #ident<#arguments> #predicates {
-                /// The code that `derive(Clebsch)` has generated for this struct.
-                pub const GENERATED: &'static ::core::primitive::str = #text;
+                #documentation
+                pub const #name: &'static ::core::primitive::str = #text;
             }
         }
     }

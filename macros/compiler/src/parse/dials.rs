@@ -118,6 +118,8 @@ impl Order {
 pub struct Emit {
     /// The constant `GENERATED`, the generated code as text.
     pub generated: bool,
+    /// The constant `DERIVATION_LATEX`, the formulas in LaTeX.
+    pub latex: bool,
     /// The derivatives of a step with respect to state, parameters, step size and time.
     pub tangent: bool,
     /// What problems with fixed endpoints need: second derivatives of the discrete Lagrangian.
@@ -128,12 +130,14 @@ pub struct Emit {
 
 impl Emit {
     /// Nothing beside the integrator.
-    pub(super) const NOTHING: Emit = Emit { generated: false, tangent: false, boundary: false, momentum: false };
+    pub(super) const NOTHING: Emit =
+        Emit { generated: false, latex: false, tangent: false, boundary: false, momentum: false };
 
     /// The words that ask for it.
     pub(super) fn words(self) -> Vec<&'static str> {
         let all = [
             (self.generated, "generated"),
+            (self.latex, "latex"),
             (self.tangent, "tangent"),
             (self.boundary, "boundary"),
             (self.momentum, "momentum"),
@@ -145,6 +149,7 @@ impl Emit {
     pub(super) fn and(self, other: Emit) -> Emit {
         Emit {
             generated: self.generated || other.generated,
+            latex: self.latex || other.latex,
             tangent: self.tangent || other.tangent,
             boundary: self.boundary || other.boundary,
             momentum: self.momentum || other.momentum,

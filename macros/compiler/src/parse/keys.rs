@@ -100,8 +100,9 @@ pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
     [("fixed", Some(Isotropy::Fixed)), ("free", Some(Isotropy::Free))];
 
 /// What may be emitted beside the integrator.
-pub(super) const EMITTED: [(&str, Option<Emit>); 5] = [
+pub(super) const EMITTED: [(&str, Option<Emit>); 6] = [
     ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
+    ("latex", Some(Emit { latex: true, ..Emit::NOTHING })),
     ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
     ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
     ("momentum", Some(Emit { momentum: true, ..Emit::NOTHING })),

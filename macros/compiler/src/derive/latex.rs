@@ -1,0 +1,115 @@
+//! The formulas in LaTeX: the constant `DERIVATION_LATEX`.
+
+use super::{Formula, Formulas};
+
+/// Words of left sides; other words are names.
+const WORDS: [&str; 6] = ["at", "with", "for", "each", "of", "in"];
+
+/// What stands for itself in no font of LaTeX.
+const LETTERS: [(char, &str); 31] = [
+    ('Φ', "\\Phi "),
+    ('Σ', "\\Sigma "),
+    ('Δ', "\\Delta "),
+    ('ξ', "\\xi "),
+    ('η', "\\eta "),
+    ('ζ', "\\zeta "),
+    ('μ', "\\mu "),
+    ('ν', "\\nu "),
+    ('λ', "\\lambda "),
+    ('π', "\\pi "),
+    ('ρ', "\\rho "),
+    ('φ', "\\varphi "),
+    ('δ', "\\delta "),
+    ('ε', "\\varepsilon "),
+    ('γ', "\\gamma "),
+    ('α', "\\alpha "),
+    ('β', "\\beta "),
+    ('ℓ', "\\ell "),
+    ('∂', "\\partial "),
+    ('−', "-"),
+    ('%', "\\%"),
+    ('·', "\\cdot "),
+    ('⟨', "\\langle "),
+    ('⟩', "\\rangle "),
+    ('≥', "\\ge "),
+    ('′', "'"),
+    ('⁺', "^+"),
+    ('⁻', "^-"),
+    ('₀', "_0"),
+    ('₁', "_1"),
+    ('₂', "_2"),
+];
+
+impl Formulas<'_> {
+    /// The formulas that `DERIVATION` lists, in an `align*`.
+    pub fn latex(&self) -> String {
+        let row = |formula: &Formula<'_>| {
+            let title = if formula.title.is_empty() { String::new() } else { format!("% {}\n", formula.title) };
+            format!("{title}{}", formula.equation_in_latex())
+        };
+        let rows: Vec<String> = self.listing().map(row).collect();
+        format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n"))
+    }
+}
+
+/// A left side, `J(q, p)`, in LaTeX: words upright, letters by their names, subscripts in braces.
+pub(super) fn left_side(symbol: &str) -> String {
+    let symbol = symbol.replace("^-*", "^{-*}").replace("Ad*", "Ad^*");
+    let mut text = String::new();
+    let mut rest = symbol.as_str();
+    while let Some(first) = rest.chars().next() {
+        let (part, after) = rest.split_at(length_of_word(first, rest));
+        text += &word(first, part);
+        rest = after;
+    }
+    text
+}
+
+/// The length of what stands together at the start of a text: a word, a subscript, or one character.
+fn length_of_word(first: char, text: &str) -> usize {
+    let behind_word = text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(text.len());
+    match first {
+        '_' if text[1..].starts_with('(') => text.find(')').map_or(1, |end| end + 1),
+        '_' => behind_word,
+        letter if letter.is_ascii_alphabetic() => behind_word,
+        other => other.len_utf8(),
+    }
+}
+
+fn word(first: char, part: &str) -> String {
+    if let Some((_, latex)) = LETTERS.iter().find(|(letter, _)| *letter == first) {
+        return latex.to_string();
+    }
+    match part.split_once('_') {
+        // ξ_Q and V_1 keep their subscripts
+        Some((base, subscript)) if base.len() < 2 => format!("{base}_{{{}}}", upright(subscript)),
+        _ if WORDS.contains(&part) => format!("\\text{{ {part} }}"),
+        _ => upright(part),
+    }
+}
+
+/// A name of more than one letter in upright type.
+fn upright(name: &str) -> String {
+    let is_word = name.len() > 1 && name.starts_with(|c: char| c.is_ascii_alphabetic());
+    if is_word { format!("\\mathrm{{{}}}", name.replace('_', "\\_")) } else { name.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::left_side;
+
+    #[test]
+    fn left_sides() {
+        let table = [
+            ("J(q, p)", "J(q, p)"),
+            ("Φ_F(Gamma)", "\\Phi _{F}(\\mathrm{Gamma})"),
+            ("Ad*_(F, G) μ", "\\mathrm{Ad}^*_{(F, G)} \\mu "),
+            ("(TΦ_F)^-* p at R⁺", "(T\\Phi _{F})^{-*} p \\text{ at } R^+"),
+            ("∂V_12/∂q[i % N]", "\\partial V_{12}/\\partial q[i \\% N]"),
+            ("F⁻ℓd(q, attitude_b)", "F^-\\ell d(q, \\mathrm{attitude\\_b})"),
+        ];
+        for (symbol, latex) in table {
+            assert_eq!(left_side(symbol), latex);
+        }
+    }
+}
