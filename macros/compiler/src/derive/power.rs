@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Property, Role};
 
-use crate::model::{Configuration, Linear, Model, Place, Power, Term};
+use crate::model::{Configuration, Linear, Model, Power, SiteIndex, Term};
 
 /// A term of the potential of a power with its gradient.
 pub struct Link<'g> {
@@ -28,8 +28,8 @@ impl<'g> Link<'g> {
         self.gradient.iter().map(|(place, _)| self.home(power, &power.places[*place])).collect()
     }
 
-    fn home(&self, power: &Power<'g>, place: &Place<'g>) -> Option<Home<'g>> {
-        let Place { index, wraps } = *place;
+    fn home(&self, power: &Power<'g>, place: &SiteIndex<'g>) -> Option<Home<'g>> {
+        let SiteIndex { index, wraps } = *place;
         match (self.term.ranges.as_slice(), Linear::of(index)?.indices.as_slice()) {
             ([], _) => Some(Home { index: None, wraps, is_everywhere: false }),
             ([range], [1]) => {
@@ -46,7 +46,7 @@ impl<'g> Link<'g> {
 /// The gradient of one site, of all terms that read it.
 pub struct Stencil<'g> {
     /// The sites that it reads, whose numbers go on from those of the power; the symbol of the index stands for the site.
-    pub places: Vec<Place<'g>>,
+    pub places: Vec<SiteIndex<'g>>,
     /// What every site has: one expression for each leaf of its configuration.
     pub gradient: Vec<Expr<'g>>,
     /// What only some have, or what depends on the index of the term: the numbers of the term, and of the place in its gradient.
@@ -87,7 +87,7 @@ impl<'g> Stencil<'g> {
         let there = &power.places[place];
         let site = own.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
         let index = there.index.substitute(&[(site, own)]).expand();
-        let place = Place { index, wraps: (wraps || there.wraps) && index != site };
+        let place = SiteIndex { index, wraps: (wraps || there.wraps) && index != site };
         let known = self.places.iter().position(|known| *known == place);
         let number = known.unwrap_or(self.places.len());
         let text = place.text();

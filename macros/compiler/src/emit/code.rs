@@ -8,7 +8,7 @@ use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
 use crate::lower::{Code, Input, Kernel, is_in_brackets};
-use crate::model::{Access, Model, Part, ScalarType, Structure};
+use crate::model::{Access, Layout, Model, Part, ScalarType};
 
 /// Where a function finds its inputs.
 pub struct Scope<'a, 'g> {
@@ -499,14 +499,14 @@ fn entries_of(scope: &Scope<'_, '_>, entries: &[Code]) -> TokenTree {
 }
 
 /// Tuples and arrays of leaves.
-pub fn nested(structure: &Structure, leaf: &mut impl FnMut(usize) -> TokenStream) -> TokenStream {
+pub fn nested(structure: &Layout, leaf: &mut impl FnMut(usize) -> TokenStream) -> TokenStream {
     match structure {
-        Structure::Leaf(index) => leaf(*index),
-        Structure::Tuple(parts) => {
+        Layout::Leaf(index) => leaf(*index),
+        Layout::Tuple(parts) => {
             let parts: Vec<_> = parts.iter().map(|part| nested(part, leaf)).collect();
             quote!((#(#parts,)*))
         }
-        Structure::Array(parts) => {
+        Layout::Array(parts) => {
             let parts: Vec<_> = parts.iter().map(|part| nested(part, leaf)).collect();
             quote!([#(#parts),*])
         }
@@ -533,14 +533,14 @@ pub fn combined(
 }
 
 /// The type of a nesting of leaves.
-pub fn nested_type(structure: &Structure, leaf: &impl Fn(usize) -> TokenStream) -> TokenStream {
+pub fn nested_type(structure: &Layout, leaf: &impl Fn(usize) -> TokenStream) -> TokenStream {
     match structure {
-        Structure::Leaf(index) => leaf(*index),
-        Structure::Tuple(parts) => {
+        Layout::Leaf(index) => leaf(*index),
+        Layout::Tuple(parts) => {
             let parts = parts.iter().map(|part| nested_type(part, leaf));
             quote!((#(#parts,)*))
         }
-        Structure::Array(parts) => {
+        Layout::Array(parts) => {
             let count = Literal::usize_unsuffixed(parts.len());
             let part = parts.first().map(|part| nested_type(part, leaf));
             quote!([#part; #count])

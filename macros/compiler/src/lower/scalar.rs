@@ -343,19 +343,6 @@ impl Scalars {
     pub fn call_of(&self, id: CallId) -> &Call {
         &self.calls[id.0 as usize]
     }
-
-    /// The scalars that a scalar is made of.
-    pub fn children(&self, scalar: Scalar) -> Vec<Scalar> {
-        match self.node(scalar) {
-            Node::Input(_) | Node::Pi => Vec::new(),
-            Node::Sum(_, terms) => terms.iter().map(|(term, _)| *term).collect(),
-            Node::Product(factors) => factors.iter().map(|(factor, _)| *factor).collect(),
-            Node::Reciprocal(x) | Node::Root(x, _) | Node::Function(_, x) => vec![*x],
-            Node::Output(call, _) => {
-                self.call_of(*call).arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
-            }
-        }
-    }
 }
 
 fn is_unit(coefficient: &Rational) -> bool {

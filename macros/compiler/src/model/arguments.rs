@@ -3,23 +3,19 @@
 use clebsch_symbolic::{Expr, Group};
 use syn::ext::IdentExt;
 
-use super::power::{Kind, PerSite};
 use super::scope::{Missing, Scope, check_reserved};
-use super::slots::{COST, FORCE, LAGRANGIAN, POTENTIAL, SYMMETRY, Slot};
-use super::value::Value;
+use super::slots::{COST, FORCE, LAGRANGIAN, POTENTIAL, SYMMETRY, SharedNames, Slot};
+use super::value::{Each, PerSite, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::{Argument, Closure, Pattern};
 
 /// The names that the action fixes, with their values.
 pub(super) struct Arguments<'d, 'g> {
-    pub element: &'d Pattern,
-    pub configuration: &'d Pattern,
+    pub names: SharedNames<'d>,
     pub element_value: Option<Value<'g>>,
     pub configuration_value: Option<Value<'g>>,
     /// The symbols that lie on a group.
     pub members: Vec<(Expr<'g>, Group)>,
-    /// The input, as the closure that introduces it calls it.
-    pub input: Option<&'d Pattern>,
     pub step_size: Expr<'g>,
     pub time: Expr<'g>,
 }
@@ -85,21 +81,24 @@ fn typed<'d>(
 impl<'d, 'g> Arguments<'d, 'g> {
     /// The arguments of a power, where these are those of a site.
     pub fn of_each_site(&mut self) {
-        let each = |value: &mut Option<Value<'g>>, of: Kind| {
+        let each = |value: &mut Option<Value<'g>>, of: Each| {
             *value = value.take().map(|own| Value::PerSite(PerSite { of, own: Box::new(own) }));
         };
-        each(&mut self.element_value, Kind::Motion);
-        each(&mut self.configuration_value, Kind::Configuration);
+        each(&mut self.element_value, Each::Motion);
+        each(&mut self.configuration_value, Each::Configuration);
     }
 
     /// The names in the action itself.
     pub fn action_scope(&self, diagnostics: &mut Diagnostics) -> Scope<'g> {
         let mut scope = Scope::default();
         scope.set_elements(&self.members);
-        scope.add_argument(self.element, self.element_value.clone(), diagnostics);
-        scope.add_argument(self.configuration, self.configuration_value.clone(), diagnostics);
-        let help =
-            format!("the action depends on `{}` and `{}` alone", self.element.spell(), self.configuration.spell());
+        scope.add_argument(self.names.element, self.element_value.clone(), diagnostics);
+        scope.add_argument(self.names.configuration, self.configuration_value.clone(), diagnostics);
+        let help = format!(
+            "the action depends on `{}` and `{}` alone",
+            self.names.element.spell(),
+            self.names.configuration.spell()
+        );
         scope.add_missing("h".into(), Missing::Foreign { help: help.clone() });
         scope.add_missing("t".into(), Missing::Foreign { help });
         scope
@@ -107,19 +106,19 @@ impl<'d, 'g> Arguments<'d, 'g> {
 
     /// The names in a cost.
     pub fn cost_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
-        let taken = self.match_slots(closure, COST, diagnostics);
+        let taken = self.names.match_slots(closure, COST, diagnostics);
         self.scope(closure, COST, &taken, &[], diagnostics)
     }
 
     /// The names in a potential.
     pub fn potential_scope(&self, closure: &Closure, diagnostics: &mut Diagnostics) -> Scope<'g> {
-        let taken = self.match_slots(closure, POTENTIAL, diagnostics);
+        let taken = self.names.match_slots(closure, POTENTIAL, diagnostics);
         self.scope(closure, POTENTIAL, &taken, &[], diagnostics)
     }
 
     /// The pattern of a Lagrangian's velocity, with the meaning of all its arguments.
     pub fn velocity<'c>(&self, closure: &'c Closure, diagnostics: &mut Diagnostics) -> (Taken, Option<&'c Pattern>) {
-        let taken = self.match_slots(closure, LAGRANGIAN, diagnostics);
+        let taken = self.names.match_slots(closure, LAGRANGIAN, diagnostics);
         let position = taken.iter().position(|slot| *slot == Some(Slot::Velocity));
         (taken, position.map(|position| &closure.arguments[position].pattern))
     }
@@ -141,7 +140,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
         closure: &'c Closure,
         diagnostics: &mut Diagnostics,
     ) -> (Taken, Option<&'c Pattern>, Option<&'c Argument>) {
-        let taken = self.match_slots(closure, FORCE, diagnostics);
+        let taken = self.names.match_slots(closure, FORCE, diagnostics);
         let of = |slot: Slot| taken.iter().position(|other| *other == Some(slot)).map(|i| &closure.arguments[i]);
         let (velocity, input) = (of(Slot::Velocity).map(|argument| &argument.pattern), of(Slot::Input));
         (taken, velocity, input)
@@ -161,15 +160,16 @@ impl<'d, 'g> Arguments<'d, 'g> {
 
     /// The arguments of an offered symmetry, all of which it needs.
     pub fn symmetry<'c>(&self, closure: &'c Closure, diagnostics: &mut Diagnostics) -> Option<(Taken, &'c Argument)> {
-        let taken = self.match_slots(closure, SYMMETRY, diagnostics);
+        let taken = self.names.match_slots(closure, SYMMETRY, diagnostics);
         if taken.contains(&None) {
             return None;
         }
         if let Some(slot) = SYMMETRY.iter().find(|slot| !taken.contains(&Some(**slot))) {
-            let name = self.pattern(*slot).map_or("element of its group".into(), |name| format!("`{}`", name.spell()));
+            let name =
+                self.names.pattern(*slot).map_or("element of its group".into(), |name| format!("`{}`", name.spell()));
             let offered = taken.iter().position(|slot| *slot == Some(Slot::Offered));
             let offered = offered.map_or("S: SO<3>".into(), |position| closure.arguments[position].spell());
-            let known = [offered, self.configuration.spell(), self.element.spell()].join(", ");
+            let known = [offered, self.names.configuration.spell(), self.names.element.spell()].join(", ");
             diagnostics.push(
                 Diagnostic::new(closure.head, format!("the symmetry has no {name}"))
                     .help(format!("write `|{known}| …`"))
@@ -217,10 +217,10 @@ impl<'d, 'g> Arguments<'d, 'g> {
         let named = named.into_iter().filter(|slot| *slot != Slot::Chosen || !slots.contains(&Slot::Input));
         for slot in named.filter(|slot| !taken.contains(&Some(*slot))) {
             let missing = match slots.contains(&slot) {
-                true => Missing::Argument { head: self.head(taken, slots, Some(slot), closure) },
+                true => Missing::Argument { head: self.names.head(taken, slots, Some(slot), closure) },
                 false => Missing::Foreign { help: self.dependence(closure, slots) },
             };
-            let names: Vec<String> = match (self.pattern(slot), slot) {
+            let names: Vec<String> = match (self.names.pattern(slot), slot) {
                 (Some(pattern), _) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
                 (None, Slot::Time) => vec!["t".into()],
                 (None, Slot::Chosen) => Vec::new(),
@@ -233,14 +233,14 @@ impl<'d, 'g> Arguments<'d, 'g> {
 
     /// What a closure may depend on.
     fn dependence(&self, closure: &Closure, slots: &[Slot]) -> String {
-        let (key, q) = (&closure.key, self.configuration.spell());
+        let (key, q) = (&closure.key, self.names.configuration.spell());
         if slots.contains(&Slot::Chosen) || (slots.contains(&Slot::Input) && !slots.contains(&Slot::Velocity)) {
             let step = if slots.contains(&Slot::Step) { "the step `h`, " } else { "" };
             return format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone");
         }
         match slots.contains(&Slot::Velocity) {
             _ if slots.contains(&Slot::Offered) => {
-                format!("the {key} depends on its own element, on `{q}` and on `{}` alone", self.element.spell())
+                format!("the {key} depends on its own element, on `{q}` and on `{}` alone", self.names.element.spell())
             }
             true if slots.contains(&Slot::Input) => {
                 format!("the {key} depends on the time `t`, the configuration `{q}`, the velocity and an input alone")

@@ -6,10 +6,11 @@ use syn::{BinOp, Expr as Syntax, Stmt};
 use super::arguments::Arguments;
 use super::elaborate::{Context, Elaborator};
 use super::leaves::{Expected, leaves, new_value_of};
-use super::power::{self, Kind, PerSite, Term};
-use super::value::Value;
+use super::power::Term;
+use super::sites;
+use super::value::{Each, PerSite, Value};
 use super::velocity::Velocity;
-use super::{Configuration, Discretization, Factor, Kinetic, Spans, Structure, Written};
+use super::{Configuration, Discretization, Factor, Kinetic, Layout, Spans, Written};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{self, Closure, Declaration, spell};
 
@@ -18,7 +19,7 @@ pub(super) fn action<'g>(
     context: &mut Context<'_, 'g>,
     declaration: &Declaration,
     arguments: &Arguments<'_, 'g>,
-    structure: &Structure,
+    structure: &Layout,
     configurations: Option<&[Configuration<'g>]>,
 ) -> Option<Vec<Expr<'g>>> {
     let closure = &declaration.action;
@@ -26,7 +27,7 @@ pub(super) fn action<'g>(
     let value = Elaborator::new(context, "action", scope).elaborate(&closure.body)?;
     let value = of_site(context, &closure.body, value)?;
     let expected: Vec<Expected> = configurations?.iter().map(Expected::point).collect();
-    let old = arguments.configuration.spell();
+    let old = arguments.names.configuration.spell();
     leaves(context, &closure.body, "action", &value, structure, &expected, &new_value_of(&old))
 }
 
@@ -50,7 +51,7 @@ pub(super) fn kinetic<'g>(
     context: &mut Context<'_, 'g>,
     declaration: &Declaration,
     arguments: &Arguments<'_, 'g>,
-    structure: &Structure,
+    structure: &Layout,
     factors: Option<&[Factor<'g>]>,
 ) -> Option<Kinetic<'g>> {
     match &declaration.kinetic {
@@ -111,7 +112,7 @@ fn lagrangian<'g>(
     context: &mut Context<'_, 'g>,
     closure: &Closure,
     arguments: &Arguments<'_, 'g>,
-    structure: &Structure,
+    structure: &Layout,
     factors: Option<&[Factor<'g>]>,
 ) -> Option<(Expr<'g>, Vec<Expr<'g>>, String)> {
     let (taken, pattern) = arguments.velocity(closure, &mut context.diagnostics);
@@ -121,7 +122,7 @@ fn lagrangian<'g>(
     });
     let value = velocity.as_ref().map(|(value, _)| value.clone());
     let value = match context.power.is_some() {
-        true => value.map(|own| Value::PerSite(PerSite { of: Kind::Motion, own: Box::new(own) })),
+        true => value.map(|own| Value::PerSite(PerSite { of: Each::Motion, own: Box::new(own) })),
         false => value,
     };
     let velocities = velocity.map(|(_, velocities)| velocities);
@@ -208,7 +209,7 @@ pub(super) fn scalar<'g>(context: &mut Context<'_, 'g>, closure: &Closure, given
                 .map(|value| vec![Term { ranges: Vec::new(), value }]),
         };
         if let Some(terms) = terms {
-            return match power::of_one_site(&terms, count, context.graph) {
+            return match sites::of_one_site(&terms, count, context.graph) {
                 Ok(sum) => Some(sum),
                 Err(reason) => {
                     let message = format!("the {key} of a power is a sum over its sites, and {reason}");

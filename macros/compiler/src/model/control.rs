@@ -35,7 +35,7 @@ pub(super) fn motion<'g>(
         parse::Kinetic::Dynamics(closure) => {
             let (input, value) = elaborate(context, system, closure, DYNAMICS)?;
             let expected: Vec<Expected> = system.configurations.iter().map(Expected::point).collect();
-            let is = new_value_of(&system.arguments.configuration.spell());
+            let is = new_value_of(&system.arguments.names.configuration.spell());
             let next = leaves(context, &closure.body, "dynamics", &value, system.configuration, &expected, &is)?;
             Some((Kinetic::Dynamics(next), input))
         }
@@ -75,7 +75,7 @@ fn elaborate<'g>(
     closure: &Closure,
     slots: &[Slot],
 ) -> Option<(Input<'g>, Value<'g>)> {
-    let taken = system.arguments.match_slots(closure, slots, &mut context.diagnostics);
+    let taken = system.arguments.names.match_slots(closure, slots, &mut context.diagnostics);
     let Some(position) = taken.iter().position(|slot| *slot == Some(Slot::Input)) else {
         if !taken.contains(&None) {
             let error = Diagnostic::new(closure.head, format!("the {} introduce no input", closure.key));
@@ -95,7 +95,7 @@ fn elaborate<'g>(
 pub(super) fn read<'g>(
     context: &mut Context<'_, 'g>,
     arguments: &Arguments<'_, 'g>,
-    control: &parse::Control,
+    control: &parse::Choice,
     input: &Input<'g>,
 ) -> Option<Control<'g>> {
     let [leaf] = input.1.as_slice() else {
@@ -104,7 +104,7 @@ pub(super) fn read<'g>(
         return None;
     };
     check_is_vector(context, control, leaf)?;
-    let taken = arguments.match_slots(&control.price, PRICE, &mut context.diagnostics);
+    let taken = arguments.names.match_slots(&control.price, PRICE, &mut context.diagnostics);
     let chosen = [(Slot::Chosen, Some(forces::value_of(input)))];
     let scope = arguments.scope(&control.price, PRICE, &taken, &chosen, &mut context.diagnostics);
     let price = scalar(context, &control.price, Elaborated { scope, needs: "a price is a scalar" });
@@ -122,12 +122,12 @@ pub(super) fn endpoint<'g>(
     arguments: &Arguments<'_, 'g>,
     closure: &Closure,
 ) -> Option<Expr<'g>> {
-    let taken = arguments.match_slots(closure, POTENTIAL, &mut context.diagnostics);
+    let taken = arguments.names.match_slots(closure, POTENTIAL, &mut context.diagnostics);
     let scope = arguments.scope(closure, POTENTIAL, &taken, &[], &mut context.diagnostics);
     scalar(context, closure, Elaborated { scope, needs: "a price is a scalar" })
 }
 
-fn check_is_vector(context: &mut Context<'_, '_>, control: &parse::Control, leaf: &Configuration<'_>) -> Option<()> {
+fn check_is_vector(context: &mut Context<'_, '_>, control: &parse::Choice, leaf: &Configuration<'_>) -> Option<()> {
     if leaf.shape.is_column() || leaf.shape.is_scalar() {
         return Some(());
     }
@@ -149,12 +149,12 @@ fn bounds<'g>(
     let (place, list) = tail(&closure.body);
     let Syntax::Array(list) = list else {
         let error = Diagnostic::new(place, "bounds are a list of inequalities");
-        let name = arguments.input.map_or("u".into(), |pattern| pattern.spell());
+        let name = arguments.names.input.map_or("u".into(), |pattern| pattern.spell());
         context.diagnostics.push(error.help(format!("write `bounds = |{name}| [-1 <= {name}.x, {name}.x <= 1]`")));
         return None;
     };
     // arguments are matched once, so that a mistake in them is told once
-    let taken = arguments.match_slots(closure, BOUNDS, &mut context.diagnostics);
+    let taken = arguments.names.match_slots(closure, BOUNDS, &mut context.diagnostics);
     if taken.contains(&None) {
         return None;
     }

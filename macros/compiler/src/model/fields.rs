@@ -8,12 +8,12 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
-use super::power::{self, Kind, PerSite};
+use super::power;
 use super::scalar::Agreement;
 use super::sizes::{ENTRIES, size, type_parameter};
-use super::value::Value;
+use super::value::{Each, PerSite, Value};
 use super::vectors::{hint, last_segment, vectors};
-use super::{Access, Leaf, Parameter, Promise, ScalarType, Structure};
+use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Declaration, Field, spell_type};
 
@@ -51,7 +51,7 @@ impl<'g> Fields<'g> {
 
 /// The type of a field that is read.
 struct FieldType<'t> {
-    structure: Structure,
+    structure: Layout,
     leaves: usize,
     shape: Shape,
     is_scalar: bool,
@@ -100,7 +100,7 @@ pub(super) fn read<'g>(
             let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
             let value = Value::nested(&parameter.structure, &leaves);
             match parameter.per_site {
-                true => Value::PerSite(PerSite { of: Kind::Field(parameters.len()), own: Box::new(value) }),
+                true => Value::PerSite(PerSite { of: Each::Field(parameters.len()), own: Box::new(value) }),
                 false => value,
             }
         });
@@ -125,13 +125,13 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
                 return Err(Some(Diagnostic::new(Place::of(ty), message).note(note)));
             }
             let parts = (0..length).map(|i| element.structure.shifted(i * element.leaves)).collect();
-            Ok(FieldType { structure: Structure::Array(parts), leaves, ..element })
+            Ok(FieldType { structure: Layout::Array(parts), leaves, ..element })
         }
         Type::Group(group) => field_type(&group.elem, generics),
         Type::Paren(paren) => field_type(&paren.elem, generics),
         _ => {
             let leaf = |shape, is_scalar, scalar| FieldType {
-                structure: Structure::Leaf(0),
+                structure: Layout::Leaf(0),
                 leaves: 1,
                 shape,
                 is_scalar,

@@ -6,22 +6,22 @@ use super::arguments::{Arguments, Taken};
 use super::closures::{tail, written};
 use super::elaborate::{Context, Elaborator, shortened};
 use super::features::{self, Feature, Found};
-use super::groups::Names;
+use super::groups::GroupNames;
 use super::leaves::{Expected, leaf_names, leaves};
 use super::spaces::read_spaces;
 use super::value::Value;
 use super::velocity::Velocity;
-use super::{Access, Configuration, Factor, Force, Space, Structure};
+use super::{Access, Configuration, Factor, Force, Layout, Space};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Argument, Closure, Declaration, Pattern, spell};
 
 /// What forces are read for.
 pub(super) struct System<'a, 'd, 'g> {
     pub arguments: &'a Arguments<'d, 'g>,
-    pub names: Names<'a>,
-    pub element: &'a Structure,
+    pub names: GroupNames<'a>,
+    pub element: &'a Layout,
     pub factors: &'a [Factor<'g>],
-    pub configuration: &'a Structure,
+    pub configuration: &'a Layout,
     pub configurations: &'a [Configuration<'g>],
 }
 
@@ -29,11 +29,11 @@ pub(super) struct System<'a, 'd, 'g> {
 pub(super) struct Forces<'g> {
     pub force: Option<Force<'g>>,
     pub inputs: Vec<Configuration<'g>>,
-    pub input: Structure,
+    pub input: Layout,
 }
 
 /// The leaves of an input, and how they nest.
-pub(super) type Input<'g> = (Structure, Vec<Configuration<'g>>);
+pub(super) type Input<'g> = (Layout, Vec<Configuration<'g>>);
 
 /// Reads both closures; `None` if one has an error, which was reported.
 pub(super) fn read<'g>(
@@ -41,9 +41,10 @@ pub(super) fn read<'g>(
     system: &System<'_, '_, 'g>,
     declaration: &Declaration,
 ) -> Option<Forces<'g>> {
-    let none = || (Structure::Tuple(Vec::new()), Vec::new());
-    let of_group = declaration.force.as_ref().map(|closure| one(context, system, closure, Kind::OfGroup));
-    let on_leaves = declaration.force_on.as_ref().map(|closure| one(context, system, closure, Kind::OnConfiguration));
+    let none = || (Layout::Tuple(Vec::new()), Vec::new());
+    let of_group = declaration.force.as_ref().map(|closure| one(context, system, closure, ForceKind::OfGroup));
+    let on_leaves =
+        declaration.force_on.as_ref().map(|closure| one(context, system, closure, ForceKind::OnConfiguration));
     let second_input = on_leaves.iter().flatten().any(|read| read.input.is_some());
     if let Some(closure) = &declaration.force_on {
         let first_input = of_group.iter().flatten().any(|read| read.input.is_some());
@@ -58,7 +59,7 @@ pub(super) fn read<'g>(
     let input = of_group.iter().chain(&on_leaves).find_map(|read| read.input.clone());
     let (input, inputs) = input.unwrap_or_else(none);
     // both closures speak of one velocity, each under its own name
-    let renamed = |read: Read<'g>| -> Vec<Expr<'g>> {
+    let renamed = |read: ReadForce<'g>| -> Vec<Expr<'g>> {
         let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
         read.value.iter().map(|part| part.substitute(&names)).collect()
     };
@@ -74,13 +75,13 @@ pub(super) fn read<'g>(
 
 /// What a closure gives.
 #[derive(Copy, Clone, PartialEq, Eq)]
-enum Kind {
+enum ForceKind {
     OfGroup,
     OnConfiguration,
 }
 
 /// A closure that has been read.
-struct Read<'g> {
+struct ReadForce<'g> {
     value: Vec<Expr<'g>>,
     velocities: Vec<Expr<'g>>,
     input: Option<Input<'g>>,
@@ -90,8 +91,8 @@ fn one<'g>(
     context: &mut Context<'_, 'g>,
     system: &System<'_, '_, 'g>,
     closure: &Closure,
-    kind: Kind,
-) -> Option<Read<'g>> {
+    kind: ForceKind,
+) -> Option<ReadForce<'g>> {
     let (taken, velocity, input) = system.arguments.force(closure, &mut context.diagnostics);
     let (value_of_velocity, velocities) = match velocity {
         Some(pattern) => named_velocity(context, system, pattern)?,
@@ -105,14 +106,14 @@ fn one<'g>(
     let value = elaborate(context, system, closure, elaborated)?;
     let key = closure.key.to_string();
     let value = match kind {
-        Kind::OfGroup => components(context, system, closure, &value)?,
-        Kind::OnConfiguration => {
+        ForceKind::OfGroup => components(context, system, closure, &value)?,
+        ForceKind::OnConfiguration => {
             let expected: Vec<Expected> = system.configurations.iter().map(Expected::point).collect();
-            let is = format!("a covector at `{}`, which has its shape", system.arguments.configuration.spell());
+            let is = format!("a covector at `{}`, which has its shape", system.arguments.names.configuration.spell());
             leaves(context, &closure.body, &key, &value, system.configuration, &expected, &is)?
         }
     };
-    Some(Read { value, velocities, input })
+    Some(ReadForce { value, velocities, input })
 }
 
 fn named_velocity<'g>(
@@ -208,30 +209,30 @@ fn flatten<'g>(
     context: &Context<'_, 'g>,
     system: &System<'_, '_, 'g>,
     value: &Value<'g>,
-    structure: &Structure,
+    structure: &Layout,
     parts: &mut Vec<Expr<'g>>,
 ) -> Result<(), (String, String)> {
     let factor = |k: usize| &system.factors[k];
     match (value, structure) {
-        (Value::Matrix(expr), Structure::Leaf(k)) if expr.shape() == Shape::vector(factor(*k).group.dimension()) => {
+        (Value::Matrix(expr), Layout::Leaf(k)) if expr.shape() == Shape::vector(factor(*k).group.dimension()) => {
             parts.push(*expr);
             Ok(())
         }
-        (Value::Tuple(values), Structure::Leaf(k)) => match stacked(context, factor(*k), values) {
+        (Value::Tuple(values), Layout::Leaf(k)) => match stacked(context, factor(*k), values) {
             Some(expr) => {
                 parts.push(expr);
                 Ok(())
             }
             None => Err((value.describe(), wanted(factor(*k)))),
         },
-        (Value::Tuple(values), Structure::Tuple(inner)) | (Value::Array(values), Structure::Array(inner))
+        (Value::Tuple(values), Layout::Tuple(inner)) | (Value::Array(values), Layout::Array(inner))
             if values.len() == inner.len() =>
         {
             values.iter().zip(inner).try_for_each(|(value, part)| flatten(context, system, value, part, parts))
         }
-        (value, Structure::Leaf(k)) => Err((value.describe(), wanted(factor(*k)))),
-        (value, Structure::Tuple(inner)) => Err((value.describe(), format!("a tuple of {}", inner.len()))),
-        (value, Structure::Array(inner)) => Err((value.describe(), format!("an array of {}", inner.len()))),
+        (value, Layout::Leaf(k)) => Err((value.describe(), wanted(factor(*k)))),
+        (value, Layout::Tuple(inner)) => Err((value.describe(), format!("a tuple of {}", inner.len()))),
+        (value, Layout::Array(inner)) => Err((value.describe(), format!("an array of {}", inner.len()))),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::parse::{Declaration, spell_type};
 
 /// What the names in types refer to.
 #[derive(Copy, Clone)]
-pub(super) struct Names<'d> {
+pub(super) struct GroupNames<'d> {
     pub generics: &'d Generics,
     pub declared: &'d DeclaredGroups,
 }
@@ -68,7 +68,7 @@ pub(super) fn is_built_in(name: &str) -> bool {
 }
 
 /// Reads a group by its name; `None` if the type has another name.
-pub(super) fn group(ty: &Type, names: Names) -> Option<Result<Group, Diagnostic>> {
+pub(super) fn group(ty: &Type, names: GroupNames) -> Option<Result<Group, Diagnostic>> {
     let segment = last_segment(ty)?;
     if let Some(group) = names.declared.find(&segment.ident) {
         return Some(declared(ty, segment, group));
@@ -92,7 +92,7 @@ fn built_in(
     name: &str,
     maker: Maker,
     sizes: &[&GenericArgument],
-    names: Names,
+    names: GroupNames,
 ) -> Result<Group, Diagnostic> {
     let size = |position: usize| size_argument(sizes[position], names.generics);
     let place = Place::of(ty);
@@ -155,7 +155,7 @@ pub(super) fn check_large(
 }
 
 /// The error for a type that is no group, where a group is expected.
-pub(super) fn unknown_group(ty: &Type, names: Names) -> Diagnostic {
+pub(super) fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
     let text = spell_type(ty);
     let place = Place::of(ty);
     let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
@@ -180,7 +180,7 @@ pub(super) fn unknown_group(ty: &Type, names: Names) -> Diagnostic {
 }
 
 /// The group that a name like `SO3`, `So` or `Rotation3` most likely means.
-pub(super) fn suggestion(name: &str, names: Names) -> Option<String> {
+pub(super) fn suggestion(name: &str, names: GroupNames) -> Option<String> {
     let own: Vec<String> = names.declared.names().collect();
     if let Some(similar) = nearest(name, own.iter().map(String::as_str)).filter(|_| name.len() > 2) {
         return Some(similar.to_string());

@@ -6,7 +6,7 @@ use syn::Expr as Syntax;
 use super::closures::tail;
 use super::elaborate::{Context, shortened};
 use super::value::Value;
-use super::{Configuration, Factor, Structure, quaternion};
+use super::{Configuration, Factor, Layout, quaternion};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::{Pattern, spell};
 
@@ -36,7 +36,7 @@ pub(super) fn leaves<'g>(
     body: &Syntax,
     key: &str,
     value: &Value<'g>,
-    structure: &Structure,
+    structure: &Layout,
     expected: &[Expected],
     is: &str,
 ) -> Option<Vec<Expr<'g>>> {
@@ -57,65 +57,61 @@ pub(super) fn new_value_of(old: &str) -> String {
 /// Takes a value apart as a structure nests, or says what was found and what was expected.
 fn flatten<'g>(
     value: &Value<'g>,
-    structure: &Structure,
+    structure: &Layout,
     expected: &[Expected],
     leaves: &mut Vec<Expr<'g>>,
 ) -> Result<(), (String, String)> {
     match (value, structure) {
-        (Value::Matrix(expr), Structure::Leaf(leaf))
+        (Value::Matrix(expr), Layout::Leaf(leaf))
             if expr.shape() == expected[*leaf].shape && !expected[*leaf].is_quaternion =>
         {
             leaves.push(*expr);
             Ok(())
         }
-        (Value::Quaternion(expr), Structure::Leaf(leaf)) if expected[*leaf].is_quaternion => {
+        (Value::Quaternion(expr), Layout::Leaf(leaf)) if expected[*leaf].is_quaternion => {
             leaves.push(*expr);
             Ok(())
         }
-        (Value::Identity(scale), Structure::Leaf(leaf)) if expected[*leaf].is_quaternion => {
+        (Value::Identity(scale), Layout::Leaf(leaf)) if expected[*leaf].is_quaternion => {
             leaves.push(quaternion::real(scale.graph(), *scale));
             Ok(())
         }
-        (Value::Identity(scale), Structure::Leaf(leaf)) if expected[*leaf].shape.is_square() => {
+        (Value::Identity(scale), Layout::Leaf(leaf)) if expected[*leaf].shape.is_square() => {
             leaves.push(*scale * scale.graph().identity(expected[*leaf].shape.rows));
             Ok(())
         }
-        (Value::Tuple(values), Structure::Tuple(parts)) | (Value::Array(values), Structure::Array(parts))
+        (Value::Tuple(values), Layout::Tuple(parts)) | (Value::Array(values), Layout::Array(parts))
             if values.len() == parts.len() =>
         {
             values.iter().zip(parts).try_for_each(|(value, part)| flatten(value, part, expected, leaves))
         }
-        (value, Structure::Leaf(leaf)) => {
+        (value, Layout::Leaf(leaf)) => {
             let Expected { name, shape, is_quaternion } = &expected[*leaf];
             let wanted = if *is_quaternion { "a quaternion".to_string() } else { shape.to_string() };
             Err((value.describe(), format!("{wanted} for `{name}`")))
         }
-        (value, Structure::Tuple(parts)) => Err((value.describe(), format!("a tuple of {}", parts.len()))),
-        (value, Structure::Array(parts)) => Err((value.describe(), format!("an array of {}", parts.len()))),
+        (value, Layout::Tuple(parts)) => Err((value.describe(), format!("a tuple of {}", parts.len()))),
+        (value, Layout::Array(parts)) => Err((value.describe(), format!("an array of {}", parts.len()))),
     }
 }
 
 /// The name of each leaf: the pattern's names, with accessors where one name stands for several leaves.
-pub(super) fn leaf_names(
-    pattern: &Pattern,
-    structure: &Structure,
-    diagnostics: &mut Diagnostics,
-) -> Option<Vec<String>> {
+pub(super) fn leaf_names(pattern: &Pattern, structure: &Layout, diagnostics: &mut Diagnostics) -> Option<Vec<String>> {
     match (pattern, structure) {
         (Pattern::Name(ident), _) => {
             let name = syn::ext::IdentExt::unraw(ident).to_string();
             Some(structure.accessors().into_iter().map(|accessor| format!("{name}{accessor}")).collect())
         }
-        (Pattern::Tuple(patterns, _), Structure::Tuple(parts)) if patterns.len() == parts.len() => {
+        (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
             let names: Option<Vec<Vec<String>>> =
                 patterns.iter().zip(parts).map(|(pattern, part)| leaf_names(pattern, part, diagnostics)).collect();
             names.map(|names| names.into_iter().flatten().collect())
         }
         (Pattern::Tuple(patterns, place), structure) => {
             let is = match structure {
-                Structure::Leaf(_) => "no tuple".to_string(),
-                Structure::Tuple(parts) => format!("a tuple of {}", parts.len()),
-                Structure::Array(parts) => format!("an array of {}", parts.len()),
+                Layout::Leaf(_) => "no tuple".to_string(),
+                Layout::Tuple(parts) => format!("a tuple of {}", parts.len()),
+                Layout::Array(parts) => format!("an array of {}", parts.len()),
             };
             let message = format!("`{}` has {} names, but its type is {is}", pattern.spell(), patterns.len());
             diagnostics

@@ -13,6 +13,7 @@ pub(crate) mod features;
 mod fields;
 mod forces;
 mod groups;
+mod layout;
 mod leaves;
 mod membership;
 mod momentum;
@@ -22,10 +23,10 @@ mod print;
 mod quaternion;
 mod scalar;
 mod scope;
+mod sites;
 mod sizes;
 mod slots;
 mod spaces;
-mod structure;
 mod symmetries;
 #[cfg(test)]
 mod tests;
@@ -40,10 +41,10 @@ pub use crate::parse::{
 };
 pub use access::{Access, Part};
 pub use groups::is_large;
+pub use layout::Layout;
 pub use outline::{Outline, outline};
-pub use power::{Linear, Place, Power, Term};
+pub use power::{Linear, Power, SiteIndex, Term};
 pub(crate) use sizes::IN_LOOPS;
-pub use structure::Structure;
 pub use types::*;
 
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
@@ -53,8 +54,8 @@ use self::arguments::{Arguments, TypedArguments};
 use self::declared::DeclaredGroups;
 use self::elaborate::Context;
 use self::forces::Forces;
-use self::groups::Names;
-use self::power::Sites;
+use self::groups::GroupNames;
+use self::sites::Sites;
 use self::symmetries::System;
 use self::typed::Typed;
 use crate::diagnostic::Diagnostics;
@@ -66,13 +67,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let declared = DeclaredGroups::read(graph, &declaration.groups, &mut diagnostics);
     // a type cannot name a group that has an error
     diagnostics.propagate(())?;
-    let names = Names { generics: &declaration.generics, declared: &declared };
+    let names = GroupNames { generics: &declaration.generics, declared: &declared };
     let mut diagnostics = Diagnostics::new();
     let types = arguments::of_action(&declaration.action, &mut diagnostics);
     let sites = types.map(|types| power::site_types((types.group, types.space), &declaration.generics));
     let (types, sites) = match sites {
         Some(Ok(Some(sites))) => {
-            power::check(declaration, &mut diagnostics);
+            sites::check(declaration, &mut diagnostics);
             let site = types.map(|types| TypedArguments { group: sites.group, space: sites.space, ..types });
             (site, Some(sites.length))
         }
@@ -102,10 +103,10 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let power = sites.zip(typed.configurations.clone()).map(|(length, leaves)| {
         arguments.of_each_site();
         let (structure, leaf_count) = (typed.configuration.clone(), fields.leaf_count());
-        Sites::new(graph, length, (structure, leaves), arguments.configuration.spell(), leaf_count)
+        Sites::new(graph, length, (structure, leaves), arguments.names.configuration.spell(), leaf_count)
     });
     let mut context = Context { graph, fields: &fields, constants: Vec::new(), power, diagnostics };
-    let formulas = Formulas::read(&mut context, declaration, &arguments, &typed, names);
+    let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, mut diagnostics, .. } = context;
     declared.check_used(&mut diagnostics);
     chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &mut diagnostics);
@@ -153,13 +154,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         power: None,
     })?;
     Ok(match power.zip(sites) {
-        Some((power, length)) => power::power_of(model, power, formulas.terms, length),
+        Some((power, length)) => sites::power_of(model, power, formulas.terms, length),
         None => model,
     })
 }
 
 /// What the closures give.
-struct Formulas<'g> {
+struct ClosureValues<'g> {
     action: Vec<Expr<'g>>,
     laws: Vec<Law>,
     kinetic: Kinetic<'g>,
@@ -172,15 +173,15 @@ struct Formulas<'g> {
     endpoint: Option<Expr<'g>>,
 }
 
-impl<'g> Formulas<'g> {
+impl<'g> ClosureValues<'g> {
     /// Elaborates all closures, so that each reports its errors; `None` if one has an error.
     fn read(
         context: &mut Context<'_, 'g>,
         declaration: &Declaration,
         arguments: &Arguments<'_, 'g>,
         typed: &Typed<'g>,
-        names: Names,
-    ) -> Option<Formulas<'g>> {
+        names: GroupNames,
+    ) -> Option<ClosureValues<'g>> {
         let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
         let action = closures::action(context, declaration, arguments, &typed.configuration, configurations);
         let kinetic = closures::kinetic(context, declaration, arguments, &typed.element, factors);
@@ -216,7 +217,7 @@ impl<'g> Formulas<'g> {
         let input = (forces.input.clone(), forces.inputs.clone());
         let control = declaration.control.as_ref().map(|control| control::read(context, arguments, control, &input));
         let control = control.map_or(Some(None), |control| control.map(Some))?;
-        Some(Formulas {
+        Some(ClosureValues {
             action,
             laws: laws?,
             kinetic: kinetic?,

@@ -3,7 +3,7 @@
 use clebsch_symbolic::Expr;
 
 use super::features::{self, Feature, Found};
-use super::{Isotropy, Kinetic, Model, Structure, Written};
+use super::{Isotropy, Kinetic, Layout, Model, Written};
 use crate::diagnostic::Diagnostics;
 
 /// The model without its configuration, where the momentum is stepped alone.
@@ -27,7 +27,7 @@ pub(super) fn alone(model: Model<'_>) -> Result<Model<'_>, Diagnostics> {
     }
     diagnostics.propagate(Model {
         configurations: Vec::new(),
-        configuration: Structure::Tuple(Vec::new()),
+        configuration: Layout::Tuple(Vec::new()),
         action: Vec::new(),
         isotropy: Isotropy::Free,
         ..model

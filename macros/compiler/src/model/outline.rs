@@ -5,8 +5,8 @@ use quote::ToTokens;
 
 use super::arguments::TypedArguments;
 use super::declared::DeclaredGroups;
-use super::groups::Names;
-use super::{ScalarType, Structure, arguments, power, spaces};
+use super::groups::GroupNames;
+use super::{Layout, ScalarType, arguments, power, spaces};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
@@ -15,17 +15,17 @@ pub struct Outline {
     /// The const generic that is the number of sites of a power, of which the rest says what one is.
     pub sites: Option<syn::Ident>,
     /// How the factors nest.
-    pub element: Structure,
+    pub element: Layout,
     /// The groups of the factors.
     pub groups: Vec<Group>,
     /// How the leaves of the configuration nest.
-    pub configuration: Structure,
+    pub configuration: Layout,
     /// The shapes of the leaves of the configuration.
     pub shapes: Vec<Shape>,
     /// Which leaves of the configuration are quaternions.
     pub quaternions: Vec<bool>,
     /// How the leaves of the input nest.
-    pub input: Structure,
+    pub input: Layout,
     /// The shapes of the leaves of the input.
     pub inputs: Vec<Shape>,
     /// Whether a closure takes the time.
@@ -38,7 +38,7 @@ pub struct Outline {
 pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let mut ignored = Diagnostics::new();
     let declared = DeclaredGroups::read(graph, &declaration.groups, &mut ignored);
-    let names = Names { generics: &declaration.generics, declared: &declared };
+    let names = GroupNames { generics: &declaration.generics, declared: &declared };
     let types = arguments::of_action(&declaration.action, &mut ignored)?;
     let sites = power::site_types((types.group, types.space), &declaration.generics).ok()?;
     let types = match &sites {
@@ -52,12 +52,12 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let input = forces.filter_map(|closure| closure.arguments.last()?.ty.as_ref()).next();
     let input = input.and_then(|ty| spaces::read_spaces(ty, names, &mut ignored));
     if declaration.dials.emit.momentum {
-        (spaces.structure, spaces.leaves) = (Structure::Tuple(Vec::new()), Vec::new());
+        (spaces.structure, spaces.leaves) = (Layout::Tuple(Vec::new()), Vec::new());
     }
     Some(Outline {
         sites: sites.map(|sites| sites.length.clone()),
         inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
-        input: input.map_or(Structure::Tuple(Vec::new()), |input| input.structure),
+        input: input.map_or(Layout::Tuple(Vec::new()), |input| input.structure),
         element: groups.structure,
         groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
         configuration: spaces.structure,

@@ -8,7 +8,7 @@ use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::Pattern;
 
-/// Names with a meaning of their own in all closures.
+/// GroupNames with a meaning of their own in all closures.
 const RESERVED: [&str; 4] = ["h", "t", "I", "self"];
 
 /// A name and its value; a value with an error, which was reported, is `None`.

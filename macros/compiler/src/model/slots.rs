@@ -2,7 +2,6 @@
 
 use syn::ext::IdentExt;
 
-use super::arguments::Arguments;
 use super::scope::check_reserved;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
@@ -42,7 +41,18 @@ pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chos
 /// The arguments of an offered symmetry, in order.
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
-impl<'d> Arguments<'d, '_> {
+/// The names that the closures of a declaration share.
+#[derive(Copy, Clone)]
+pub(super) struct SharedNames<'d> {
+    /// The group element, as the action calls it.
+    pub element: &'d Pattern,
+    /// The configuration, as the action calls it.
+    pub configuration: &'d Pattern,
+    /// The input, as the closure that introduces it calls it.
+    pub input: Option<&'d Pattern>,
+}
+
+impl<'d> SharedNames<'d> {
     /// The pattern and the meaning of a slot; a velocity and the element of a symmetry are introduced by their closures.
     fn names(&self, slot: Slot) -> (String, &'static str) {
         match slot {

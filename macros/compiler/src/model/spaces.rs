@@ -4,17 +4,17 @@ use clebsch_symbolic::{Group, Property, Shape};
 use proc_macro2::Span;
 use syn::{Generics, Type};
 
-use super::groups::{Names, group, suggestion, unknown_group};
+use super::groups::{GroupNames, group, suggestion, unknown_group};
 use super::quaternion;
 use super::sizes::{IN_LOOPS, LEAVES, length};
 use super::vectors::{Vectors, arguments, hint, last_segment, vectors};
-use super::{Space, Structure};
+use super::{Layout, Space};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::spell_type;
 
 /// A type as a product of leaves.
 pub(super) struct Product<'t, L> {
-    pub structure: Structure,
+    pub structure: Layout,
     /// Each leaf with its type.
     pub leaves: Vec<(L, &'t Type)>,
 }
@@ -41,7 +41,11 @@ impl SpaceType<'_> {
 }
 
 /// Reads the type of the group element.
-pub(super) fn read_groups<'t>(ty: &'t Type, names: Names, diagnostics: &mut Diagnostics) -> Option<Product<'t, Group>> {
+pub(super) fn read_groups<'t>(
+    ty: &'t Type,
+    names: GroupNames,
+    diagnostics: &mut Diagnostics,
+) -> Option<Product<'t, Group>> {
     let leaf = |ty: &'t Type| group(ty, names).unwrap_or_else(|| Err(unknown_group(ty, names)));
     read_product(ty, names.generics, &leaf, diagnostics)
 }
@@ -49,7 +53,7 @@ pub(super) fn read_groups<'t>(ty: &'t Type, names: Names, diagnostics: &mut Diag
 /// Reads the type of the configuration.
 pub(super) fn read_spaces<'t>(
     ty: &'t Type,
-    names: Names,
+    names: GroupNames,
     diagnostics: &mut Diagnostics,
 ) -> Option<Product<'t, SpaceType<'t>>> {
     let leaf = |ty: &'t Type| read_space(ty, names);
@@ -77,17 +81,17 @@ fn read_structure<'t, L: Copy>(
     leaf: &impl Fn(&'t Type) -> Result<L, Diagnostic>,
     leaves: &mut Vec<(L, &'t Type)>,
     diagnostics: &mut Diagnostics,
-) -> Option<Structure> {
+) -> Option<Layout> {
     match ty {
         Type::Group(group) => read_structure(&group.elem, generics, leaf, leaves, diagnostics),
         Type::Paren(paren) => read_structure(&paren.elem, generics, leaf, leaves, diagnostics),
         Type::Tuple(tuple) if !tuple.elems.is_empty() => {
-            let parts: Vec<Structure> = tuple
+            let parts: Vec<Layout> = tuple
                 .elems
                 .iter()
                 .filter_map(|part| read_structure(part, generics, leaf, leaves, diagnostics))
                 .collect();
-            (parts.len() == tuple.elems.len()).then_some(Structure::Tuple(parts))
+            (parts.len() == tuple.elems.len()).then_some(Layout::Tuple(parts))
         }
         Type::Array(array) => {
             let length = length(&array.len, generics).map_err(|error| diagnostics.push(error)).ok()?;
@@ -99,12 +103,12 @@ fn read_structure<'t, L: Copy>(
                 return None;
             }
             (1..length).for_each(|_| leaves.extend(element.iter().copied()));
-            Some(Structure::Array((0..length).map(|i| part.shifted(i * element.len())).collect()))
+            Some(Layout::Array((0..length).map(|i| part.shifted(i * element.len())).collect()))
         }
         _ => match leaf(ty) {
             Ok(found) => {
                 leaves.push((found, ty));
-                Some(Structure::Leaf(leaves.len() - 1))
+                Some(Layout::Leaf(leaves.len() - 1))
             }
             Err(error) => {
                 diagnostics.push(error);
@@ -120,7 +124,7 @@ fn too_many(ty: &Type, count: usize) -> Diagnostic {
         .note("the code of a step is written out at compile time and grows with the number of factors")
 }
 
-fn read_space<'t>(ty: &'t Type, names: Names) -> Result<SpaceType<'t>, Diagnostic> {
+fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diagnostic> {
     if let Some(found) = group(ty, names) {
         let group = found?;
         let (shape, is_quaternion) = (group.element_shape(), group == Group::UnitQuaternions);
@@ -175,7 +179,7 @@ fn no_unit(ty: &Type) -> Diagnostic {
         .help("write `Unit<Vector3>` for unit vectors")
 }
 
-fn unknown_space(ty: &Type, name: &str, names: Names) -> Diagnostic {
+fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
     let text = spell_type(ty);
     let error = Diagnostic::new(Place::of(ty), format!("unknown space `{text}`"));
     if matches!(name, "f32" | "f64") {

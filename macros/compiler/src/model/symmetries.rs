@@ -8,21 +8,21 @@ use super::action_laws::{self, Action};
 use super::arguments::Arguments;
 use super::closures;
 use super::elaborate::{Context, Elaborator};
-use super::groups::{Names, group, unknown_group};
+use super::groups::{GroupNames, group, unknown_group};
 use super::leaves::{self, Expected};
 use super::spaces::{space_of, span_of};
 use super::value::Value;
-use super::{Access, Configuration, Factor, OfferedSymmetry, Side, Structure};
+use super::{Access, Configuration, Factor, Layout, OfferedSymmetry, Side};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
 
 /// The system that symmetries are offered for.
 pub(super) struct System<'a, 'g> {
     pub arguments: &'a Arguments<'a, 'g>,
-    pub names: Names<'a>,
-    pub element: &'a Structure,
+    pub names: GroupNames<'a>,
+    pub element: &'a Layout,
     pub factors: &'a [Factor<'g>],
-    pub configuration: &'a Structure,
+    pub configuration: &'a Layout,
     pub configurations: &'a [Configuration<'g>],
     /// Φ_F(q), leaf by leaf.
     pub action: &'a [Expr<'g>],
@@ -98,7 +98,7 @@ impl<'g> System<'_, 'g> {
         closure: &Closure,
         value: &Value<'g>,
     ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
-        let (q, f) = (self.arguments.configuration.spell(), self.arguments.element.spell());
+        let (q, f) = (self.arguments.names.configuration.spell(), self.arguments.names.element.spell());
         let Value::Tuple(parts) = value else {
             let message = format!("the symmetry gives {}, but it has to give a pair", value.describe());
             return refuse(context, Diagnostic::new(closures::tail(&closure.body).0, message).help(pair(&q, &f)));
@@ -170,7 +170,7 @@ impl<'g> System<'_, 'g> {
             let leaf = stepped_then_moved.iter().zip(&moved_then_stepped).position(differs).unwrap_or(0);
             let example = self.example(offered, leaf);
             let (q, s) = (&self.configurations[leaf].name, &offered.name);
-            let step = self.arguments.element.spell();
+            let step = self.arguments.names.element.spell();
             let error = Diagnostic::new(Place::of(&closure.body), "the symmetry does not agree with the action")
                 .note(format!(
                     "a step by `{step}` and then `{s}` moves {q} to {}, `{s}` first and then the moved step to {}",

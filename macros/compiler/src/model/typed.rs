@@ -4,17 +4,18 @@ use clebsch_symbolic::{Expr, Graph, Group, Role};
 
 use super::arguments::{Arguments, TypedArguments};
 use super::leaves::leaf_names;
+use super::slots::SharedNames;
 use super::spaces::{Product, SpaceType, span_of};
 use super::value::Value;
-use super::{Configuration, Factor, Side, Space, Structure};
+use super::{Configuration, Factor, Layout, Side, Space};
 use crate::diagnostic::Diagnostics;
 use crate::parse::Pattern;
 
 /// What the two arguments of the action stand for. A part with an error, which was reported, is `None`.
 pub(super) struct Typed<'g> {
-    pub element: Structure,
+    pub element: Layout,
     pub factors: Option<Vec<Factor<'g>>>,
-    pub configuration: Structure,
+    pub configuration: Layout,
     pub configurations: Option<Vec<Configuration<'g>>>,
 }
 
@@ -41,15 +42,13 @@ impl<'g> Typed<'g> {
     ) -> Arguments<'d, 'g> {
         let factor = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
         let point = |leaf: &Configuration<'g>| Value::leaf(leaf.symbol, leaf.is_quaternion);
-        let nested = |structure: &Structure, leaves: Vec<Value<'g>>| Value::nested(structure, &leaves);
+        let nested = |structure: &Layout, leaves: Vec<Value<'g>>| Value::nested(structure, &leaves);
         Arguments {
-            element: typed.element,
-            configuration: typed.configuration,
+            names: SharedNames { element: typed.element, configuration: typed.configuration, input },
             element_value: self.factors.as_deref().map(|all| nested(&self.element, all.iter().map(factor).collect())),
             configuration_value: (self.configurations.as_deref())
                 .map(|all| nested(&self.configuration, all.iter().map(point).collect())),
             members: members(self.factors.as_deref(), self.configurations.as_deref()),
-            input,
             step_size,
             time,
         }

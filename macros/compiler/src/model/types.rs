@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
-use super::{Access, Power, Structure};
+use super::{Access, Layout, Power};
 use crate::parse::{
     ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
@@ -25,11 +25,11 @@ pub struct Model<'g> {
     /// The factors of the group, in order of their leaves.
     pub factors: Vec<Factor<'g>>,
     /// How the factors nest.
-    pub element: Structure,
+    pub element: Layout,
     /// The leaves of the configuration.
     pub configurations: Vec<Configuration<'g>>,
     /// How the leaves of the configuration nest.
-    pub configuration: Structure,
+    pub configuration: Layout,
     /// Φ_F(q), one expression for each leaf of the configuration.
     pub action: Vec<Expr<'g>>,
     /// The kinetic part of the discrete Lagrangian, or the Lagrangian that it is to be made of.
@@ -43,7 +43,7 @@ pub struct Model<'g> {
     /// The leaves of the input u of a step; empty where forces take none.
     pub inputs: Vec<Configuration<'g>>,
     /// How the leaves of the input nest.
-    pub input: Structure,
+    pub input: Layout,
     /// What the inputs are chosen by; `None` where nothing is chosen.
     pub control: Option<Control<'g>>,
     /// What ties sites to each other, where the declaration is a power and this is the model of a site.
@@ -142,7 +142,7 @@ pub struct Parameter<'g> {
     /// Whether it is an array with one entry for each site of a power, of which the rest says what one is.
     pub per_site: bool,
     /// How arrays nest.
-    pub structure: Structure,
+    pub structure: Layout,
     /// One entry for each scalar, vector or matrix in it.
     pub leaves: Vec<Leaf<'g>>,
 }

@@ -2,8 +2,8 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::Structure;
-use super::power::{PerSite, Term};
+use super::Layout;
+use super::power::Term;
 
 /// The value of an expression.
 #[derive(Clone, Debug)]
@@ -35,12 +35,12 @@ impl<'g> Value<'g> {
     }
 
     /// Nests values as a structure says.
-    pub fn nested(structure: &Structure, leaves: &[Value<'g>]) -> Value<'g> {
-        let parts = |parts: &[Structure]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
+    pub fn nested(structure: &Layout, leaves: &[Value<'g>]) -> Value<'g> {
+        let parts = |parts: &[Layout]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
         match structure {
-            Structure::Leaf(leaf) => leaves[*leaf].clone(),
-            Structure::Tuple(inner) => Value::Tuple(parts(inner)),
-            Structure::Array(inner) => Value::Array(parts(inner)),
+            Layout::Leaf(leaf) => leaves[*leaf].clone(),
+            Layout::Tuple(inner) => Value::Tuple(parts(inner)),
+            Layout::Array(inner) => Value::Array(parts(inner)),
         }
     }
 
@@ -73,4 +73,24 @@ impl<'g> Value<'g> {
             Value::Sum(_) => "a sum over sites".into(),
         }
     }
+}
+
+/// A value of which there is one for each site.
+#[derive(Clone, Debug)]
+pub(super) struct PerSite<'g> {
+    /// What it is.
+    pub of: Each,
+    /// That of the site itself.
+    pub own: Box<Value<'g>>,
+}
+
+/// What there is one of for each site.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub(super) enum Each {
+    /// The group element or the velocity.
+    Motion,
+    /// The configuration.
+    Configuration,
+    /// A field, by its number among those that are read.
+    Field(usize),
 }

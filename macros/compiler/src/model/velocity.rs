@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 use super::leaves::leaf_names;
 use super::value::Value;
-use super::{Factor, Structure};
+use super::{Factor, Layout};
 use crate::diagnostic::Diagnostics;
 use crate::parse::Pattern;
 
@@ -20,17 +20,17 @@ impl<'g> Velocity<'_, 'g> {
     pub fn of(
         &self,
         pattern: &Pattern,
-        structure: &Structure,
+        structure: &Layout,
         diagnostics: &mut Diagnostics,
     ) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
         match (pattern, structure) {
-            (Pattern::Tuple(patterns, _), Structure::Tuple(parts)) if patterns.len() == parts.len() => {
+            (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
                 let found: Option<Vec<_>> =
                     patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part, diagnostics)).collect();
                 let (values, symbols): (Vec<_>, Vec<_>) = found?.into_iter().unzip();
                 Some((Value::Tuple(values), symbols.into_iter().flatten().collect()))
             }
-            (Pattern::Tuple(patterns, _), Structure::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
+            (Pattern::Tuple(patterns, _), Layout::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
                 let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
                 let symbol = self.symbol(*k, &names.join("_"));
                 let blocks = self.graph.blocks(self.factors[*k].group);
@@ -63,9 +63,9 @@ impl<'g> Velocity<'_, 'g> {
 }
 
 /// The numbers of the leaves of a structure, in order.
-fn leaves(structure: &Structure) -> Vec<usize> {
+fn leaves(structure: &Layout) -> Vec<usize> {
     match structure {
-        Structure::Leaf(leaf) => vec![*leaf],
-        Structure::Tuple(parts) | Structure::Array(parts) => parts.iter().flat_map(leaves).collect(),
+        Layout::Leaf(leaf) => vec![*leaf],
+        Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().flat_map(leaves).collect(),
     }
 }

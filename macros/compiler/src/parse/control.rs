@@ -11,7 +11,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 
 /// What a choice of inputs costs, and what it is bound by.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub struct Choice {
     /// The price of a step: the `cost` of a system with `controls` or `dynamics`, the `effort` of one with forces.
     pub price: Closure,
     /// `[a <= b, …]`.
@@ -19,18 +19,18 @@ pub struct Control {
 }
 
 /// What has been read of a declaration's motion.
-pub(super) struct Read {
+pub(super) struct Motion {
     pub action: Option<Closure>,
     pub kinetic: Option<Kinetic>,
-    pub control: Option<Control>,
+    pub control: Option<Choice>,
 }
 
 /// Takes the keys that say what is steered, and with them action and cost where inputs, not momenta, move the configuration.
-pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Read> {
+pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Motion> {
     let bounds = keys.bounds.take();
     let Some(motion) = keys.controls.take().or_else(|| keys.dynamics.take()) else {
         let control = control_of_forces(keys, bounds, diagnostics);
-        return control.map(|control| Read { action: keys.action.take(), kinetic: None, control: Some(control) });
+        return control.map(|control| Motion { action: keys.action.take(), kinetic: None, control: Some(control) });
     };
     let price = keys.cost.take();
     if price.is_none() && !keys.was_given("cost") {
@@ -41,11 +41,11 @@ pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Rea
         false => moved(keys, motion, diagnostics)
             .map_or((None, None), |(action, dynamics)| (Some(action), Some(Kinetic::Dynamics(dynamics)))),
     };
-    let control = price.map(|price| Control { price, bounds });
-    Some(Read { action, kinetic, control })
+    let control = price.map(|price| Choice { price, bounds });
+    Some(Motion { action, kinetic, control })
 }
 
-fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &mut Diagnostics) -> Option<Control> {
+fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &mut Diagnostics) -> Option<Choice> {
     let Some(price) = keys.effort.take() else {
         if let Some(closure) = bounds.filter(|_| !keys.was_given("effort")) {
             let error = Diagnostic::new(closure.key.span(), format!("`{}` without anything to choose", closure.key));
@@ -63,11 +63,11 @@ fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &mut
                 .note("the effort is the price of the inputs of the force"),
         );
     }
-    Some(Control { price, bounds })
+    Some(Choice { price, bounds })
 }
 
 /// The end has a price where something is chosen that leads there.
-pub(super) fn check_endpoint(keys: &Keys, control: Option<&Control>, diagnostics: &mut Diagnostics) {
+pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>, diagnostics: &mut Diagnostics) {
     let chosen = control.is_some() || keys.dials.emit.boundary || keys.was_given("effort");
     if let Some(endpoint) = keys.endpoint.as_ref().filter(|_| !chosen) {
         let error = Diagnostic::new(endpoint.key.span(), "`endpoint` without anything to choose");

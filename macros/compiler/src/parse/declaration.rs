@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::keys::{Dials, Keys};
-use super::{Closure, Control, DeclaredGroup, Field, Opaque, combinations, control};
+use super::{Choice, Closure, DeclaredGroup, Field, Opaque, combinations, control};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -31,7 +31,7 @@ pub struct Declaration {
     /// The force as a covector of the configuration.
     pub force_on: Option<Closure>,
     /// What the choice of inputs costs and is bound by; `None` where nothing is chosen.
-    pub control: Option<Control>,
+    pub control: Option<Choice>,
     /// The price of the end.
     pub endpoint: Option<Closure>,
     /// The symmetries that the user offers.

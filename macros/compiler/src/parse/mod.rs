@@ -16,7 +16,7 @@ mod spelling;
 mod values;
 
 pub use closure::{Argument, Closure, Pattern};
-pub use control::Control;
+pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
 pub use dials::{ChartChoice, CodeForm, Discretization, Emit, Isotropy, Order, Promise, Solver, Summation};
 pub use field::Field;

@@ -8,7 +8,7 @@ use crate::derive::{Home, Link};
 use crate::emit::Emitter;
 use crate::emit::code::{Scope, accessor, grid, locals};
 use crate::lower::{Code, Gathered, Kernel, LinkKernels};
-use crate::model::{Configuration, Leaf, Parameter, Place, Power};
+use crate::model::{Configuration, Leaf, Parameter, Power, SiteIndex};
 
 /// How the term is found that has a site at a place.
 struct Head {
@@ -103,7 +103,7 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// Where the term is found that has a site at a place.
+    /// Place the term is found that has a site at a place.
     fn head(&self, power: &Power<'g>, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Head {
         let (private, length) = (&self.paths.private, &power.length);
         let (Some(index), [(from, to), ..]) = (home.index, ranges) else {
@@ -125,7 +125,7 @@ impl<'g> Emitter<'_, 'g> {
     fn at_site(
         &self,
         power: &Power<'g>,
-        places: &[Place<'g>],
+        places: &[SiteIndex<'g>],
         head: Head,
         kernel: &Kernel,
         body: TokenStream,
@@ -198,9 +198,9 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The statement that computes the index of a place.
-    fn index_of(&self, places: &[Place<'g>], power: &Power<'g>, place: usize) -> TokenStream {
+    fn index_of(&self, places: &[SiteIndex<'g>], power: &Power<'g>, place: usize) -> TokenStream {
         let (private, length) = (&self.paths.private, &power.length);
-        let (name, Place { index, wraps }) = (format_ident!("at{place}"), &places[place]);
+        let (name, SiteIndex { index, wraps }) = (format_ident!("at{place}"), &places[place]);
         let index = linear(*index, power);
         match wraps {
             true => quote!(let #name = #private::wrapped::<#length>(#index);),

@@ -25,7 +25,8 @@ pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group
     let symbol = graph.element_symbol(&pattern.spell(), n);
     let scope = scope(pattern, symbol)?;
     let sides = elaborate(graph, &key, scope, |elaborator| elaborator.equation(&closure.body))?;
-    let equation = Equation { graph, name, symbol, place: tail(&closure.body).0, text: spell(tail(&closure.body).1) };
+    let equation =
+        GroupEquation { graph, name, symbol, place: tail(&closure.body).0, text: spell(tail(&closure.body).1) };
     let sides = equation.sides(&sides.0, &sides.1).map_err(|error| vec![error])?;
     equation.group(&sides).map_err(|error| vec![error])
 }
@@ -66,7 +67,7 @@ fn scope<'g>(pattern: &Pattern, symbol: Expr<'g>) -> Result<Scope<'g>, Vec<Diagn
 }
 
 /// An equation between expressions in the symbol.
-struct Equation<'a, 'g> {
+struct GroupEquation<'a, 'g> {
     graph: &'g Graph,
     name: &'a str,
     symbol: Expr<'g>,
@@ -74,7 +75,7 @@ struct Equation<'a, 'g> {
     text: String,
 }
 
-impl<'g> Equation<'_, 'g> {
+impl<'g> GroupEquation<'_, 'g> {
     /// The pairs of matrices that are to be equal.
     fn sides(&self, left: &Value<'g>, right: &Value<'g>) -> Result<Vec<(Expr<'g>, Expr<'g>)>, Diagnostic> {
         let identity = |scale: Expr<'g>, shape: Shape| scale * self.graph.identity(shape.rows);

@@ -26,8 +26,8 @@ use syn::Expr as Syntax;
 
 use super::Constant;
 use super::fields::Fields;
-use super::power::Sites;
 use super::scope::Scope;
+use super::sites::Sites;
 use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::spell;

@@ -1,4 +1,4 @@
-//! Names: arguments, `let`s, `I`, `PI`, constants of the user's crate.
+//! GroupNames: arguments, `let`s, `I`, `PI`, constants of the user's crate.
 
 use clebsch_symbolic::{Property, Role, Shape};
 use syn::ext::IdentExt;

@@ -3,8 +3,8 @@
 use clebsch_symbolic::Expr;
 use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
-use super::super::power::{Kind, Linear, PerSite, Place as Site, Term};
-use super::super::value::Value;
+use super::super::power::{Linear, SiteIndex, Term};
+use super::super::value::{Each, PerSite, Value};
 use super::operators::Operator;
 use super::{Elaborator, shortened};
 use crate::diagnostic::{Diagnostic, Place};
@@ -154,8 +154,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `q[i]`: what a site has.
     pub(super) fn site(&mut self, index: &ExprIndex, per_site: PerSite<'g>) -> Option<Value<'g>> {
         let place = match self.elaborate(&index.index)? {
-            Value::Wrapped(expr) => Site { index: expr, wraps: true },
-            value => Site { index: self.as_matrix(&index.index, value)?, wraps: false },
+            Value::Wrapped(expr) => SiteIndex { index: expr, wraps: true },
+            value => SiteIndex { index: self.as_matrix(&index.index, value)?, wraps: false },
         };
         let text = spell(&index.index);
         if !place.index.shape().is_scalar() || Linear::of(place.index).is_none() {
@@ -180,11 +180,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return Some(*per_site.own);
         }
         match per_site.of {
-            Kind::Configuration if of_terms => {
+            Each::Configuration if of_terms => {
                 let number = power.place(place);
                 Some(power.configuration_at(graph, number))
             }
-            Kind::Field(field) if of_terms => {
+            Each::Field(field) if of_terms => {
                 let parameter = &fields.parameters[field];
                 let number = power.place(place);
                 let leaves = power.entry(graph, field, number, parameter);

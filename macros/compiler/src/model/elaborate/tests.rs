@@ -1,5 +1,6 @@
 //! Tables: an expression and what it means, an expression and what is wrong with it.
 
+use super::super::slots::SharedNames;
 use clebsch_symbolic::{Graph, Property, Role, Shape, identity};
 
 use super::super::arguments::{Arguments, TypedArguments};
@@ -42,8 +43,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
-        element,
-        configuration,
+        names: SharedNames { element, configuration, input: None },
         element_value: Some(Value::Tuple(vec![
             symbol("F", Shape::square(3), Role::Element(0), Property::Orthogonal),
             symbol("a", Shape::vector(2), Role::Element(1), Property::General),
@@ -55,7 +55,6 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
             Value::Quaternion(graph.symbol("Q", Shape::vector(4), Role::Configuration(4), Property::General)),
         ])),
         members: Vec::new(),
-        input: None,
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
     };

@@ -44,7 +44,7 @@ fn whole(number: Rational) -> Option<i64> {
 }
 
 /// Whether 0 ≤ index < N for every N ≥ 1 and all indices in their ranges.
-pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> bool {
+pub(in crate::model) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> bool {
     let graph = index.graph();
     let above = sites - graph.integer(1) - index;
     [index, above].into_iter().all(|expr| least(expr, ranges).is_some_and(|least| is_never_negative(&least)))

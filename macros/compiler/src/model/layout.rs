@@ -4,21 +4,21 @@ use super::access::{Access, Part};
 
 /// The nesting of leaves, which are numbered from left to right.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Structure {
+pub enum Layout {
     /// The leaf with this number.
     Leaf(usize),
     /// A tuple `(A, B)`.
-    Tuple(Vec<Structure>),
+    Tuple(Vec<Layout>),
     /// An array `[A; 2]`.
-    Array(Vec<Structure>),
+    Array(Vec<Layout>),
 }
 
-impl Structure {
+impl Layout {
     /// The number of leaves.
     pub fn leaves(&self) -> usize {
         match self {
-            Structure::Leaf(_) => 1,
-            Structure::Tuple(parts) | Structure::Array(parts) => parts.iter().map(Structure::leaves).sum(),
+            Layout::Leaf(_) => 1,
+            Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().map(Layout::leaves).sum(),
         }
     }
 
@@ -31,9 +31,9 @@ impl Structure {
 
     fn collect(&self, prefix: Access, accessors: &mut Vec<Access>) {
         let (parts, step): (_, fn(usize) -> Part) = match self {
-            Structure::Leaf(_) => return accessors.push(prefix),
-            Structure::Tuple(parts) => (parts, Part::Field),
-            Structure::Array(parts) => (parts, Part::Index),
+            Layout::Leaf(_) => return accessors.push(prefix),
+            Layout::Tuple(parts) => (parts, Part::Field),
+            Layout::Array(parts) => (parts, Part::Index),
         };
         for (position, part) in parts.iter().enumerate() {
             part.collect(prefix.then(step(position)), accessors);
@@ -41,12 +41,12 @@ impl Structure {
     }
 
     /// The same nesting with its leaves numbered from `offset` on.
-    pub(super) fn shifted(&self, offset: usize) -> Structure {
-        let shift = |parts: &[Structure]| parts.iter().map(|part| part.shifted(offset)).collect();
+    pub(super) fn shifted(&self, offset: usize) -> Layout {
+        let shift = |parts: &[Layout]| parts.iter().map(|part| part.shifted(offset)).collect();
         match self {
-            Structure::Leaf(leaf) => Structure::Leaf(leaf + offset),
-            Structure::Tuple(parts) => Structure::Tuple(shift(parts)),
-            Structure::Array(parts) => Structure::Array(shift(parts)),
+            Layout::Leaf(leaf) => Layout::Leaf(leaf + offset),
+            Layout::Tuple(parts) => Layout::Tuple(shift(parts)),
+            Layout::Array(parts) => Layout::Array(shift(parts)),
         }
     }
 }
