@@ -28,7 +28,6 @@ mod several;
 mod sweep;
 mod vertex;
 
-pub(crate) use end::shortest;
 pub use extremal::{Extremal, States};
 pub use guess::Guess;
 pub use node::Node;

@@ -21,7 +21,7 @@
 //! Moser–Veselov algorithm for the free rigid body, revisited*, Found. Comput. Math. 5 (2005), for the first terms. The differential
 //! equation follows from d_i = ½τ|M| cot Ψ_i, where tan(Ψ_i − Ψ_j) = |M| (x_i − x_j) σσ_k/(σ_iσ_j) in Weierstrass' functions of τ/2.
 
-use crate::eigen::Spectrum;
+use crate::newton::Spectrum;
 use crate::root::root;
 use crate::space::{each_lane, lane_of, set_lane};
 use crate::{Error, Real, Scalar};

@@ -19,7 +19,7 @@
 //! n-dimensional rigid body*, Funct. Anal. Appl. 10 (1976). The constants of the motion follow from the theorem of Liouville and Arnold: the map is
 //! the flow of a function of the four integrals.
 
-use crate::eigen::Spectrum;
+use crate::newton::Spectrum;
 use crate::root::root;
 use crate::space::{MOST_LANES, each_lane, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar};

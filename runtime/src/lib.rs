@@ -135,7 +135,6 @@ extern crate std;
 #[doc(hidden)]
 pub mod __private;
 mod boundary;
-mod bracket;
 mod cofactors;
 mod collocation;
 mod composition;
@@ -146,7 +145,6 @@ mod controlled;
 mod double_double;
 #[cfg(feature = "num-dual")]
 mod dual;
-mod eigen;
 mod element;
 mod energy;
 #[cfg(feature = "alloc")]
@@ -163,6 +161,7 @@ mod lanes;
 mod linear;
 mod logarithm;
 mod matrices;
+mod newton;
 mod opaque;
 mod orbit;
 mod parameters;

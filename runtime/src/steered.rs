@@ -1,7 +1,7 @@
 //! What steered systems have in common, for generated code: checks, and the second derivatives of an implicit step.
 
-use crate::boundary::shortest;
 use crate::linear::{eliminate, rows};
+use crate::newton::shortest;
 use crate::space::{lane_of, set_lane};
 use crate::stepper::{check_configuration, check_momentum, check_on_orbit as on_orbit};
 use crate::tangent::{of_edge, times};

@@ -1,8 +1,8 @@
 //! A path of many edges is begun with few, which cost little.
 
 use super::Node;
-use super::pivot::Curvature;
 use super::sweep::Problem;
+use crate::newton::Curvature;
 use crate::{Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -34,7 +34,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         let mut bound = S::Scalar::one();
         for _ in 0..CORRECTIONS {
             let gap = problem.end(&end, few.len());
-            let summary = problem.eliminate(few, &end, &gap, Curvature::Kept);
+            let summary = problem.eliminate(few, &end, &gap, Curvature::kept());
             let size = summary.size();
             // Written so that NaN is no progress.
             if !(summary.negative == 0 && size <= bound) {

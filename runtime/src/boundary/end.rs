@@ -1,9 +1,8 @@
 //! The last vertex: what separates it from the target and which of its motions are free.
 
-use crate::eigen::Spectrum;
+use crate::newton::{arc_per_chord, is_reached, shortest_with_kernel};
 use crate::space::larger;
 use crate::{EndpointExpansion, Real, Space, Variational};
-use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
 /// What is known where a path ends.
@@ -35,10 +34,7 @@ impl<T: Real, const M: usize> End<T, M> {
     pub fn of<S: Variational<M, Scalar = T>>(system: &S, q: &S::Configuration, target: &S::Configuration) -> Self {
         let metric = system.orbit_metric(q);
         let approach = system.approach(q, target);
-        let (closing, kernel) = match regular(&metric, &approach) {
-            Some(closing) => (closing, None),
-            None => singular(&metric, &approach),
-        };
+        let (closing, kernel) = shortest_with_kernel(&metric, &approach);
         // Rounding makes the square of 0 negative.
         let along = larger(T::zero(), closing.dot(&approach)).sqrt();
         let scale = larger(target.max_abs(), q.max_abs());
@@ -88,7 +84,7 @@ impl<T: Real, const M: usize> End<T, M> {
 
     /// Whether the gap is none to a person: below √ε.
     pub fn is_reached(&self) -> bool {
-        self.distance <= T::EPSILON.sqrt() * (self.scale + self.distance)
+        is_reached(self.distance, self.scale)
     }
 
     /// Whether the gap stands at a right angle to the orbit, so that no small motion of q_N closes it.
@@ -96,85 +92,18 @@ impl<T: Real, const M: usize> End<T, M> {
         !self.is_reached() && self.along <= T::EPSILON.sqrt() * self.distance
     }
 
-    /// The closing motion with the length of the arc over the gap: on a circle of any radius the chord makes the angle θ/2 with the
-    /// tangent, and the arc is θ/sin θ times as long as the tangential part of the chord.
+    /// The closing motion with the length of the arc over the gap.
     pub fn arc(&self) -> SVector<T, M> {
         let square = self.distance * self.distance - self.along * self.along;
         let across = larger(T::zero(), square).sqrt();
-        let two = T::from_f64(2.0);
-        let angle = two * (across / self.along).atan();
-        let factor = angle / angle.sin();
-        if factor > T::one() { self.closing * factor } else { self.closing }
+        arc_per_chord(self.along, across).map_or(self.closing, |factor| self.closing * factor)
     }
-}
-
-/// A⁻¹b by L Δ Lᵀ; `None` where a pivot is below √ε of its diagonal.
-#[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
-fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
-    let mut l: [[T; M]; M] = from_fn(|i| from_fn(|j| a[(i, j)]));
-    let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));
-    let mut x: [T; M] = from_fn(|i| b[i]);
-    for k in 0..M {
-        // NaN goes on and is found in the result.
-        if l[k][k] <= T::EPSILON.sqrt() * largest {
-            return None;
-        }
-        for i in k + 1..M {
-            let factor = l[i][k] / l[k][k];
-            for j in k + 1..=i {
-                l[i][j] -= factor * l[j][k];
-            }
-            x[i] -= factor * x[k];
-        }
-    }
-    for k in (0..M).rev() {
-        for i in k + 1..M {
-            x[k] -= l[i][k] * x[i];
-        }
-        x[k] /= l[k][k];
-    }
-    Some(SVector::from_fn(|i, _| x[i]))
-}
-
-/// The smallest x with A x = b, for a symmetric A with no negative eigenvalue.
-#[inline]
-pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> SVector<T, M> {
-    match regular(a, b) {
-        Some(x) => x,
-        None => singular(a, b).0,
-    }
-}
-
-/// A⁺b and the projector to the kernel of A.
-#[cold]
-fn singular<T: Real, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
-    let spectrum = Spectrum::of(a);
-    let tolerance = T::EPSILON.sqrt() * spectrum.largest();
-    let inverse = spectrum.map(|value| if value > tolerance { value.recip() } else { T::zero() });
-    let kernel = spectrum.map(|value| if value > tolerance { T::zero() } else { T::one() });
-    (inverse * b, Some(kernel))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{End, regular, singular};
-    use nalgebra::{Matrix3, Vector3};
-
-    #[test]
-    fn kernels_are_found() {
-        let q = Vector3::new(0.6, 0.0, 0.8);
-        let metric = Matrix3::identity() - q * q.transpose();
-        let b = Vector3::new(0.8, 2.0, -0.6);
-        assert_eq!(regular(&metric, &b), None);
-        let (closing, kernel) = singular(&metric, &b);
-        assert!((closing - b).amax() < 1e-15);
-        assert!((kernel.unwrap() - q * q.transpose()).amax() < 1e-15);
-        assert_eq!(regular(&(Matrix3::identity() * 2.0), &b), Some(b / 2.0));
-    }
+    use super::End;
+    use nalgebra::Vector3;
 
     #[test]
     fn chords_become_arcs() {

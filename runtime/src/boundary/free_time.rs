@@ -2,13 +2,10 @@
 
 use super::sweep::Problem;
 use super::{Boundary, Guess, Node};
-use crate::bracket::{Bracket, Sample};
-use crate::{Error, Real, Scalar, Stepper, Variational};
+use crate::newton::{Sample, Trial, check_limits, critical_step_size};
+use crate::{Error, Real, Scalar, Variational};
 use core::ops::RangeInclusive;
-use num_traits::{One, Zero};
-
-/// Step sizes that are tried.
-const TRIALS: usize = 60;
+use num_traits::One;
 
 impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
     /// The step size in `steps`, and with it the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is
@@ -29,35 +26,25 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
         guess: Guess<S::Scalar, M>,
         path: &mut [Node<S, M>],
     ) -> Result<S::Scalar, Error> {
-        let (zero, limits) = (S::Scalar::zero(), (*steps.start(), *steps.end()));
-        for limit in [limits.0, limits.1] {
-            if !(limit > zero && limit.is_finite() && limits.0 <= limits.1) {
-                return Err(Error::StepSize { value: limit.to_f64() });
-            }
-        }
+        check_limits(&steps)?;
         self.check(start, &guess, path.len())?;
         target.map_or(Ok(()), |target| self.stepper.check_configuration(target))?;
         let third = S::Scalar::EPSILON.powf(S::Scalar::from_ratio(1, 3));
-        let mut bracket = Bracket::of(limits);
-        let (mut h, mut guess, mut iterations) = (bracket.inside(self.stepper.h), guess, 0);
-        for trial in 0..TRIALS {
-            let Stepper { system, .. } = self.stepper;
+        let accuracy = S::Scalar::from_f64(4.0) * third * third;
+        let mut guess = guess;
+        let trial = |h| {
+            let system = &self.stepper.system;
             let constants = system.constants(h)?;
             let sign = S::Scalar::one();
             let problem = Problem { system, h, constants: &constants, time: self.time, start, target, sign };
             let end = problem.prepare(path, &guess)?;
             let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
-            iterations += solved.sweeps;
             guess = Guess::Path;
-            let next = bracket.next(problem.slope(path, &solved.end, third * h)?);
-            if (next - h).abs() <= S::Scalar::from_f64(4.0) * third * third * h
-                || trial + 1 == TRIALS && bracket.is_narrow()
-            {
-                return Ok(h);
-            }
-            h = next;
-        }
-        Err(Error::NoExtremal { correction: bracket.width().to_f64(), iterations })
+            let sample = problem.slope(path, &solved.end, third * h)?;
+            Ok(Trial::Found { answer: h, sample, sweeps: solved.sweeps })
+        };
+        let (h, _) = critical_step_size(steps, self.stepper.h, accuracy, trial)?;
+        Ok(h)
     }
 }
 

@@ -2,10 +2,9 @@
 
 use super::Node;
 use super::end::End;
-use super::pivot::Curvature;
 use super::sweep::Problem;
 use super::vertex::Summary;
-use crate::space::larger;
+use crate::newton::{Curvature, Share, adapted};
 use crate::{Error, Real, Scalar, Variational};
 use num_traits::{One, Zero};
 
@@ -74,7 +73,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     ) -> Result<Solved<S, M>, Error> {
         let (mut end, mut any_index) = (end, any_index);
         let mut before: Option<Progress<S::Scalar>> = None;
-        let mut curvature = Curvature::Kept;
+        let mut curvature = Curvature::kept();
         let mut size = S::Scalar::zero();
         for sweeps in 1..=SWEEPS {
             let gap = self.end(&end, path.len());
@@ -83,30 +82,30 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
             if !summary.action.is_finite() && (sweeps == 1 || curvature.is_mirrored()) {
                 return Err(Error::NotFinite { name: "the action of the path" });
             }
-            let damped = matches!(curvature, Curvature::Mirrored { damping } if damping > S::Scalar::zero());
+            let damped = curvature.added().0 > S::Scalar::zero();
             if !damped && has_converged(&summary, before.as_ref(), gap.is_closed() || gap.is_orthogonal(), curvature) {
                 return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
             }
             let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
             if curvature.is_mirrored() && at_saddle {
                 // By symmetry no gradient leads away from here, and the action has no digits left to go by.
-                (curvature, any_index, before) = (Curvature::Kept, true, None);
+                (curvature, any_index, before) = (Curvature::kept(), true, None);
                 continue;
             }
             let is_astray = before.as_ref().is_some_and(|before| before.is_astray(size));
-            if let Curvature::Mirrored { damping } = &mut curvature
+            if let Curvature::Mirrored { damping, .. } = &mut curvature
                 && !is_astray
             {
                 match self.descend(path, &summary) {
                     Some((q, fraction)) => {
                         end = q;
-                        *damping = adapted(*damping, fraction);
+                        *damping = damping_after(*damping, fraction);
                     }
                     None if *damping > S::Scalar::from_f64(DAMPING_LIMIT) => {
                         return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
                     }
                     None => {
-                        (*damping, before) = (adapted(*damping, S::Scalar::zero()), None);
+                        (*damping, before) = (damping_after(*damping, S::Scalar::zero()), None);
                         continue;
                     }
                 }
@@ -123,7 +122,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
                     end = self.take_back(path);
                 }
                 end = self.close(path, end, S::Scalar::zero());
-                (before, curvature) = (None, curvature.after_failure(is_near_any || is_astray));
+                (before, curvature) = (None, after_failure(curvature, is_near_any || is_astray));
                 continue;
             }
             before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
@@ -161,7 +160,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         let size = summary.size();
         match before {
             // One that is larger than the path leads to another extremal than that near the guess.
-            None if any_index && curvature == Curvature::Kept => size <= S::Scalar::one(),
+            None if any_index && curvature == Curvature::kept() => size <= S::Scalar::one(),
             None => size.is_finite(),
             Some(before) => {
                 let is_lower = || summary.negative == 0 && self.is_lower(summary.action, before, S::Scalar::one());
@@ -200,16 +199,22 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     }
 }
 
-/// The damping after a step: eight times less after a full one, eight times more after one of less than a quarter.
-fn adapted<T: Real>(damping: T, fraction: T) -> T {
-    let (least, factor) = (T::from_ratio(1, 8), T::from_f64(8.0));
-    if fraction >= T::one() {
-        if damping > least { damping / factor } else { T::zero() }
+/// The damping after a step of this fraction.
+fn damping_after<T: Real>(damping: T, fraction: T) -> T {
+    let made = if fraction >= T::one() {
+        Share::Whole
     } else if fraction < T::from_ratio(1, 4) {
-        larger(damping, least) * factor
+        Share::Little
     } else {
-        damping
-    }
+        Share::Part
+    };
+    adapted(damping, T::from_ratio(1, 8), made)
+}
+
+/// What is tried where this curvature failed; `near` where the extremal that is looked for is that near the path.
+fn after_failure<T: Real>(curvature: Curvature<T>, near: bool) -> Curvature<T> {
+    let may_be_steadied = near && curvature == Curvature::kept();
+    if curvature.is_mirrored() || may_be_steadied { Curvature::steadied() } else { Curvature::mirrored(T::zero()) }
 }
 
 /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
@@ -228,7 +233,7 @@ fn has_converged<T: Real, const M: usize>(
     if size <= T::from_f64(4.0) * T::EPSILON * summary.edges.sqrt() {
         return true;
     }
-    let last = before.filter(|before| curvature == Curvature::Steady && before.size <= seen);
+    let last = before.filter(|before| curvature == Curvature::steadied() && before.size <= seen);
     size <= seen
         && match last {
             Some(before) => !before.is_halved_by(size) || is_stationary(1024.0),

@@ -1,8 +1,8 @@
 //! The symmetric M×M pivot of a vertex, and what is made of it: gain and shift.
 
 use crate::Real;
-use crate::eigen::Spectrum;
 use crate::linear::rows;
+use crate::newton::{Curvature, Ldl, Spectrum, turned_over};
 use crate::space::larger;
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
@@ -26,43 +26,6 @@ pub(super) struct Solution<T, const M: usize> {
     pub decrement: T,
     /// The number of eigenvalues of the wrong sign: those of directions in which the action is no minimum.
     pub negative: usize,
-}
-
-/// What is made of a Hessian that is not definite.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Curvature<T> {
-    /// As it is: the critical point of the quadratic model.
-    Kept,
-    /// The same with √ε times the slowest stiffness added: motions for which the action does not bend are not left to round-off.
-    Steady,
-    /// With the eigenvalues of pivots of the wrong sign turned over, so that the action goes down, and with this multiple of its
-    /// own diagonal added to each diagonal block.
-    Mirrored { damping: T },
-}
-
-impl<T: Real> Curvature<T> {
-    pub fn is_mirrored(self) -> bool {
-        matches!(self, Self::Mirrored { .. })
-    }
-
-    /// What is tried where that failed; `near` where the extremal that is looked for is that near the path.
-    pub fn after_failure(self, near: bool) -> Self {
-        match self {
-            Self::Kept if near => Self::Steady,
-            Self::Mirrored { .. } => Self::Steady,
-            _ => Self::Mirrored { damping: T::zero() },
-        }
-    }
-
-    /// The multiple of the slowest stiffness that is added.
-    #[inline]
-    pub fn damping(self) -> Option<T> {
-        match self {
-            Self::Kept => None,
-            Self::Steady => Some(T::EPSILON.sqrt()),
-            Self::Mirrored { damping } => Some(damping),
-        }
-    }
 }
 
 /// D⁻¹C and D⁻¹g of a symmetric D, both by rows, of which only the lower triangle is read; `sign` is that of a minimum.
@@ -100,7 +63,7 @@ pub(super) fn solve<T: Real, const M: usize>(
 ///
 /// Errors of D⁻¹C relative to it are those of elimination, ε times the condition number of D.
 #[inline(always)]
-#[allow(clippy::needless_range_loop)] // As below.
+#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 fn cofactors<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
@@ -154,7 +117,7 @@ fn cofactors<T: Real, const M: usize>(
 /// With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W is: the next vertex, which waits for it, can be begun. One loop for each
 /// matrix, for such loops are unrolled where M is small, and matrices stay in registers.
 #[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
+#[allow(clippy::needless_range_loop)] // As above.
 fn definite<T: Real, const M: usize>(
     d: &[[T; M]; M],
     c: &[[T; M]; M],
@@ -162,34 +125,23 @@ fn definite<T: Real, const M: usize>(
     sign: T,
     feedback: Feedback<'_, T, M>,
 ) -> Option<Solution<T, M>> {
-    let (l, reciprocals) = factors(d, sign)?;
-    let (mut w, mut v): ([[T; M]; M], [T; M]) = (*c, from_fn(|i| g[i]));
-    for i in 0..M {
-        for k in 0..i {
-            for j in 0..M {
-                w[i][j] -= l[i][k] * w[k][j];
-            }
-            v[i] -= l[i][k] * v[k];
-        }
-    }
-    let mut gain: [[T; M]; M] = from_fn(|i| from_fn(|j| w[i][j] * reciprocals[i]));
-    let mut shift: [T; M] = from_fn(|i| v[i] * reciprocals[i]);
+    let factors = Ldl::definite(d, sign)?;
+    let mut w = *c;
+    let mut v: [[T; 1]; M] = from_fn(|i| [g[i]]);
+    factors.forward(&mut w);
+    factors.forward(&mut v);
+    let mut gain = factors.divided(&w);
+    let mut shift = factors.divided(&v);
     let mut hessian = [[T::zero(); M]; M];
     for i in 0..M {
         for j in 0..=i {
             hessian[i][j] = sum::<T, M>(|k| w[k][i] * gain[k][j]);
         }
     }
-    let gradient = from_fn(|i| sum::<T, M>(|k| w[k][i] * shift[k]));
-    for i in (0..M).rev() {
-        for k in i + 1..M {
-            for j in 0..M {
-                gain[i][j] -= l[k][i] * gain[k][j];
-            }
-            shift[i] -= l[k][i] * shift[k];
-        }
-    }
-    Some(feedback.filled(&gain, &shift, g, hessian, gradient))
+    let gradient = from_fn(|i| sum::<T, M>(|k| w[k][i] * shift[k][0]));
+    factors.backward(&mut gain);
+    factors.backward(&mut shift);
+    Some(feedback.filled(&gain, &shift.map(|[entry]| entry), g, hessian, gradient))
 }
 
 impl<T: Real, const M: usize> Feedback<'_, T, M> {
@@ -210,28 +162,6 @@ impl<T: Real, const M: usize> Feedback<'_, T, M> {
     }
 }
 
-/// L below the diagonal and the reciprocals of Δ, where all of Δ has the sign of `sign`.
-#[inline]
-#[allow(clippy::needless_range_loop)] // As above.
-fn factors<T: Real, const M: usize>(d: &[[T; M]; M], sign: T) -> Option<([[T; M]; M], [T; M])> {
-    let (mut l, mut reciprocals) = (*d, [T::zero(); M]);
-    let mut is_definite = true;
-    for k in 0..M {
-        let pivot = l[k][k];
-        // Written so that NaN is not definite. Nothing leaves the loop, which is then unrolled.
-        is_definite &= pivot * sign > T::zero() && pivot.is_finite();
-        reciprocals[k] = pivot.recip();
-        let column: [T; M] = from_fn(|i| l[i][k]);
-        for i in k + 1..M {
-            l[i][k] = column[i] * reciprocals[k];
-            for j in k + 1..=i {
-                l[i][j] -= l[i][k] * column[j];
-            }
-        }
-    }
-    is_definite.then_some((l, reciprocals))
-}
-
 /// Σ_k
 #[inline]
 fn sum<T: Real, const M: usize>(term: impl Fn(usize) -> T) -> T {
@@ -243,9 +173,6 @@ fn sum<T: Real, const M: usize>(term: impl Fn(usize) -> T) -> T {
 fn matrix<T: Real, const M: usize>(rows: &[[T; M]; M]) -> SMatrix<T, M, M> {
     SMatrix::from_fn(|i, j| rows[i][j])
 }
-
-/// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
-const MIRRORED: f64 = 1e-4;
 
 /// [`solve`] from eigenvalues. Those that are nothing beside the largest are treated as that round-off, not as zero.
 #[cold]
@@ -261,12 +188,12 @@ fn indefinite<T: Real, const M: usize>(
     let spectrum = Spectrum::of(&d);
     let is_wrong = |value: T| value * sign < T::zero();
     let inverse = spectrum.map(|value| match curvature {
-        Curvature::Kept | Curvature::Steady if is_wrong(value) => {
-            -sign / larger(value.abs(), T::EPSILON * spectrum.largest())
+        Curvature::Kept { .. } => {
+            let size = larger(value.abs(), T::EPSILON * spectrum.largest());
+            if is_wrong(value) { -sign / size } else { sign / size }
         }
-        Curvature::Kept | Curvature::Steady => sign / larger(value.abs(), T::EPSILON * spectrum.largest()),
         Curvature::Mirrored { .. } if value * sign > T::zero() => value.recip(),
-        Curvature::Mirrored { .. } => sign / larger(value.abs(), T::from_f64(MIRRORED) * spectrum.largest()),
+        Curvature::Mirrored { .. } => sign / turned_over(value, &spectrum),
     });
     let negative = spectrum.values.iter().filter(|&&value| is_wrong(value)).count();
     let (gain, shift) = (inverse * c, inverse * g);
@@ -307,17 +234,17 @@ mod tests {
         {
             let d =
                 Matrix3::from_diagonal(&diagonal.into()) + Matrix3::new(0.0, 1.0, 0.2, 1.0, 0.0, -0.5, 0.2, -0.5, 0.0);
-            let solution = solve(&d, &g, 1.0, Curvature::Kept);
+            let solution = solve(&d, &g, 1.0, Curvature::kept());
             assert!((d * solution.gain - C).amax() < 1e-13, "{diagonal:?}");
             assert!((d * solution.shift - g).amax() < 1e-13, "{diagonal:?}");
             assert!((C.tr_mul(&solution.shift) - solution.gradient).amax() < 1e-13, "{diagonal:?}");
             assert!((solution.shift.dot(&g) - solution.decrement).abs() < 1e-13, "{diagonal:?}");
             let hessian = C.tr_mul(&solution.gain);
             assert!((0..3).all(|i| (0..=i).all(|j| (hessian[(i, j)] - solution.hessian[i][j]).abs() < 1e-13)));
-            let backward = solve(&-d, &g, -1.0, Curvature::Kept);
+            let backward = solve(&-d, &g, -1.0, Curvature::kept());
             assert_eq!((solution.negative, backward.negative), (negative, negative), "{diagonal:?}");
             assert!((backward.shift + solution.shift).amax() < 1e-13);
-            let downhill = solve(&d, &g, 1.0, Curvature::Mirrored { damping: 0.0 });
+            let downhill = solve(&d, &g, 1.0, Curvature::mirrored(0.0));
             assert!(downhill.shift.dot(&g) > 0.0);
             assert_eq!(downhill.negative, negative);
         }
@@ -328,7 +255,7 @@ mod tests {
     fn pivots_of_any_size_are_solved() {
         let d = Matrix3::new(4.0, 1.0, 0.2, 1.0, 5.0, -0.5, 0.2, -0.5, 6.0);
         for scale in [1e-120, 1e-90, 1e90, 1e120] {
-            let solution = solve(&(d * scale), &(Vector3::x() * scale), 1.0, Curvature::Kept);
+            let solution = solve(&(d * scale), &(Vector3::x() * scale), 1.0, Curvature::kept());
             assert!((d * solution.gain * scale - C).amax() < 1e-14, "{scale:e}");
             assert!((d * solution.shift - Vector3::x()).amax() < 1e-15, "{scale:e}");
             assert_eq!(solution.negative, 0);
@@ -337,12 +264,8 @@ mod tests {
 
     #[test]
     fn a_singular_pivot_gives_finite_directions() {
-        let solution = solve(
-            &Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0)),
-            &Vector3::x(),
-            1.0,
-            Curvature::Mirrored { damping: 0.0 },
-        );
+        let solution =
+            solve(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0)), &Vector3::x(), 1.0, Curvature::mirrored(0.0));
         assert!(solution.gain.amax() < 1e5 && solution.negative == 0);
     }
 }

@@ -13,8 +13,9 @@
 
 use super::Node;
 use super::end::End;
-use super::pivot::{Curvature, Feedback};
+use super::pivot::Feedback;
 use super::vertex::{Pending, Summary};
+use crate::newton::Curvature;
 use crate::{Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;

@@ -1,8 +1,9 @@
 //! One vertex in the backward sweep: its block of the Hessian, its elimination, and the sums over all of them.
 
 use super::end::End;
-use super::pivot::{Curvature, Feedback, Solution, solve};
+use super::pivot::{Feedback, Solution, solve};
 use crate::linear::rows;
+use crate::newton::Curvature;
 use crate::space::larger;
 use crate::{Edge, Momenta, Real};
 use core::array::from_fn;
@@ -128,8 +129,9 @@ impl<T: Real, const M: usize> Summary<T, M> {
         for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
             row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
         }
-        if let Some(damping) = curvature.damping() {
-            damp(&mut pivot, edge, self.edges, damping * sign);
+        let (damping, steadiness) = curvature.added();
+        if damping + steadiness > T::zero() {
+            damp(&mut pivot, edge, self.edges, (damping + steadiness) * sign);
         }
         let gradient = pending.gradient + edge.after;
         let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature, feedback);
@@ -168,8 +170,9 @@ impl<T: Real, const M: usize> Summary<T, M> {
         let pivot = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
         let coupling = -kernel * edge.before_by_end.transpose();
         let mut pivot = lower_half(&pivot);
-        if let Some(damping) = curvature.damping() {
-            damp(&mut pivot, edge, self.edges, damping * sign);
+        let (damping, steadiness) = curvature.added();
+        if damping + steadiness > T::zero() {
+            damp(&mut pivot, edge, self.edges, (damping + steadiness) * sign);
         }
         let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
         let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature, feedback);

@@ -1,7 +1,7 @@
 //! The end of a plan: what separates it from the target, and which of its changes the target fixes.
 
 use super::Target;
-use crate::eigen::Spectrum;
+use crate::newton::{Spectrum, arc_per_chord, is_reached};
 use crate::space::larger;
 use crate::{Arrival, Controlled, Real, Space};
 use nalgebra::{SMatrix, SVector};
@@ -79,9 +79,7 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
         let momentum = square(S::MOTIONS, asked);
         let chord = larger(zero, goal.distance_squared(x) - square(S::MOTIONS, D));
         let (along, across) = (larger(zero, along).sqrt(), larger(zero, chord - along).sqrt());
-        let angle = T::from_f64(2.0) * (across / along).atan();
-        let factor = angle / angle.sin();
-        if factor > T::one() && factor.is_finite() {
+        if let Some(factor) = arc_per_chord(along, across) {
             (0..S::MOTIONS).for_each(|i| lack[i] *= factor);
         }
         let slope = SMatrix::from_fn(|i, j| projector[(i, j)] * self.lengths[j]);
@@ -128,6 +126,6 @@ impl<T: Real, const D: usize> End<T, D> {
 
     /// Whether the gap is none to a person: below √ε.
     pub fn is_reached(&self) -> bool {
-        self.distance <= T::EPSILON.sqrt() * (self.scale + self.distance)
+        is_reached(self.distance, self.scale)
     }
 }

@@ -10,15 +10,9 @@
 use super::newton::Solved;
 use super::sweep::Problem;
 use super::{Control, Optimum, Stage, Target};
-use crate::bracket::{Bracket, Sample};
+use crate::newton::{Sample, Trial, check_limits, critical_step_size};
 use crate::{Controlled, Error, Real, Scalar};
 use core::ops::RangeInclusive;
-use num_traits::Zero;
-
-/// Step sizes that are tried.
-const TRIALS: usize = 60;
-/// Doublings of a first step size for which there is no plan.
-const DOUBLINGS: usize = 10;
 
 impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
     /// As [`solve`](Self::solve), with the step size in `steps` at which the least price is least, found from that of this control on:
@@ -33,57 +27,28 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         steps: RangeInclusive<S::Scalar>,
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
-        let (zero, limits) = (S::Scalar::zero(), (*steps.start(), *steps.end()));
-        for limit in [limits.0, limits.1] {
-            if !(limit > zero && limit.is_finite() && limits.0 <= limits.1) {
-                return Err(Error::StepSize { value: limit.to_f64() });
-            }
-        }
+        check_limits(&steps)?;
         self.check(start, &target, plan)?;
-        let mut bracket = Bracket::of(limits);
-        let mut iterations = 0;
-        let mut h = bracket.inside(self.h);
-        for trial in 0..TRIALS {
-            match self.sample(start, &target, h, plan) {
-                Ok((solved, sample)) => {
-                    iterations += solved.sweeps;
-                    let next = bracket.next(sample);
-                    let near = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON * h;
-                    if (next - h).abs() <= near || trial + 1 == TRIALS && bracket.is_narrow() {
-                        return Ok(Optimum::new(plan, Solved { sweeps: iterations, ..solved }, h));
-                    }
-                    h = next;
-                }
-                Err(error) => {
-                    let too_short = matches!(error, Error::Infeasible { .. } | Error::TargetMissed { .. });
-                    let next = match bracket.retreat(h) {
-                        Some(next) => next,
-                        None if too_short && trial < DOUBLINGS => bracket.inside(h + h),
-                        None => return Err(error),
-                    };
-                    if next == h {
-                        return Err(error);
-                    }
-                    h = next;
-                }
-            }
-        }
-        Err(Error::NoExtremal { correction: bracket.width().to_f64(), iterations })
+        let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
+        let trial = |h| Ok(self.trial(start, &target, h, plan).unwrap_or_else(Trial::Lost));
+        let ((solved, h), sweeps) = critical_step_size(steps, self.h, accuracy, trial)?;
+        Ok(Optimum::new(plan, Solved { sweeps, ..solved }, h))
     }
 
     /// The plan for a step size, and dV/dh there.
-    fn sample(
+    #[allow(clippy::type_complexity, reason = "a solution with its step size")]
+    fn trial(
         &self,
         start: &S::Place,
         target: &Target<S::Place>,
         h: S::Scalar,
         plan: &mut [Stage<S, D, U, C>],
-    ) -> Result<(Solved<S, D, U, C>, Sample<S::Scalar>), Error> {
+    ) -> Result<Trial<S::Scalar, (Solved<S, D, U, C>, S::Scalar)>, Error> {
         let constants = self.system.prepare(h)?;
         let problem = self.problem(start, target, h, &constants);
         let solved = problem.attempt(plan)?;
         let sample = problem.slope(plan, &solved.last)?;
-        Ok((solved, sample))
+        Ok(Trial::Found { sample, sweeps: solved.sweeps, answer: (solved, h) })
     }
 }
 

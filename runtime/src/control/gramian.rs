@@ -2,7 +2,7 @@
 
 use super::pivot::equilibrated;
 use crate::Real;
-use crate::eigen::Spectrum;
+use crate::newton::Spectrum;
 use nalgebra::{SMatrix, SVector};
 
 /// Γ = Σ_k Q_uνᵀ Q_uu⁻¹ Q_uν of all inputs of a plan.

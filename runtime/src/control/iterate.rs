@@ -3,10 +3,10 @@
 use super::barrier::Barrier;
 use super::end::End;
 use super::gramian::Gramian;
-use super::pivot::Curvature;
 use super::search::Made;
 use super::sweep::{Settings, Summary};
 use crate::Real;
+use crate::newton::{Curvature, Share, adapted};
 use crate::space::larger;
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
@@ -21,6 +21,8 @@ pub(super) const ROUNDS: u32 = 20;
 const NEAR: (i64, i64) = (1, 100);
 /// The way down from a saddle is deeper than so many corrections that are still to be made.
 const DEPTH: f64 = 16.0;
+/// Damping below which there is none.
+const LEAST_DAMPING: f64 = 1e-3;
 /// Corrections of this size are near enough a critical plan to raise the price of the gap.
 const CRITICAL: (i64, i64) = (1, 20);
 
@@ -312,7 +314,12 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         } else if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
             self.settings.weight = stiffer;
         }
-        self.damping = adapted(self.damping, refused);
+        let share = match refused {
+            0 => Share::Whole,
+            1 | 2 => Share::Part,
+            _ => Share::Little,
+        };
+        self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), share);
         self.before = Some(size);
         self.settings.curvature = self.mirrored();
         if refused <= 1 {
@@ -323,18 +330,6 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         self.is_probed &= size > near && is_kept || negative > 0 && self.settings.bend >= T::one();
         self.nearest = if distance < self.nearest { distance } else { self.nearest };
         self.stalls = if fraction < T::from_f64(1e-3) { self.stalls + 1 } else { 0 };
-    }
-}
-
-/// The damping after a step: eight times less after one that was taken at once, eight times more after one that was refused often.
-fn adapted<T: Real>(damping: T, refused: usize) -> T {
-    let (least, factor) = (T::from_f64(1e-3), T::from_f64(8.0));
-    if refused == 0 {
-        if damping > least { damping / factor } else { T::zero() }
-    } else if refused > 2 {
-        larger(damping, least) * factor
-    } else {
-        damping
     }
 }
 

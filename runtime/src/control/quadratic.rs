@@ -1,6 +1,7 @@
 //! The quadratic model of one step in the backward sweep, and its elimination.
 
-use super::pivot::{Curvature, Fall, Pivot};
+use super::pivot::{Fall, Pivot};
+use crate::newton::Curvature;
 use crate::{BoundsExpansion, EndpointExpansion, Expansion, Real};
 use nalgebra::{SMatrix, SVector};
 

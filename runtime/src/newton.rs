@@ -1,0 +1,27 @@
+//! What Newton's method on a path of least action and on a plan of least price have in common.
+//!
+//! Both eliminate a block tridiagonal Hessian from the end, one symmetric pivot after the other, and both leave the way of Newton's method where
+//! pivots are not definite or corrections do not contract.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `curvature` | what is made of a Hessian that is not definite, and its damping |
+//! | `ldl` | L Δ Lᵀ of a definite pivot |
+//! | `spectrum` | eigenvalues of a pivot that is not definite |
+//! | `gap` | what separates an end from its target |
+//! | `free_time` | the step size at which the action or the price is critical |
+//! | `bracket` | the zero of its slope |
+
+mod bracket;
+mod curvature;
+mod free_time;
+mod gap;
+mod ldl;
+mod spectrum;
+
+pub(crate) use bracket::Sample;
+pub(crate) use curvature::{Curvature, Share, adapted, turned_over};
+pub(crate) use free_time::{Trial, check_limits, critical_step_size};
+pub(crate) use gap::{arc_per_chord, is_reached, shortest, shortest_with_kernel};
+pub(crate) use ldl::{Ldl, UNITS};
+pub(crate) use spectrum::Spectrum;
