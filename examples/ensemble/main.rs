@@ -92,7 +92,7 @@ fn main() -> ExitCode {
 fn cloud(flags: &Flags, step_size: f64, momenta: &[Vector3<f64>]) -> Result<Ensemble<Rock<F64x8>>, Failure> {
     let rock = Rock { moments: Vector3::from(flags.inertia).map(F64x8::splat) };
     let starts = momenta.iter().map(|&momentum| (Matrix3::identity(), momentum));
-    Ensemble::new(rock.into_stepper(F64x8::splat(step_size))?, starts).map_err(|failure| Failure::Start(failure.error))
+    rock.into_stepper(F64x8::splat(step_size))?.ensemble(starts).map_err(|failure| Failure::Start(failure.error))
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {

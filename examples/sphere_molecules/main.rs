@@ -153,8 +153,8 @@ fn in_order<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
 /// Molecules at their start, of a size at which neighbours on the lattice rest, with steps of this length.
 fn cloud<S: Cloud<N>, const N: usize>(flags: &Flags, step_size: f64) -> Result<Many<S, N>, Failure> {
     let (q, mu) = flags.start(N);
-    Sites::new(S::new(2.75 / (N as f64).sqrt(), flags.depth), step_size, SiteStorage::of(q, mu))
-        .map_err(|failure| Failure::Start(failure.error))
+    let stepper = S::new(2.75 / (N as f64).sqrt(), flags.depth).into_stepper(step_size)?;
+    stepper.sites(SiteStorage::of(q, mu)).map_err(|failure| Failure::Start(failure.error))
 }
 
 fn run<S: Cloud<N>, const N: usize>(flags: &Flags) -> Result<Claims, Failure> {

@@ -37,7 +37,8 @@
 //! |---|---|
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
-//! | step large states in place, on the heap if you like | [`Integrator`] |
+//! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
+//! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
@@ -48,13 +49,12 @@
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and what to change |
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
-//! | choose inputs at the least price, within bounds | [`Controlled::control`]; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
 //! | give each step an input of its forces | [`Stepper::step_with`] |
-//! | choose the inputs, within bounds and at least price | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control`], [`Optimum`] |
+//! | choose the inputs at the least price, within bounds | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars; [`Real`] for one that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
-//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Sites`] steps them in [`SiteStorage`]; [`Power`] is what is derived |
+//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Stepper::sites`] steps them in [`SiteStorage`]; [`Power`] is what is derived |
 //!
 //! # Features
 //!
@@ -132,6 +132,9 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+// first, as its page shows methods in the order of modules
+mod stepper;
+
 #[doc(hidden)]
 pub mod __private;
 mod boundary;
@@ -143,19 +146,17 @@ mod control;
 mod controlled;
 #[cfg(feature = "double-double")]
 mod double_double;
+mod drive;
 #[cfg(feature = "num-dual")]
 mod dual;
 mod element;
 mod energy;
-#[cfg(feature = "alloc")]
-mod ensemble;
 mod error;
 mod exponential;
 mod free_rotation;
 mod free_rotation_4d;
 pub mod group;
 pub mod implicit;
-mod integrator;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod linear;
@@ -176,7 +177,6 @@ mod sphere;
 mod splitting;
 mod state;
 mod steered;
-mod stepper;
 mod stumpff;
 mod summation;
 mod sylvester;
@@ -194,15 +194,15 @@ pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Ex
 #[cfg(feature = "double-double")]
 pub use double_double::DoubleDouble;
 #[cfg(feature = "alloc")]
-pub use ensemble::{Ensemble, Failure};
+pub use drive::{Bodies, Ensemble, Failure};
+pub use drive::{Drive, Integrator, SiteError, SiteStorage, Sites};
 pub use error::Error;
-pub use integrator::Integrator;
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
-pub use power::{Power, SiteError, SiteStorage, Sites};
+pub use power::Power;
 #[cfg(feature = "serde")]
 pub use saved::SavedState;
 pub use scalar::{Mask, Real, Scalar};

@@ -6,10 +6,6 @@
 //! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them again. A site is a
 //! system of its own; what is here is the same for every power and does not grow with N.
 
-mod sites;
-
-pub use sites::{SiteError, SiteStorage, Sites};
-
 use crate::space::larger;
 use crate::{Clebsch, Clock, Error, Scalar, Space, Time};
 use core::array::from_fn;

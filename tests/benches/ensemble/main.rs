@@ -7,7 +7,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Body, Clebsch, Ensemble, F64x4, F64x8, Scalar, Space, State, Stepper};
+use clebsch::{Body, Clebsch, F64x4, F64x8, Scalar, Space, State, Stepper};
 use nalgebra::{Matrix3, Quaternion, Vector3};
 use std::cell::RefCell;
 use timing::{Run, interleaved};
@@ -108,8 +108,8 @@ fn compare<One, Four, Eight>(
 {
     let starts: Vec<_> = (0..BODIES).map(start).collect();
     let one = one_by_one(one, &starts);
-    let four = RefCell::new(Ensemble::new(four, starts.clone()).expect("bodies"));
-    let eight = RefCell::new(Ensemble::new(eight, starts.clone()).expect("bodies"));
+    let four = RefCell::new(four.ensemble(starts.clone()).expect("bodies"));
+    let eight = RefCell::new(eight.ensemble(starts.clone()).expect("bodies"));
     for (setting, together) in [("blocks", BLOCK), ("sweeps", 1)] {
         let contestants: Vec<Run<'_>> = vec![
             Box::new(|rounds| one(rounds, together)),

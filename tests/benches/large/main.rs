@@ -6,7 +6,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Clebsch, Integrator, State, Stepper};
+use clebsch::{Clebsch, State, Stepper};
 use nalgebra::{SMatrix, SVector};
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -229,7 +229,7 @@ macro_rules! points {
             names.push(concat!($name, ", Integrator"));
             let stepper = $system { stiffness }.into_stepper(H).expect("a regular system");
             let start = stepper.state(q, mu).expect("a state");
-            let integrator = RefCell::new(Integrator::new(stepper, start));
+            let integrator = RefCell::new(stepper.integrator(start));
             contestants.push(Box::new(move |steps| (0..steps).for_each(|_| integrator.borrow_mut().step().expect("a step"))));
         )*
         report($n, &names, &contestants)

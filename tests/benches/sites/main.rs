@@ -6,7 +6,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Clebsch, Integrator, SiteStorage, Sites};
+use clebsch::{Clebsch, SiteStorage};
 use nalgebra::Vector3;
 use std::cell::RefCell;
 use timing::{Run, Time, interleaved};
@@ -201,7 +201,8 @@ where
 fn rings<const N: usize>(unrolled: Option<[&dyn Fn(u64) -> u64; 2]>) -> f64 {
     let (q, mu) = spins(N);
     let ring = Ring::<N> { exchange: EXCHANGE, field: FIELD };
-    let by_sites = RefCell::new(Sites::new(ring.clone(), H, SiteStorage::of(q.clone(), mu.clone())).expect("a ring"));
+    let by_sites =
+        RefCell::new(ring.stepper(H).expect("regular").sites(SiteStorage::of(q.clone(), mu.clone())).expect("a ring"));
     let by_hand = RefCell::new(ByHand::new((q.clone(), mu.clone())));
     let steps = (WORK / N).max(1) as u64;
     let stepped = || (0..steps).for_each(|_| by_hand.borrow_mut().step());
@@ -231,7 +232,7 @@ fn rings<const N: usize>(unrolled: Option<[&dyn Fn(u64) -> u64; 2]>) -> f64 {
         names.push("array, Integrator");
         let stepper = ring.stepper(H).expect("a ring");
         let start = stepper.state(std::array::from_fn(|i| q[i]), std::array::from_fn(|i| mu[i])).expect("a state");
-        let integrator = RefCell::new(Integrator::new(stepper, start));
+        let integrator = RefCell::new(stepper.integrator(start));
         contestants.push(Box::new(move |rounds| {
             (0..rounds * steps).for_each(|_| integrator.borrow_mut().step().expect("a step"));
         }));
@@ -253,7 +254,8 @@ fn rings<const N: usize>(unrolled: Option<[&dyn Fn(u64) -> u64; 2]>) -> f64 {
 fn pairs<const N: usize>() -> f64 {
     let (q, mu) = bodies(N);
     let storage = SiteStorage::of(q.clone(), mu.clone());
-    let by_sites = RefCell::new(Sites::new(Bodies::<N> { mass: 1.0 }, H, storage).expect("bodies"));
+    let by_sites =
+        RefCell::new(Bodies::<N> { mass: 1.0 }.into_stepper(H).expect("regular").sites(storage).expect("bodies"));
     let by_hand = RefCell::new(BodiesByHand { force: vec![Vector3::zeros(); N], x: q, p: mu });
     let count = N * (N - 1) / 2;
     let steps = (WORK / count).max(1) as u64;

@@ -87,9 +87,9 @@ macro_rules! assert_alone {
 fn bodies_are_stepped_as_if_alone() {
     for count in [0, 1, 3, 8, 9, 16, 37, 200] {
         let starts = starts(count);
-        let mut eight = Ensemble::new(stepper::<F64x8>(), starts.clone()).expect("bodies");
-        let mut four = Ensemble::new(stepper::<F64x4>(), starts.clone()).expect("bodies");
-        let mut one = Ensemble::new(stepper::<f64>(), starts.clone()).expect("bodies");
+        let mut eight = stepper::<F64x8>().ensemble(starts.clone()).expect("bodies");
+        let mut four = stepper::<F64x4>().ensemble(starts.clone()).expect("bodies");
+        let mut one = stepper::<f64>().ensemble(starts.clone()).expect("bodies");
         eight.advance(STEPS);
         four.advance(STEPS);
         one.advance(STEPS);
@@ -105,8 +105,8 @@ fn bodies_are_stepped_as_if_alone() {
 #[test]
 fn place_and_portions_do_not_matter() {
     let starts = starts(53);
-    let mut forwards = Ensemble::new(stepper::<F64x8>(), starts.clone()).expect("bodies");
-    let mut backwards = Ensemble::new(stepper::<F64x8>(), starts.iter().rev().copied()).expect("bodies");
+    let mut forwards = stepper::<F64x8>().ensemble(starts.clone()).expect("bodies");
+    let mut backwards = stepper::<F64x8>().ensemble(starts.iter().rev().copied()).expect("bodies");
     forwards.advance(STEPS);
     for portion in [1, 7, 0, 12] {
         backwards.advance(portion);
@@ -121,8 +121,8 @@ fn place_and_portions_do_not_matter() {
 #[test]
 fn threads_do_not_matter() {
     let starts = starts(1000);
-    let mut one = Ensemble::new(stepper::<F64x8>(), starts.clone()).expect("bodies");
-    let mut many = Ensemble::new(stepper::<F64x8>(), starts).expect("bodies");
+    let mut one = stepper::<F64x8>().ensemble(starts.clone()).expect("bodies");
+    let mut many = stepper::<F64x8>().ensemble(starts).expect("bodies");
     one.advance(STEPS);
     many.par_advance(STEPS / 2);
     many.par_advance(STEPS - STEPS / 2);
@@ -149,7 +149,7 @@ fn parameters_of_each_body() {
 #[test]
 fn bodies_can_be_put_elsewhere() {
     let starts = starts(20);
-    let mut tops = Ensemble::new(stepper::<F64x8>(), starts.clone()).expect("bodies");
+    let mut tops = stepper::<F64x8>().ensemble(starts.clone()).expect("bodies");
     tops.advance(STEPS);
     let failed = tops.failures().next().expect("some spin too fast").body;
     let sound = (0..20).find(|&body| tops.failure(body).is_none()).expect("some do not");
@@ -174,7 +174,7 @@ fn bodies_can_be_put_elsewhere() {
 fn bodies_that_are_refused_are_named() {
     let mut wrong = starts(30);
     wrong[21].0 *= 1.1;
-    let refused = Ensemble::new(stepper::<F64x8>(), wrong.clone()).expect_err("no rotation");
+    let refused = stepper::<F64x8>().ensemble(wrong.clone()).expect_err("no rotation");
     assert!(matches!(refused, Failure { body: 21, step: 0, error: Error::OffOrbit { .. } }), "{refused}");
     assert!(refused.to_string().starts_with("body 21 after step 0: the configuration is off its space"), "{refused}");
     wrong[21].0 = Matrix3::identity();
@@ -190,7 +190,7 @@ fn bodies_that_are_refused_are_named() {
 fn bodies_have_their_times() {
     let bob = |speed: f64| (Vector3::y(), Vector3::new(speed, 0.0, 0.5));
     let stepper = Pendulum { gravity: F64x8::splat(9.81) }.stepper(F64x8::splat(H)).expect("parameters");
-    let mut bobs = Ensemble::new(stepper, [bob(1.0), bob(9.9), bob(0.5)]).expect("bodies");
+    let mut bobs = stepper.ensemble([bob(1.0), bob(9.9), bob(0.5)]).expect("bodies");
     bobs.advance(STEPS);
     let failure = bobs.failure(1).expect("too fast");
     assert!(failure.step < STEPS);
@@ -208,7 +208,7 @@ fn bodies_have_their_times() {
 /// An ensemble of none makes its steps at once, and counts as far as it can.
 #[test]
 fn steps_are_counted_up_to_the_largest_number() {
-    let mut none = Ensemble::new(stepper::<F64x4>(), []).expect("no bodies");
+    let mut none = stepper::<F64x4>().ensemble([]).expect("no bodies");
     none.advance(u64::MAX);
     none.advance(2);
     none.par_advance(3);

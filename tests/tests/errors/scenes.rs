@@ -1,7 +1,7 @@
 //! Scenes that fail.
 
 use crate::Scene;
-use clebsch::{Clebsch, Controlled, Ensemble, Error, F64x4, Guess, Scalar, SiteStorage, Sites, Target};
+use clebsch::{Clebsch, Controlled, Error, F64x4, Guess, Scalar, SiteStorage, Target};
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
 use clebsch_tests::fixtures::exact_body::ExactBody;
@@ -104,7 +104,10 @@ fn parameters() -> Vec<Scene> {
     let wrong = Mistaken.check_potential(&Vector3::new(1.0, 2.0, 3.0));
     vec![
         Scene {
-            error: Sites::new(ring(), 0.1, SiteStorage::of(vec![Vector3::x(); 3], vec![Vector3::zeros(); 4]))
+            error: ring()
+                .into_stepper(0.1)
+                .expect("a ring")
+                .sites(SiteStorage::of(vec![Vector3::x(); 3], vec![Vector3::zeros(); 4]))
                 .expect_err("3 of 4")
                 .error,
             told: &["3 entries", "4 sites", "one entry for each site"],
@@ -143,7 +146,7 @@ fn states() -> Vec<Scene> {
     let (r, mu) = (Matrix3::identity(), Vector3::z());
     let sphere = pendulum().stepper(0.1).expect("a pendulum");
     let bodies = [(r, mu), (r, mu)];
-    let mut ensemble = Ensemble::new(stepper.clone(), bodies).expect("two tops");
+    let mut ensemble = stepper.clone().ensemble(bodies).expect("two tops");
     let damped = DampedBody { inertia: Matrix3::identity(), damping: 0.1 }.into_stepper(0.1).expect("a body");
     let covector = damped.cotangent_state(r, r).expect("a state");
     vec![

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::slots::Slots;
-use clebsch::{Clebsch, Ensemble, Error, Real, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, Error, Real, Scalar, Space, State, Stepper};
 
 /// What no computation can go on with.
 pub const BROKEN: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -206,7 +206,7 @@ fn formulas<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, q:
 
 /// Bodies of an ensemble stay where they were when their step fails, and the others do not notice.
 fn ensemble<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, start: &State<S>) {
-    let bodies = || Ensemble::new(stepper.clone(), [start.lane(0), start.lane(0)]).map_err(|failure| failure.error);
+    let bodies = || stepper.clone().ensemble([start.lane(0), start.lane(0)]).map_err(|failure| failure.error);
     let Some(mut bodies) = report.call((place, "Ensemble"), bodies, |_| true) else { return };
     report.formula((place, "Ensemble::advance"), || bodies.advance(2));
     let last: Vec<_> = bodies.bodies().collect();

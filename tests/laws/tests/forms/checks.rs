@@ -1,6 +1,6 @@
 //! What holds of the two forms of code of a declaration.
 
-use clebsch::{Clebsch, Conserved, Conserves, Integrator, Space, State, Variational};
+use clebsch::{Clebsch, Conserved, Conserves, Space, State, Variational};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::SVector;
@@ -96,7 +96,7 @@ where
         let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
         let (mut x, mut y) = (a.state(rest, mu).expect("a state"), b.state(rest, mu).expect("a state"));
         let mut unforced = x;
-        let mut integrator = Integrator::new(b.clone(), y);
+        let mut integrator = b.clone().integrator(y);
         for _ in 0..20 {
             let input = random.vector::<K>();
             x = a.step_with(&x, &input).expect("a step");

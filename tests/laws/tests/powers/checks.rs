@@ -1,6 +1,6 @@
 //! What holds of the two ways to compile a declaration.
 
-use clebsch::{Clebsch, Power, SiteStorage, Sites, Space};
+use clebsch::{Clebsch, Power, SiteStorage, Space};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::SVector;
@@ -90,8 +90,8 @@ where
 {
     let stepper = power.stepper(H).expect("a regular power");
     let mut state = stepper.state(q, mu).expect("a state");
-    let mut vectors = Sites::<P, _, _, 4>::new(power.clone(), H, SiteStorage::of(q.to_vec(), mu.to_vec()))
-        .expect("a state in vectors");
+    let mut vectors =
+        power.stepper(H).expect("regular").sites(SiteStorage::of(q.to_vec(), mu.to_vec())).expect("a state in vectors");
     let (mut points, mut momenta) = ([q; 3], [mu; 4]);
     let ([p1, p2, p3], [m1, m2, m3, m4]) = (points.each_mut(), momenta.each_mut());
     let storage = SiteStorage {
@@ -100,7 +100,7 @@ where
         more_points: [&mut p2[..], &mut p3[..]],
         more_momenta: [&mut m2[..], &mut m3[..], &mut m4[..]],
     };
-    let mut slices = Sites::<P, _, _, 4>::new(power.clone(), H, storage).expect("a state in slices");
+    let mut slices = power.stepper(H).expect("regular").sites(storage).expect("a state in slices");
     for _ in 0..10 {
         state = stepper.step(&state).expect("a step");
     }

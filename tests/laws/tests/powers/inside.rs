@@ -1,6 +1,6 @@
 //! Powers at their edges: one site, none, storage of another length, a step that fails.
 
-use clebsch::{Clebsch, Error, SiteStorage, Sites};
+use clebsch::{Clebsch, Error, SiteStorage};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::*;
 
@@ -30,7 +30,7 @@ fn one_site_is_its_own_neighbour() {
 fn storage_of_another_length_is_refused() {
     let ring = Ring::<f64, 3> { exchange: 0.7 };
     let storage = SiteStorage::of(vec![Vector3::x(); 2], vec![Vector3::zeros(); 3]);
-    let error = Sites::<_, _, _, 3>::new(ring, 0.1, storage).expect_err("a site is missing");
+    let error = ring.into_stepper(0.1).expect("a ring").sites(storage).expect_err("a site is missing");
     assert_eq!(error.error, Error::NumberOfSites { found: 2, sites: 3 });
     assert_eq!(error.to_string(), "the storage has 2 entries where there are 3 sites: give one entry for each site");
 }
@@ -39,8 +39,11 @@ fn storage_of_another_length_is_refused() {
 fn a_site_off_its_sphere_is_named() {
     let ring = Ring::<f64, 3> { exchange: 0.7 };
     let q = vec![Vector3::x(), Vector3::x() * 1.1, Vector3::x()];
-    let error =
-        Sites::<_, _, _, 3>::new(ring, 0.1, SiteStorage::of(q, vec![Vector3::zeros(); 3])).expect_err("off its sphere");
+    let error = ring
+        .into_stepper(0.1)
+        .expect("a ring")
+        .sites(SiteStorage::of(q, vec![Vector3::zeros(); 3]))
+        .expect_err("off its sphere");
     assert_eq!(error.site, Some(1));
     assert!(error.to_string().starts_with("at site 1: the configuration is off its space"), "{error}");
 }
@@ -51,7 +54,8 @@ fn a_step_that_fails_leaves_the_state_and_names_the_site() {
     let mut mu = vec![Vector3::zeros(); 4];
     mu[2] = Vector3::z() * 11.0;
     let q = vec![Vector3::x(); 4];
-    let mut sites = Sites::<_, _, _, 4>::new(ring, 0.1, SiteStorage::of(q.clone(), mu.clone())).expect("a state");
+    let mut sites =
+        ring.into_stepper(0.1).expect("a ring").sites(SiteStorage::of(q.clone(), mu.clone())).expect("a state");
     let error = sites.step().expect_err("h|ω| = 1.1 has no solution");
     assert_eq!(error.site, Some(2));
     assert!(matches!(error.error, Error::Unsolvable { .. }), "{error}");
@@ -66,8 +70,11 @@ fn a_hundred_thousand_sites_in_vectors() {
     let mu: Vec<Vector3<f64>> = q.iter().map(|q| q.cross(&random.vector())).collect();
     let total = |mu: &[Vector3<f64>]| mu.iter().sum::<Vector3<f64>>();
     let start = total(&mu);
-    let mut sites =
-        Sites::<_, _, _, N>::new(Ring::<f64, N> { exchange: 0.7 }, 0.05, SiteStorage::of(q, mu)).expect("a state");
+    let mut sites = Ring::<f64, N> { exchange: 0.7 }
+        .into_stepper(0.05)
+        .expect("a ring")
+        .sites(SiteStorage::of(q, mu))
+        .expect("a state");
     let energy = sites.energy().expect("all sites");
     sites.advance(3).expect("steps");
     // Σμ is conserved, as the exchange is the same for all spins turned alike; round-off grows as √N

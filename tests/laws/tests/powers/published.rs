@@ -1,6 +1,6 @@
 //! Against what is known otherwise.
 
-use clebsch::{Clebsch, Conserves, SiteStorage, Sites};
+use clebsch::{Clebsch, Conserves, SiteStorage};
 use nalgebra::*;
 
 /// Bodies that attract each other.
@@ -56,7 +56,7 @@ fn small_waves_have_their_dispersion() {
     let steps = 4000_u32;
     let h = 2.0 * std::f64::consts::PI / omega / f64::from(steps);
     let storage = SiteStorage::of(q.clone(), vec![Vector1::zeros(); N]);
-    let mut sites = Sites::<_, _, _, N>::new(Rotors::<N> { exchange }, h, storage).expect("a state");
+    let mut sites = Rotors::<N> { exchange }.into_stepper(h).expect("regular").sites(storage).expect("a state");
     sites.advance(steps.into()).expect("steps");
     // after a period each is where it was, but for (hω)²/24 of the phase and amplitude² of the frequency
     for (now, then) in sites.configuration().iter().zip(&q) {

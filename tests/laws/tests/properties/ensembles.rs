@@ -2,7 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, vector};
 use crate::bodies::{H, generic_top, satellites};
-use clebsch::{Body, Clebsch, Conserved, Ensemble, F64x8, Scalar, Stepper};
+use clebsch::{Body, Clebsch, Conserved, Drive, Ensemble, F64x8, Scalar, Stepper};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
@@ -43,9 +43,9 @@ proptest! {
     ) {
         let one = generic_top::<f64>(&mass, weight, &center).into_stepper(H)?;
         let wide = generic_top::<F64x8>(&mass, weight, &center).into_stepper(F64x8::splat(H))?;
-        let mut all: Tops = Ensemble::new(wide.clone(), bodies.clone())?;
-        let mut on_all_cores: Tops = Ensemble::new(wide.clone(), bodies.clone())?;
-        let mut one_by_one: Tops = Ensemble::new(wide, bodies.clone())?;
+        let mut all: Tops = wide.clone().ensemble(bodies.clone())?;
+        let mut on_all_cores: Tops = wide.clone().ensemble(bodies.clone())?;
+        let mut one_by_one: Tops = wide.ensemble(bodies.clone())?;
         prop_assert_eq!((all.len(), all.is_empty(), all.steps()), (bodies.len(), false, 0));
         all.advance(steps);
         on_all_cores.par_advance(steps);
@@ -73,6 +73,22 @@ proptest! {
         prop_assert_eq!(all.body(0), Some(alone(&one, &other, 1).0));
     }
 
+    /// One set of words, whatever is stepped.
+    #[test]
+    fn drives_share_their_words(mass in definite::<3>(), center in vector::<3>(1.0), body in (attitude(), vector::<3>(1.0)), steps in 0_u64..6) {
+        let stepper = generic_top::<f64>(&mass, 1.0, &center).into_stepper(H)?;
+        let mut alone = stepper.clone().integrator(stepper.state(body.0, body.1)?);
+        let mut many = stepper.ensemble([body])?;
+        Drive::advance(&mut alone, steps)?;
+        Drive::step(&mut alone)?;
+        Drive::advance(&mut many, steps)?;
+        Drive::step(&mut many)?;
+        prop_assert_eq!((Drive::steps(&alone), Drive::steps(&many)), (steps + 1, steps + 1));
+        let reached = many.state().next().expect("one body");
+        let state = Drive::state(&alone);
+        prop_assert!((reached.0 - state.configuration()).amax() < 1e-13 && (reached.1 - state.momentum()).amax() < 1e-13);
+    }
+
     /// Each with its own weight.
     #[test]
     fn bodies_have_their_own_parameters(mass in definite::<3>(), center in vector::<3>(1.0), bodies in bodies()) {
@@ -92,7 +108,7 @@ proptest! {
     /// The time of a body is that of its steps.
     #[test]
     fn bodies_have_times(satellite in satellites(), r in attitude(), mu in vector::<3>(1.0), steps in 0_u64..9) {
-        let mut all = Ensemble::new(satellite.stepper(H)?, [(r, mu)])?;
+        let mut all = satellite.stepper(H)?.ensemble([(r, mu)])?;
         all.advance(steps);
         let stepper = satellite.stepper(H)?;
         let alone = stepper.advance(&stepper.state(r, mu)?, steps as usize)?;

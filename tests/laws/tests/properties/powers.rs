@@ -2,7 +2,7 @@
 
 use crate::arbitrary::{cases, unit, vector};
 use clebsch::__private::{PowerConstants, wrapped};
-use clebsch::{Clebsch, Power, SiteStorage, Sites};
+use clebsch::{Clebsch, Power, SiteStorage};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -176,8 +176,8 @@ proptest! {
     fn storage_does_not_matter(ring in rings(), (q, mu) in spins(), steps in 0_u64..5) {
         let stepper = ring.stepper(H)?;
         let mut state = stepper.state(q, mu)?;
-        let mut vectors = Sites::new(ring.clone(), H, SiteStorage::of(q.to_vec(), mu.to_vec()))?;
-        let mut single = Sites::new(ring, H, SiteStorage::of(q, mu))?;
+        let mut vectors = ring.stepper(H)?.sites(SiteStorage::of(q.to_vec(), mu.to_vec()))?;
+        let mut single = ring.into_stepper(H)?.sites(SiteStorage::of(q, mu))?;
         for _ in 0..steps {
             state = stepper.step(&state)?;
             single.step()?;
@@ -196,7 +196,7 @@ proptest! {
     #[test]
     fn conserved_momenta_are_sums(mut ring in rings(), (q, mu) in spins()) {
         let along_field = |ring: &Ring<N>| -> Result<f64, TestCaseError> {
-            Ok(Sites::new(ring.clone(), H, SiteStorage::of(q.to_vec(), mu.to_vec()))?.conserved()?[0])
+            Ok(ring.stepper(H)?.sites(SiteStorage::of(q.to_vec(), mu.to_vec()))?.conserved()?[0])
         };
         let total: Vector3<f64> = mu.iter().sum();
         prop_assert!((along_field(&ring)? - total.dot(&ring.field)).abs() < 1e-14);

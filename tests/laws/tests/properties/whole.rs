@@ -225,7 +225,7 @@ proptest! {
         let start = stepper.state(q, mu)?;
         let mut integrator = Integrator::on_heap(point.clone(), 0.05, q, mu)?;
         prop_assert_eq!((integrator.state(), integrator.steps()), (&start, 0));
-        let beside = Integrator::new(stepper.clone(), start);
+        let beside = stepper.clone().integrator(start);
         prop_assert_eq!(beside.state(), integrator.state());
         let mut state = start;
         for _ in 0..count {

@@ -1,6 +1,7 @@
-//! The state of a power in storage of the user's choice, stepped in place.
+//! The state of a power in storage of the user's choice.
 
-use super::{Point, Power, SiteMomentum};
+use super::Drive;
+use crate::power::{Point, Power, SiteMomentum};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 
@@ -84,19 +85,31 @@ macro_rules! sites {
     };
 }
 
+impl<P: Clebsch> Stepper<P> {
+    /// This stepper with the state of all sites of a power, after the checks that [`state`](Self::state) makes: stepped in place.
+    ///
+    /// # Errors
+    /// [`Error::NumberOfSites`] where a part of the storage has another length than N, and those of [`state`](Self::state), with the site.
+    pub fn sites<Points, Momenta, const N: usize>(
+        self,
+        storage: SiteStorage<Points, Momenta>,
+    ) -> Result<Sites<P, Points, Momenta, N>, SiteError>
+    where
+        P: Power<N>,
+        Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+        Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+    {
+        Sites::new(self, storage)
+    }
+}
+
 impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>
 where
     P: Power<N>,
     Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
 {
-    /// All sites of a system with the step size `h`, after checks of its parameters and its state, as [`Stepper::state`] makes them.
-    ///
-    /// # Errors
-    /// [`Error::NumberOfSites`] where a part of the storage has another length than N, and those of [`Clebsch::stepper`] and
-    /// [`Stepper::state`], with the site.
-    pub fn new(system: P, h: P::Scalar, storage: SiteStorage<Points, Momenta>) -> Result<Self, SiteError> {
-        let stepper = system.into_stepper(h).map_err(|error| SiteError { site: None, error })?;
+    fn new(stepper: Stepper<P>, storage: SiteStorage<Points, Momenta>) -> Result<Self, SiteError> {
         let SiteStorage { configuration, momentum, more_points: [p1, p2], more_momenta: [m1, m2, m3] } = storage;
         let (points, momenta) = ([configuration, p1, p2], [momentum, m1, m2, m3]);
         let time = Time::at(num_traits::Zero::zero());
@@ -175,7 +188,7 @@ where
         Ok(())
     }
 
-    /// `steps` steps.
+    /// So many steps.
     ///
     /// # Errors
     /// Those of [`step`](Self::step); the state is the one before the step that failed.
@@ -198,7 +211,7 @@ where
         &self.stepper
     }
 
-    /// The steps that have been made.
+    /// The number of steps that it has made, at most 2⁶⁴ − 1.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -232,6 +245,36 @@ where
         let q: &[Point<P, N>; N] = sites!(self.configuration(), N);
         let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
         Ok(self.stepper.system().conserved(q, mu))
+    }
+}
+
+impl<P, Points, Momenta, const N: usize> Drive for Sites<P, Points, Momenta, N>
+where
+    P: Power<N>,
+    Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+    Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+{
+    /// The configurations q and the momenta N of all sites.
+    type State<'a>
+        = (&'a [Point<P, N>], &'a [SiteMomentum<P, N>])
+    where
+        Self: 'a;
+    type Error = SiteError;
+
+    fn step(&mut self) -> Result<(), SiteError> {
+        Self::step(self)
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), SiteError> {
+        Self::advance(self, steps)
+    }
+
+    fn state(&self) -> Self::State<'_> {
+        (self.configuration(), self.momentum())
+    }
+
+    fn steps(&self) -> u64 {
+        Self::steps(self)
     }
 }
 

@@ -1,12 +1,14 @@
-//! Many bodies, stepped side by side.
+//! Many bodies, side by side.
 
 mod chunk;
 #[cfg(feature = "rayon")]
 mod threads;
 
+use super::Drive;
 use crate::{Body, Clebsch, Clock, Conserved, Conserves, Error, Scalar, Stepper, Time};
 use alloc::vec::Vec;
 use chunk::Chunk;
+use core::convert::Infallible;
 use core::fmt::{self, Display, Formatter};
 
 /// Many bodies of one declaration, as many side by side as its scalar has lanes.
@@ -15,7 +17,7 @@ use core::fmt::{self, Display, Formatter};
 /// fails stays where it is and tells [why](Self::failures), and the others go on.
 ///
 /// ```
-/// use clebsch::{Clebsch, Ensemble, F64x8, Scalar};
+/// use clebsch::{Clebsch, F64x8, Scalar};
 /// use nalgebra::{Matrix3, Vector3};
 ///
 /// /// A body that turns freely, over any scalar.
@@ -32,7 +34,7 @@ use core::fmt::{self, Display, Formatter};
 ///
 /// let rock = Rock { moments: Vector3::new(1.0, 2.0, 2.5).map(F64x8::splat) };
 /// let spins = (0..1000).map(|i| (Matrix3::identity(), Vector3::new(0.1, 2.0, 1e-3 * f64::from(i))));
-/// let mut rocks = Ensemble::new(rock.stepper(F64x8::splat(0.01))?, spins)?;
+/// let mut rocks = rock.stepper(F64x8::splat(0.01))?.ensemble(spins)?;
 /// rocks.advance(100);
 /// assert_eq!(rocks.failures().count(), 0);
 /// for (attitude, momentum) in rocks.bodies() {
@@ -70,16 +72,18 @@ impl Display for Failure {
 
 impl core::error::Error for Failure {}
 
-impl<S: Clebsch> Ensemble<S> {
-    /// Bodies at (q, N), all with the parameters and the step size of `stepper`, which may differ between lanes: body i is in lane
-    /// i mod [`LANES`](Scalar::LANES).
+impl<S: Clebsch> Stepper<S> {
+    /// This stepper with bodies at (q, N): stepped in place. All have its parameters and step size, which may differ between lanes: body i is in
+    /// lane i mod [`LANES`](Scalar::LANES).
     ///
     /// # Errors
-    /// The first body that [`Stepper::state`] refuses, and why.
-    pub fn new(stepper: Stepper<S>, bodies: impl IntoIterator<Item = Body<S>>) -> Result<Self, Failure> {
-        Self::gathered(Vec::from([stepper]), &bodies.into_iter().collect::<Vec<_>>())
+    /// The first body that [`state`](Self::state) refuses, and why.
+    pub fn ensemble(self, bodies: impl IntoIterator<Item = Body<S>>) -> Result<Ensemble<S>, Failure> {
+        Ensemble::gathered(Vec::from([self]), &bodies.into_iter().collect::<Vec<_>>())
     }
+}
 
+impl<S: Clebsch> Ensemble<S> {
     /// Bodies at (q, N) with parameters of their own: `stepper` makes that of the bodies whose numbers it is given, one for each lane.
     ///
     /// ```
@@ -102,7 +106,7 @@ impl<S: Clebsch> Ensemble<S> {
     /// ```
     ///
     /// # Errors
-    /// As [`new`](Self::new), and those of `stepper`, with the first body of the lanes.
+    /// As [`Stepper::ensemble`], and those of `stepper`, with the first body of the lanes.
     pub fn with_parameters(
         bodies: impl IntoIterator<Item = Body<S>>,
         mut stepper: impl FnMut(&[usize]) -> Result<Stepper<S>, Error>,
@@ -149,7 +153,7 @@ impl<S: Clebsch> Ensemble<S> {
         self.bodies == 0
     }
 
-    /// The number of steps that have been made, at most 2⁶⁴ − 1.
+    /// The number of steps that it has made, at most 2⁶⁴ − 1.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -160,8 +164,8 @@ impl<S: Clebsch> Ensemble<S> {
     }
 
     /// (q, N) of all bodies.
-    pub fn bodies(&self) -> impl Iterator<Item = Body<S>> + '_ {
-        (0..self.bodies).filter_map(|body| self.body(body))
+    pub fn bodies(&self) -> Bodies<'_, S> {
+        Bodies { ensemble: self, next: 0 }
     }
 
     /// Puts a body somewhere else, at the present time; one that had failed goes on from there.
@@ -205,6 +209,50 @@ impl<S: Clebsch> Ensemble<S> {
         let number = body / S::Scalar::LANES;
         let chunk = self.chunks.get(number).filter(|_| body < self.bodies)?;
         Some((from(&self.steppers, number).first()?, chunk, body % S::Scalar::LANES))
+    }
+}
+
+/// The bodies of an [`Ensemble`], each by (q, N).
+#[derive(Clone, Debug)]
+pub struct Bodies<'a, S: Clebsch> {
+    ensemble: &'a Ensemble<S>,
+    next: usize,
+}
+
+impl<S: Clebsch> Iterator for Bodies<'_, S> {
+    type Item = Body<S>;
+
+    fn next(&mut self) -> Option<Body<S>> {
+        let body = self.ensemble.body(self.next)?;
+        self.next += 1;
+        Some(body)
+    }
+}
+
+/// A body that fails keeps no other, so that no step of all fails: [`Ensemble::failures`] tells.
+impl<S: Clebsch> Drive for Ensemble<S> {
+    type State<'a>
+        = Bodies<'a, S>
+    where
+        S: 'a;
+    type Error = Infallible;
+
+    fn step(&mut self) -> Result<(), Infallible> {
+        Self::step(self);
+        Ok(())
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Infallible> {
+        Self::advance(self, steps);
+        Ok(())
+    }
+
+    fn state(&self) -> Bodies<'_, S> {
+        self.bodies()
+    }
+
+    fn steps(&self) -> u64 {
+        Self::steps(self)
     }
 }
 

@@ -1,5 +1,6 @@
-//! A stepper with its state, stepped in place.
+//! A stepper with one state.
 
+use super::Drive;
 use crate::{Clebsch, Error, Space, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 
@@ -13,7 +14,7 @@ use core::fmt::{self, Debug, Formatter};
 /// once.
 ///
 /// ```
-/// use clebsch::{Clebsch, Integrator};
+/// use clebsch::Clebsch;
 /// use nalgebra::SVector;
 ///
 /// /// A point on S¹⁰⁰ in a field along its last axis.
@@ -32,7 +33,7 @@ use core::fmt::{self, Debug, Formatter};
 /// let start = SVector::<f64, 101>::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
 /// let momentum = stepper.momentum_map(&start, &SVector::zeros());
 /// let state = stepper.state(start, momentum)?;
-/// let mut pendulum = Integrator::new(stepper, state);
+/// let mut pendulum = stepper.integrator(state);
 /// for _ in 0..100 {
 ///     pendulum.step()?;
 /// }
@@ -48,12 +49,14 @@ pub struct Integrator<S: Clebsch> {
     steps: u64,
 }
 
-impl<S: Clebsch> Integrator<S> {
-    /// Starts from a state that this stepper, or one of the same system, has made.
-    pub fn new(stepper: Stepper<S>, start: State<S>) -> Self {
-        Self { stepper, states: [start, start], is_second: false, steps: 0 }
+impl<S: Clebsch> Stepper<S> {
+    /// This stepper with a state that it, or one of the same system, has made: stepped in place.
+    pub fn integrator(self, start: State<S>) -> Integrator<S> {
+        Integrator { stepper: self, states: [start, start], is_second: false, steps: 0 }
     }
+}
 
+impl<S: Clebsch> Integrator<S> {
     /// The state.
     #[inline]
     pub fn state(&self) -> &State<S> {
@@ -73,7 +76,7 @@ impl<S: Clebsch> Integrator<S> {
         &self.stepper
     }
 
-    /// Steps made so far.
+    /// The number of steps that it has made, at most 2⁶⁴ − 1.
     #[inline]
     pub fn steps(&self) -> u64 {
         self.steps
@@ -106,15 +109,45 @@ impl<S: Clebsch> Integrator<S> {
     ///
     /// # Errors
     /// Those of [`step`](Self::step); the state is the one before the step that failed.
-    pub fn advance(&mut self, steps: usize) -> Result<(), Error> {
-        match self.stepper.advance(self.state(), steps) {
-            Ok(state) => {
-                self.set_state(state);
-                self.steps = self.steps.saturating_add(steps as u64);
-                Ok(())
+    pub fn advance(&mut self, steps: u64) -> Result<(), Error> {
+        let mut rest = steps;
+        while rest > 0 {
+            let count = usize::try_from(rest).unwrap_or(usize::MAX);
+            match self.stepper.advance(self.state(), count) {
+                Ok(state) => {
+                    self.set_state(state);
+                    self.steps = self.steps.saturating_add(count as u64);
+                }
+                Err(_) => (0..count).try_for_each(|_| self.step())?,
             }
-            Err(_) => (0..steps).try_for_each(|_| self.step()),
+            rest = rest.saturating_sub(count as u64);
         }
+        Ok(())
+    }
+}
+
+impl<S: Clebsch> Drive for Integrator<S> {
+    type State<'a>
+        = &'a State<S>
+    where
+        S: 'a;
+    type Error = Error;
+
+    #[inline]
+    fn step(&mut self) -> Result<(), Error> {
+        Self::step(self)
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Error> {
+        Self::advance(self, steps)
+    }
+
+    fn state(&self) -> &State<S> {
+        Self::state(self)
+    }
+
+    fn steps(&self) -> u64 {
+        Self::steps(self)
     }
 }
 
@@ -133,7 +166,7 @@ impl<S: Clebsch> Integrator<S> {
     ) -> Result<alloc::boxed::Box<Self>, Error> {
         let stepper = system.into_stepper(h)?;
         let start = stepper.state(q, mu)?;
-        Ok(alloc::boxed::Box::new(Self::new(stepper, start)))
+        Ok(alloc::boxed::Box::new(stepper.integrator(start)))
     }
 }
 
