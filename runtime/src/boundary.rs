@@ -36,7 +36,7 @@ pub use several::Way;
 use crate::stepper::check_time;
 use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
 use num_traits::{One, Zero};
-use sweep::Problem;
+use sweep::Endpoints;
 
 /// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
 #[derive(Debug)]
@@ -150,9 +150,9 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         let zero = S::Scalar::zero();
         let sign = if self.stepper.h < zero { -S::Scalar::one() } else { S::Scalar::one() };
         let Stepper { system, h, constants } = self.stepper;
-        let problem = Problem { system, h: *h, constants, time: self.time, start, target, sign };
-        let end = problem.prepare(path, &guess)?;
-        let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
+        let endpoints = Endpoints { system, h: *h, constants, time: self.time, start, target, sign };
+        let end = endpoints.prepare(path, &guess)?;
+        let solved = endpoints.newton(path, end, guess != Guess::Geodesic)?;
         let gap = target.map_or(zero, |target| solved.end.distance_squared(target).sqrt());
         Ok(Extremal {
             stepper: self.stepper,

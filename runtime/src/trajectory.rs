@@ -9,11 +9,11 @@ use core::iter::FusedIterator;
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
 pub struct Trajectory<'a, S: Clebsch> {
     stepper: &'a Stepper<S>,
-    place: Place<S>,
+    cursor: Cursor<S>,
 }
 
 /// Where the iterator stands.
-enum Place<S: Clebsch> {
+enum Cursor<S: Clebsch> {
     Start(State<S>),
     After(State<S>),
     End,
@@ -22,7 +22,7 @@ enum Place<S: Clebsch> {
 impl<'a, S: Clebsch> Trajectory<'a, S> {
     #[inline]
     pub(crate) fn new(stepper: &'a Stepper<S>, start: State<S>) -> Self {
-        Self { stepper, place: Place::Start(start) }
+        Self { stepper, cursor: Cursor::Start(start) }
     }
 }
 
@@ -31,14 +31,14 @@ impl<S: Clebsch> Iterator for Trajectory<'_, S> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let item = match &self.place {
-            Place::Start(start) => Ok(*start),
-            Place::After(state) => self.stepper.step(state),
-            Place::End => return None,
+        let item = match &self.cursor {
+            Cursor::Start(start) => Ok(*start),
+            Cursor::After(state) => self.stepper.step(state),
+            Cursor::End => return None,
         };
-        self.place = match item {
-            Ok(state) => Place::After(state),
-            Err(_) => Place::End,
+        self.cursor = match item {
+            Ok(state) => Cursor::After(state),
+            Err(_) => Cursor::End,
         };
         Some(item)
     }
@@ -48,21 +48,21 @@ impl<S: Clebsch> FusedIterator for Trajectory<'_, S> {}
 
 impl<S: Clebsch> Clone for Trajectory<'_, S> {
     fn clone(&self) -> Self {
-        let place = match &self.place {
-            Place::Start(state) => Place::Start(*state),
-            Place::After(state) => Place::After(*state),
-            Place::End => Place::End,
+        let cursor = match &self.cursor {
+            Cursor::Start(state) => Cursor::Start(*state),
+            Cursor::After(state) => Cursor::After(*state),
+            Cursor::End => Cursor::End,
         };
-        Self { stepper: self.stepper, place }
+        Self { stepper: self.stepper, cursor }
     }
 }
 
 impl<S: Clebsch> Debug for Trajectory<'_, S> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match &self.place {
-            Place::Start(state) => f.debug_tuple("Trajectory from").field(state).finish(),
-            Place::After(state) => f.debug_tuple("Trajectory after").field(state).finish(),
-            Place::End => f.write_str("Trajectory ended"),
+        match &self.cursor {
+            Cursor::Start(state) => f.debug_tuple("Trajectory from").field(state).finish(),
+            Cursor::After(state) => f.debug_tuple("Trajectory after").field(state).finish(),
+            Cursor::End => f.write_str("Trajectory ended"),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A path of many edges is begun with few, which cost little.
 
 use super::Node;
-use super::sweep::Problem;
+use super::sweep::Endpoints;
 use crate::newton::Curvature;
 use crate::{Real, Scalar, Space, Variational};
 use nalgebra::SVector;
@@ -17,7 +17,7 @@ const CORRECTIONS: usize = 3;
 /// The motions of the vertices of a coarse path, q_0 first.
 pub(super) type Motions<S, const M: usize> = [SVector<<S as crate::Clebsch>::Scalar, M>; COARSE + 1];
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least.
     ///
     /// The path has as many steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where
@@ -27,20 +27,20 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         let few = path.get_mut(..COARSE).filter(|_| ratio >= S::Scalar::from_f64((MANY / COARSE) as f64))?;
         let h = self.h * ratio;
         let constants = self.system.constants(h).ok()?;
-        let problem = Problem { h, constants: &constants, ..*self };
-        problem.fill(few, eta * ratio);
-        let mut end = problem.roll_out(few);
+        let endpoints = Endpoints { h, constants: &constants, ..*self };
+        endpoints.fill(few, eta * ratio);
+        let mut end = endpoints.roll_out(few);
         let mut motions = [SVector::from_element(S::Scalar::zero()); COARSE + 1];
         let mut bound = S::Scalar::one();
         for _ in 0..CORRECTIONS {
-            let gap = problem.end(&end, few.len());
-            let summary = problem.eliminate(few, &end, &gap, Curvature::kept());
+            let gap = endpoints.end(&end, few.len());
+            let summary = endpoints.eliminate(few, &end, &gap, Curvature::kept());
             let size = summary.size();
             // Written so that NaN is no progress.
             if !(summary.negative == 0 && size <= bound) {
                 return None;
             }
-            end = problem.correct(few, S::Scalar::one());
+            end = endpoints.correct(few, S::Scalar::one());
             motions.iter_mut().skip(1).zip(few.iter()).for_each(|(sum, node)| *sum += node.motion);
             // The next correction would be less than what few edges differ by from many.
             if size <= S::Scalar::from_ratio(1, 8) {

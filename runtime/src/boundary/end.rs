@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// What is known where a path ends.
 #[derive(Clone, Copy)]
-pub(super) struct End<T, const M: usize> {
+pub(super) struct PathEnd<T, const M: usize> {
     /// The smallest η that solves GᵀG η = Gᵀ(target − q_N); 0 where that is round-off.
     pub closing: SVector<T, M>,
     /// The orthogonal projector to the kernel of GᵀG, the motions that fix q_N; `None` where there are none.
@@ -26,7 +26,7 @@ pub(super) struct End<T, const M: usize> {
     pub curvature: Option<SMatrix<T, M, M>>,
 }
 
-impl<T: Real, const M: usize> End<T, M> {
+impl<T: Real, const M: usize> PathEnd<T, M> {
     /// The end of a path at `q`.
     ///
     /// The kernel is of eigenvalues below √ε of the largest.
@@ -102,14 +102,14 @@ impl<T: Real, const M: usize> End<T, M> {
 
 #[cfg(test)]
 mod tests {
-    use super::End;
+    use super::PathEnd;
     use nalgebra::Vector3;
 
     #[test]
     fn chords_become_arcs() {
         for angle in [1e-9_f64, 0.5, 3.1] {
             let radius = 3.0;
-            let end = End {
+            let end = PathEnd {
                 closing: Vector3::x(),
                 kernel: None,
                 distance: 2.0 * radius * (angle / 2.0).sin(),

@@ -1,6 +1,6 @@
 //! Free final time: the step size is chosen too.
 
-use super::sweep::Problem;
+use super::sweep::Endpoints;
 use super::{Boundary, Guess, Node};
 use crate::newton::{Sample, Trial, check_limits, critical_step_size};
 use crate::{Error, Real, Scalar, Variational};
@@ -36,11 +36,11 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
             let system = &self.stepper.system;
             let constants = system.constants(h)?;
             let sign = S::Scalar::one();
-            let problem = Problem { system, h, constants: &constants, time: self.time, start, target, sign };
-            let end = problem.prepare(path, &guess)?;
-            let solved = problem.newton(path, end, guess != Guess::Geodesic)?;
+            let endpoints = Endpoints { system, h, constants: &constants, time: self.time, start, target, sign };
+            let end = endpoints.prepare(path, &guess)?;
+            let solved = endpoints.newton(path, end, guess != Guess::Geodesic)?;
             guess = Guess::Path;
-            let sample = problem.slope(path, &solved.end, third * h)?;
+            let sample = endpoints.slope(path, &solved.end, third * h)?;
             Ok(Trial::Found { answer: h, sample, sweeps: solved.sweeps })
         };
         let (h, _) = critical_step_size(steps, self.stepper.h, accuracy, trial)?;
@@ -48,13 +48,13 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
     }
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// The derivative of the sum by h at a fixed path.
     fn slope(&self, path: &[Node<S, M>], end: &S::Configuration, step: S::Scalar) -> Result<Sample<S::Scalar>, Error> {
         let [longer, shorter] = [self.h + step, self.h - step].map(|h| -> Result<S::Scalar, Error> {
             let constants = self.system.constants(h)?;
-            let problem = Problem { h, constants: &constants, ..*self };
-            Ok(problem.sum(path, end))
+            let endpoints = Endpoints { h, constants: &constants, ..*self };
+            Ok(endpoints.sum(path, end))
         });
         let (longer, shorter) = (longer?, shorter?);
         let size = (longer.abs() + shorter.abs()) / self.h;

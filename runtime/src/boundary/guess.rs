@@ -3,7 +3,7 @@
 use super::Node;
 use super::coarse::interpolated;
 use super::newton::unreachable;
-use super::sweep::Problem;
+use super::sweep::Endpoints;
 use crate::{Error, Real, Scalar, Variational};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -25,7 +25,7 @@ pub enum Guess<T, const M: usize> {
 /// Corrections of a constant group element, or of a whole path, until its end is near the target.
 const PASSES: usize = 60;
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest. Returns q_N.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! Newton's method on a path, and what is done where it does not contract.
 
 use super::Node;
-use super::end::End;
-use super::sweep::Problem;
-use super::vertex::Summary;
+use super::end::PathEnd;
+use super::sweep::Endpoints;
+use super::vertex::PathSummary;
 use crate::newton::{Curvature, Share, adapted};
 use crate::{Error, Real, Scalar, Variational};
 use num_traits::{One, Zero};
@@ -16,8 +16,8 @@ const HALVINGS: usize = 6;
 const DAMPING_LIMIT: f64 = 1e12;
 
 /// A path on which the action is critical.
-pub(super) struct Solved<S: Variational<M, Scalar: Real>, const M: usize> {
-    pub summary: Summary<S::Scalar, M>,
+pub(super) struct CriticalPath<S: Variational<M, Scalar: Real>, const M: usize> {
+    pub summary: PathSummary<S::Scalar, M>,
     pub end: S::Configuration,
     pub sweeps: u32,
 }
@@ -51,7 +51,7 @@ impl<T: Real> Progress<T> {
     }
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
@@ -70,7 +70,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         path: &mut [Node<S, M>],
         end: S::Configuration,
         any_index: bool,
-    ) -> Result<Solved<S, M>, Error> {
+    ) -> Result<CriticalPath<S, M>, Error> {
         let (mut end, mut any_index) = (end, any_index);
         let mut before: Option<Progress<S::Scalar>> = None;
         let mut curvature = Curvature::kept();
@@ -84,7 +84,11 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
             }
             let damped = curvature.added().0 > S::Scalar::zero();
             if !damped && has_converged(&summary, before.as_ref(), gap.is_closed() || gap.is_orthogonal(), curvature) {
-                return if gap.is_reached() { Ok(Solved { summary, end, sweeps }) } else { Err(unreachable(&gap)) };
+                return if gap.is_reached() {
+                    Ok(CriticalPath { summary, end, sweeps })
+                } else {
+                    Err(unreachable(&gap))
+                };
             }
             let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
             if curvature.is_mirrored() && at_saddle {
@@ -114,7 +118,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
                 if is_last(&summary, before.as_ref())
                     && let Some(summary) = self.found(path, &end, &summary)
                 {
-                    return Ok(Solved { summary, end, sweeps });
+                    return Ok(CriticalPath { summary, end, sweeps });
                 }
             } else {
                 let is_near_any = any_index && before.as_ref().is_some_and(Progress::is_small);
@@ -136,8 +140,8 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         &self,
         path: &mut [Node<S, M>],
         end: &S::Configuration,
-        before: &Summary<S::Scalar, M>,
-    ) -> Option<Summary<S::Scalar, M>> {
+        before: &PathSummary<S::Scalar, M>,
+    ) -> Option<PathSummary<S::Scalar, M>> {
         let gap = self.end(end, path.len());
         let summary = self.measure(path, end, &gap, before);
         let unit = S::Scalar::from_f64(4.0) * S::Scalar::EPSILON * summary.edges.sqrt();
@@ -149,7 +153,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     #[inline]
     fn is_progress(
         &self,
-        summary: &Summary<S::Scalar, M>,
+        summary: &PathSummary<S::Scalar, M>,
         before: Option<&Progress<S::Scalar>>,
         any_index: bool,
         curvature: Curvature<S::Scalar>,
@@ -181,7 +185,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
     fn descend(
         &self,
         path: &mut [Node<S, M>],
-        summary: &Summary<S::Scalar, M>,
+        summary: &PathSummary<S::Scalar, M>,
     ) -> Option<(S::Configuration, S::Scalar)> {
         let size = summary.size();
         let before = Progress { size, action: summary.action, decrement: summary.decrement };
@@ -223,7 +227,7 @@ fn after_failure<T: Real>(curvature: Curvature<T>, near: bool) -> Curvature<T> {
 /// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
 #[inline]
 fn has_converged<T: Real, const M: usize>(
-    summary: &Summary<T, M>,
+    summary: &PathSummary<T, M>,
     before: Option<&Progress<T>>,
     closed: bool,
     curvature: Curvature<T>,
@@ -243,7 +247,7 @@ fn has_converged<T: Real, const M: usize>(
 
 /// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
 #[inline]
-fn is_last<T: Real, const M: usize>(summary: &Summary<T, M>, before: Option<&Progress<T>>) -> bool {
+fn is_last<T: Real, const M: usize>(summary: &PathSummary<T, M>, before: Option<&Progress<T>>) -> bool {
     let size = summary.size();
     let contraction = |before: &Progress<T>| size / before.size;
     size <= T::EPSILON.sqrt()
@@ -251,6 +255,6 @@ fn is_last<T: Real, const M: usize>(summary: &Summary<T, M>, before: Option<&Pro
 }
 
 /// The gap that is left where none of it can be closed.
-pub(super) fn unreachable<T: Real, const M: usize>(end: &End<T, M>) -> Error {
+pub(super) fn unreachable<T: Real, const M: usize>(end: &PathEnd<T, M>) -> Error {
     Error::Unreachable { distance: end.distance.to_f64() }
 }

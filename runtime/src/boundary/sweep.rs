@@ -12,9 +12,9 @@
 //! Pekarsky and Shkoller, *Discrete Euler–Poincaré and Lie–Poisson equations* (1999), for actions on groups.
 
 use super::Node;
-use super::end::End;
+use super::end::PathEnd;
 use super::pivot::Feedback;
-use super::vertex::{Pending, Summary};
+use super::vertex::{PathSummary, Pending};
 use crate::newton::Curvature;
 use crate::{Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
@@ -22,7 +22,7 @@ use num_traits::Zero;
 
 /// Fixed endpoints for a system and a step size.
 #[derive(Clone, Copy)]
-pub(super) struct Problem<'a, S: Variational<M, Scalar: Real>, const M: usize> {
+pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub system: &'a S,
     pub h: S::Scalar,
     pub constants: &'a S::Constants,
@@ -35,13 +35,13 @@ pub(super) struct Problem<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub sign: S::Scalar,
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// What is known of a path of so many edges that ends at `q`.
     #[inline]
-    pub fn end(&self, q: &S::Configuration, edges: usize) -> End<S::Scalar, M> {
+    pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<S::Scalar, M> {
         match self.target {
-            Some(target) => End::of(self.system, q, target),
-            None => End::free(&self.system.endpoint(self.time_of_end(edges), q), q.max_abs()),
+            Some(target) => PathEnd::of(self.system, q, target),
+            None => PathEnd::free(&self.system.endpoint(self.time_of_end(edges), q), q.max_abs()),
         }
     }
 
@@ -56,10 +56,10 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         &self,
         path: &mut [Node<S, M>],
         last_vertex: &S::Configuration,
-        end: &End<S::Scalar, M>,
+        end: &PathEnd<S::Scalar, M>,
         curvature: Curvature<S::Scalar>,
-    ) -> Summary<S::Scalar, M> {
-        let mut summary = Summary::of_nothing(path.len());
+    ) -> PathSummary<S::Scalar, M> {
+        let mut summary = PathSummary::of_nothing(path.len());
         let Some((last, rest)) = path.split_last_mut() else { return summary };
         let mut pending = self.eliminate_end(rest.len(), last, last_vertex, end, curvature, &mut summary);
         let mut next = &last.configuration;
@@ -82,9 +82,9 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         index: usize,
         last: &mut Node<S, M>,
         last_vertex: &S::Configuration,
-        end: &End<S::Scalar, M>,
+        end: &PathEnd<S::Scalar, M>,
         curvature: Curvature<S::Scalar>,
-        summary: &mut Summary<S::Scalar, M>,
+        summary: &mut PathSummary<S::Scalar, M>,
     ) -> Pending<S::Scalar, M> {
         let edge = self.edge(index, &last.configuration, &last.increment, last_vertex);
         summary.count(&edge);
@@ -100,9 +100,9 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Problem<'_, S, M> {
         &self,
         path: &mut [Node<S, M>],
         last_vertex: &S::Configuration,
-        end: &End<S::Scalar, M>,
-        before: &Summary<S::Scalar, M>,
-    ) -> Summary<S::Scalar, M> {
+        end: &PathEnd<S::Scalar, M>,
+        before: &PathSummary<S::Scalar, M>,
+    ) -> PathSummary<S::Scalar, M> {
         let mut next = last_vertex;
         let edges = path.iter_mut().enumerate().rev().map(|(index, node)| {
             let momenta = self.momenta(index, &node.configuration, &node.increment, next);

@@ -1,6 +1,6 @@
 //! One vertex in the backward sweep: its block of the Hessian, its elimination, and the sums over all of them.
 
-use super::end::End;
+use super::end::PathEnd;
 use super::pivot::{Feedback, Solution, solve};
 use crate::linear::rows;
 use crate::newton::Curvature;
@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// What a backward sweep tells of the path.
 #[derive(Clone, Copy)]
-pub(super) struct Summary<T, const M: usize> {
+pub(super) struct PathSummary<T, const M: usize> {
     /// Σ ℓd
     pub action: T,
     /// Twice what Newton's correction would take from the action.
@@ -42,7 +42,7 @@ pub(super) struct Pending<T, const M: usize> {
     before: SVector<T, M>,
 }
 
-impl<T: Real, const M: usize> Summary<T, M> {
+impl<T: Real, const M: usize> PathSummary<T, M> {
     /// The size of Newton's correction relative to the path, in the norm of the Hessian.
     ///
     /// It is compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
@@ -78,7 +78,7 @@ impl<T: Real, const M: usize> Summary<T, M> {
 
     /// Action, momenta and residual of another path near this one, from its last edge to its first.
     #[inline]
-    pub fn measured(&self, edges: impl Iterator<Item = Momenta<T, M>>, end: &End<T, M>) -> Self {
+    pub fn measured(&self, edges: impl Iterator<Item = Momenta<T, M>>, end: &PathEnd<T, M>) -> Self {
         let mut summary = Self { action: T::zero(), momenta: T::zero(), residual_squared: T::zero(), ..*self };
         let mut later: Option<SVector<T, M>> = None;
         for Momenta { lagrangian, before, after } in edges {
@@ -146,7 +146,7 @@ impl<T: Real, const M: usize> Summary<T, M> {
     pub fn eliminate_end(
         &mut self,
         edge: &Edge<T, M>,
-        end: &End<T, M>,
+        end: &PathEnd<T, M>,
         sign: T,
         curvature: Curvature<T>,
         feedback: Feedback<'_, T, M>,

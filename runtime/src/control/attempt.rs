@@ -9,7 +9,7 @@
 
 use super::barrier::Barrier;
 use super::iterate::Iterate;
-use super::newton::Solved;
+use super::newton::CriticalPlan;
 use super::sweep::Problem;
 use super::{Stage, Target};
 use crate::{Controlled, Error, Real, Space};
@@ -34,7 +34,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     ///
     /// # Errors
     /// Those of [`newton`](Self::newton), of the attempt that came nearest. The stages hold the inputs of the guess then.
-    pub fn attempt(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<Solved<S, D, U, C>, Error> {
+    pub fn attempt(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<CriticalPlan<S, D, U, C>, Error> {
         plan.iter_mut().for_each(|stage| stage.guess = stage.input);
         let is_warm = plan.iter().any(|stage| stage.next_costate.max_abs() > S::Scalar::zero());
         let mut sweeps = 0;
@@ -56,12 +56,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// What was found, or else what the next attempt finds from the guess. An error is that of the attempt that came nearer.
     fn unless_found(
         &self,
-        found: Result<Solved<S, D, U, C>, Error>,
+        found: Result<CriticalPlan<S, D, U, C>, Error>,
         plan: &mut [Stage<S, D, U, C>],
         approach: Approach,
         variation: u32,
         sweeps: &mut u32,
-    ) -> Result<Solved<S, D, U, C>, Error> {
+    ) -> Result<CriticalPlan<S, D, U, C>, Error> {
         let error = match found {
             Err(error) if may_be_found(&error) => error,
             _ => return found,

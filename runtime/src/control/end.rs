@@ -16,7 +16,7 @@ pub(super) struct Goal<'a, X, T, const D: usize> {
 
 /// What is known where a plan ends. A change δ arrives where E δ = e.
 #[derive(Clone, Copy)]
-pub(super) struct End<T, const D: usize> {
+pub(super) struct PlanEnd<T, const D: usize> {
     /// e, as lengths
     pub lack: SVector<T, D>,
     /// E: the lengths of δ, projected to those that the target fixes.
@@ -53,13 +53,13 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
     ///
     /// What small motions close of a gap is taken for the tangential part of the chord of a circle and lengthened to its arc: exact in
     /// flat spaces and for the rotations about one axis.
-    pub fn end<S, const U: usize, const C: usize>(&self, system: &S, x: &X) -> End<T, D>
+    pub fn end<S, const U: usize, const C: usize>(&self, system: &S, x: &X) -> PlanEnd<T, D>
     where
         S: Controlled<D, U, C, Scalar = T, Place = X>,
     {
         let zero = T::zero();
         let Some(goal) = self.target.place() else {
-            return End {
+            return PlanEnd {
                 lack: SVector::zero(),
                 slope: SMatrix::zero(),
                 pull: SVector::zero(),
@@ -84,7 +84,7 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
         }
         let slope = SMatrix::from_fn(|i, j| projector[(i, j)] * self.lengths[j]);
         let is_asked = |i: usize| if i < asked { T::one() } else { zero };
-        End {
+        PlanEnd {
             lack,
             slope,
             pull: SVector::from_fn(|i, _| arrival.residual[i] * is_asked(i)),
@@ -110,7 +110,7 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
     }
 
     /// The multipliers ν with the covector Eᵀν nearest to this one, for an end where E is given.
-    pub fn multipliers(&self, end: &End<T, D>, covector: &SVector<T, D>) -> SVector<T, D> {
+    pub fn multipliers(&self, end: &PlanEnd<T, D>, covector: &SVector<T, D>) -> SVector<T, D> {
         let lengths = &self.lengths;
         let scaled = SVector::<T, D>::from_fn(|i, _| covector[i] / lengths[i]);
         let projector = SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]);
@@ -118,7 +118,7 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> End<T, D> {
+impl<T: Real, const D: usize> PlanEnd<T, D> {
     /// Whether the gap is round-off.
     pub fn is_closed(&self) -> bool {
         self.distance <= T::from_f64(256.0) * T::EPSILON * self.scale

@@ -7,7 +7,7 @@
 
 use super::Stage;
 use super::search::Descent;
-use super::sweep::{Problem, Summary};
+use super::sweep::{PlanSummary, Problem};
 use crate::{Controlled, Real, Scalar};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -22,7 +22,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         &self,
         plan: &mut [Stage<S, D, U, C>],
         descent: &Descent<'_, S::Scalar, D>,
-        summary: &Summary<S::Scalar, D, U>,
+        summary: &PlanSummary<S::Scalar, D, U>,
         magnitude: S::Scalar,
     ) -> Option<S::Place> {
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());

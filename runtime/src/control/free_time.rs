@@ -7,7 +7,7 @@
 //! the multipliers kept. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent, *Algorithms
 //! for Minimization without Derivatives*, 1973, chapter 4); each plan is the guess of the next.
 
-use super::newton::Solved;
+use super::newton::CriticalPlan;
 use super::sweep::Problem;
 use super::{Control, Optimum, Stage, Target};
 use crate::newton::{Sample, Trial, check_limits, critical_step_size};
@@ -32,7 +32,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
         let trial = |h| Ok(self.trial(start, &target, h, plan).unwrap_or_else(Trial::Lost));
         let ((solved, h), sweeps) = critical_step_size(steps, self.h, accuracy, trial)?;
-        Ok(Optimum::new(plan, Solved { sweeps, ..solved }, h))
+        Ok(Optimum::new(plan, CriticalPlan { sweeps, ..solved }, h))
     }
 
     /// The plan for a step size, and dV/dh there.
@@ -43,7 +43,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         target: &Target<S::Place>,
         h: S::Scalar,
         plan: &mut [Stage<S, D, U, C>],
-    ) -> Result<Trial<S::Scalar, (Solved<S, D, U, C>, S::Scalar)>, Error> {
+    ) -> Result<Trial<S::Scalar, (CriticalPlan<S, D, U, C>, S::Scalar)>, Error> {
         let constants = self.system.prepare(h)?;
         let problem = self.problem(start, target, h, &constants);
         let solved = problem.attempt(plan)?;

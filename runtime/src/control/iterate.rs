@@ -1,10 +1,10 @@
 //! What is known between two sweeps, and what is decided by it.
 
 use super::barrier::Barrier;
-use super::end::End;
+use super::end::PlanEnd;
 use super::gramian::Gramian;
 use super::search::Made;
-use super::sweep::{Settings, Summary};
+use super::sweep::{PlanSummary, Settings};
 use crate::Real;
 use crate::newton::{Curvature, Share, adapted};
 use crate::space::larger;
@@ -118,7 +118,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// the curvature of the steps is counted less and less, down to that of the price alone.
     pub fn judge<const U: usize>(
         &mut self,
-        summary: &Summary<T, D, U>,
+        summary: &PlanSummary<T, D, U>,
         gramian: &Gramian<T, D>,
         stiffer: &SMatrix<T, D, D>,
     ) -> Use {
@@ -176,7 +176,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
     /// From now on corrections close the gap: its price becomes a weight, with multipliers that leave this price's force on the end,
     /// Eᵀ(ν − Re), as it is.
-    pub fn close_gap(&mut self, force: SVector<T, D>, end: &End<T, D>, motions: usize) {
+    pub fn close_gap(&mut self, force: SVector<T, D>, end: &PlanEnd<T, D>, motions: usize) {
         let [by_motion, by_momentum] = self.settings.gap_price.unwrap_or([T::zero(); 2]);
         let price = |i: usize| if i < motions { by_motion } else { by_momentum };
         self.settings.weight = SMatrix::from_fn(|i, j| if i == j { price(i) } else { T::zero() });
@@ -239,7 +239,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     }
 
     /// The size of prices, for a price that vanishes at the solution a small part of the largest.
-    pub fn magnitude<const U: usize>(&mut self, summary: &Summary<T, D, U>, decrement: T) -> T {
+    pub fn magnitude<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, decrement: T) -> T {
         self.largest = larger(self.largest, summary.magnitude + decrement.abs());
         summary.magnitude + T::EPSILON.sqrt() * self.largest
     }
@@ -260,7 +260,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     }
 
     /// What is done after a sweep with a correction of this size, of which `unit` is round-off.
-    pub fn verdict(&mut self, end: &End<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
+    pub fn verdict(&mut self, end: &PlanEnd<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
         let seen = T::EPSILON.sqrt();
         let stagnates = matches!(self.before, Some(before) if before <= seen && size > before * T::from_ratio(1, 8));
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };

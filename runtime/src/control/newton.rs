@@ -3,11 +3,11 @@
 use super::Stage;
 use super::attempt::Approach;
 use super::barrier::Barrier;
-use super::end::End;
+use super::end::PlanEnd;
 use super::gramian::Gramian;
 use super::iterate::{Iterate, ROUNDS, Use, Verdict, index};
 use super::search::{Descent, Evidence};
-use super::sweep::{Problem, Settings, Summary};
+use super::sweep::{PlanSummary, Problem, Settings};
 use crate::newton::Curvature;
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Scalar, Space};
@@ -24,10 +24,10 @@ const STIRS: u32 = 3;
 const STALLS: u32 = 8;
 
 /// A plan on which the price is critical.
-pub(super) struct Solved<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
-    pub summary: Summary<S::Scalar, D, U>,
+pub(super) struct CriticalPlan<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
+    pub summary: PlanSummary<S::Scalar, D, U>,
     pub last: S::Place,
-    pub end: End<S::Scalar, D>,
+    pub end: PlanEnd<S::Scalar, D>,
     pub negative: usize,
     pub sweeps: u32,
 }
@@ -42,7 +42,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &mut [Stage<S, D, U, C>],
         approach: Approach,
         sweeps: &mut u32,
-    ) -> Result<Solved<S, D, U, C>, Error> {
+    ) -> Result<CriticalPlan<S, D, U, C>, Error> {
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
         let bounds = S::Scalar::from_f64((plan.len() * C) as f64);
         let unit = unit(plan.len(), C);
@@ -176,9 +176,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 
     /// The end of a plan; round-off of its gap is relative to the largest place.
-    fn end(&self, plan: &[Stage<S, D, U, C>], last: &S::Place) -> End<S::Scalar, D> {
+    fn end(&self, plan: &[Stage<S, D, U, C>], last: &S::Place) -> PlanEnd<S::Scalar, D> {
         let end = self.goal.end(self.system, last);
-        End { scale: plan.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
+        PlanEnd { scale: plan.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
     }
 
     /// The last sweep: exact second derivatives as they are, for gains and the index.
@@ -187,19 +187,19 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &mut [Stage<S, D, U, C>],
         now: Iterate<S::Place, S::Scalar, D>,
         sweeps: u32,
-    ) -> Result<Solved<S, D, U, C>, Error> {
+    ) -> Result<CriticalPlan<S, D, U, C>, Error> {
         let end = self.end(plan, &now.last);
         let settings = Settings { curvature: Curvature::kept(), is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
-        let closed = End { lack: SVector::from_element(S::Scalar::zero()), ..end };
+        let closed = PlanEnd { lack: SVector::from_element(S::Scalar::zero()), ..end };
         let summary = self.eliminate(plan, &now.last, &closed, &settings)?;
         let negative = index(summary.negative, now.rank, &Gramian::of(&summary.gramian));
-        Ok(Solved { summary, last: now.last, end, negative, sweeps })
+        Ok(CriticalPlan { summary, last: now.last, end, negative, sweeps })
     }
 
     /// Why nothing was found.
     #[cold]
-    fn failure(&self, plan: &[Stage<S, D, U, C>], end: &End<S::Scalar, D>, size: S::Scalar, sweeps: u32) -> Error {
+    fn failure(&self, plan: &[Stage<S, D, U, C>], end: &PlanEnd<S::Scalar, D>, size: S::Scalar, sweeps: u32) -> Error {
         match self.worst_bound(plan) {
             Some((stage, bound, violation)) => {
                 Error::Infeasible { bound: S::BOUNDS[bound], stage, violation: violation.to_f64() }

@@ -1,7 +1,7 @@
 //! What a problem of optimal control is answered with.
 
 use super::Stage;
-use super::newton::Solved;
+use super::newton::CriticalPlan;
 use crate::{Controlled, Real};
 use core::fmt::{self, Debug, Formatter};
 use nalgebra::SVector;
@@ -21,7 +21,7 @@ pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, con
 }
 
 impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Optimum<'p, S, D, U, C> {
-    pub(super) fn new(plan: &'p [Stage<S, D, U, C>], solved: Solved<S, D, U, C>, h: S::Scalar) -> Self {
+    pub(super) fn new(plan: &'p [Stage<S, D, U, C>], solved: CriticalPlan<S, D, U, C>, h: S::Scalar) -> Self {
         Self {
             plan,
             h,

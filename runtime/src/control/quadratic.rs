@@ -52,7 +52,7 @@ impl<T: Real, const D: usize> Value<T, D> {
     /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e)
     pub fn of_end(
         endpoint: &EndpointExpansion<T, D>,
-        end: &super::end::End<T, D>,
+        end: &super::end::PlanEnd<T, D>,
         multipliers: &SVector<T, D>,
         weight: &SMatrix<T, D, D>,
     ) -> Self {
@@ -70,7 +70,7 @@ impl<T: Real, const D: usize> Value<T, D> {
     /// φ + ½ w d² with the squared distance d² to the target, for configurations and for momenta.
     pub fn of_priced_end(
         endpoint: &EndpointExpansion<T, D>,
-        end: &super::end::End<T, D>,
+        end: &super::end::PlanEnd<T, D>,
         motions: usize,
         [by_motion, by_momentum]: [T; 2],
     ) -> Self {

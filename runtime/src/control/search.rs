@@ -4,10 +4,10 @@
 //! ν⁺ and z⁺ that come next and the Hessian that the backward sweep had: its slope is known, and near a solution whole steps pass.
 
 use super::Stage;
-use super::end::End;
+use super::end::PlanEnd;
 use super::gramian::Gramian;
 use super::rollout::Rolled;
-use super::sweep::{Problem, Settings, Summary};
+use super::sweep::{PlanSummary, Problem, Settings};
 use crate::space::larger;
 use crate::{Controlled, Real, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -18,7 +18,7 @@ const TRIALS: usize = 12;
 
 /// The plan that a correction starts from.
 pub(super) struct Descent<'a, T, const D: usize> {
-    end: &'a End<T, D>,
+    end: &'a PlanEnd<T, D>,
     pub settings: Settings<T, D>,
     /// Γ⁺
     inverse: SMatrix<T, D, D>,
@@ -55,8 +55,8 @@ pub(super) struct Made<X, T, const D: usize> {
 impl<'a, T: Real, const D: usize> Descent<'a, T, D> {
     /// From what a sweep told.
     pub fn of<const U: usize>(
-        summary: &Summary<T, D, U>,
-        end: &'a End<T, D>,
+        summary: &PlanSummary<T, D, U>,
+        end: &'a PlanEnd<T, D>,
         gramian: &Gramian<T, D>,
         settings: &Settings<T, D>,
     ) -> Self {
@@ -82,14 +82,14 @@ impl<'a, T: Real, const D: usize> Descent<'a, T, D> {
     }
 
     /// By how much the augmented Lagrangian is larger after a step.
-    pub fn difference<X>(&self, rolled: &Rolled<X, T>, change: &SVector<T, D>, end: &End<T, D>, fraction: T) -> T {
+    pub fn difference<X>(&self, rolled: &Rolled<X, T>, change: &SVector<T, D>, end: &PlanEnd<T, D>, fraction: T) -> T {
         let penalties = self.penalty(change, end) - self.penalty(change, self.end);
         let barriers = self.settings.barrier.weight * rolled.slack_logarithms + fraction * rolled.excess_price;
         rolled.price - self.price - barriers + penalties
     }
 
     /// ν⁺·g + ½ g·Rg, or ½ w d²
-    fn penalty(&self, change: &SVector<T, D>, end: &End<T, D>) -> T {
+    fn penalty(&self, change: &SVector<T, D>, end: &PlanEnd<T, D>) -> T {
         let half = T::from_ratio(1, 2);
         if let Some([by_motion, by_momentum]) = self.settings.gap_price {
             return (by_motion * end.squares[0] + by_momentum * end.squares[1]) * half;

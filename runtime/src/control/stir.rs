@@ -1,7 +1,7 @@
 //! The way out of symmetry: where no first derivative leads to the target, inputs are varied.
 
 use super::Stage;
-use super::sweep::{Problem, Summary};
+use super::sweep::{PlanSummary, Problem};
 use crate::{Controlled, Real, Scalar};
 use nalgebra::SVector;
 use num_traits::Zero;
@@ -37,7 +37,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     pub fn stir(
         &self,
         plan: &mut [Stage<S, D, U, C>],
-        summary: &Summary<S::Scalar, D, U>,
+        summary: &PlanSummary<S::Scalar, D, U>,
         far: S::Scalar,
         attempt: u32,
     ) {

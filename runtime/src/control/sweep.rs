@@ -13,7 +13,7 @@
 
 use super::Stage;
 use super::barrier::Barrier;
-use super::end::{End, Goal};
+use super::end::{Goal, PlanEnd};
 use super::gramian::Gramian;
 use super::pivot::Fall;
 use super::quadratic::{Policy, Quadratic, Value};
@@ -50,7 +50,7 @@ pub(super) struct Settings<T, const D: usize> {
 }
 
 /// What a backward sweep tells of a plan.
-pub(super) struct Summary<T, const D: usize, const U: usize> {
+pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     /// Σℓ + φ
     pub price: T,
     /// Σ|ℓ| + |φ|
@@ -77,8 +77,8 @@ pub(super) struct Summary<T, const D: usize, const U: usize> {
     yielding: T,
 }
 
-impl<T: Real, const D: usize, const U: usize> Summary<T, D, U> {
-    fn of_end(price: T, end: &End<T, D>, costate: SVector<T, D>) -> Self {
+impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
+    fn of_end(price: T, end: &PlanEnd<T, D>, costate: SVector<T, D>) -> Self {
         Self {
             price,
             magnitude: price.abs(),
@@ -139,15 +139,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         &self,
         plan: &mut [Stage<S, D, U, C>],
         last: &S::Place,
-        end: &End<S::Scalar, D>,
+        end: &PlanEnd<S::Scalar, D>,
         settings: &Settings<S::Scalar, D>,
-    ) -> Result<Summary<S::Scalar, D, U>, Error> {
+    ) -> Result<PlanSummary<S::Scalar, D, U>, Error> {
         let endpoint = self.system.endpoint_expanded(self.time_after(plan.len()), last);
         let mut value = match settings.gap_price {
             Some(price) => Value::of_priced_end(&endpoint, end, S::MOTIONS, price),
             None => Value::of_end(&endpoint, end, &settings.multipliers, &settings.weight),
         };
-        let mut summary = Summary::of_end(endpoint.price, end, value.costate);
+        let mut summary = PlanSummary::of_end(endpoint.price, end, value.costate);
         for (index, stage) in plan.iter_mut().enumerate().rev() {
             let t = self.time_after(index);
             let step =

@@ -35,7 +35,7 @@ pub(super) enum Functions<T> {
 }
 
 /// What stays the same from one duplication to the next.
-struct Motion<T> {
+struct Curve<T> {
     functions: Functions<T>,
     alpha: T,
     e: [T; 3],
@@ -50,7 +50,7 @@ struct Motion<T> {
 }
 
 /// (Q, Y, Z) with ℘ − e = Q/Z² and ½℘′ = Y/Z³: poles of ℘ are points as others.
-struct Point<T> {
+struct CurvePoint<T> {
     q: [T; 3],
     y: T,
     z: T,
@@ -65,16 +65,16 @@ pub(super) fn duplicated<T: Real>(
     p: T,
     times: u32,
 ) -> Option<[T; 3]> {
-    let motion = Motion::new(functions, invariants);
-    let mut point = motion.start(p)?;
+    let curve = Curve::new(functions, invariants);
+    let mut point = curve.start(p)?;
     for _ in 1..times {
-        let (above, below) = motion.twice(&d, &point);
+        let (above, below) = curve.twice(&d, &point);
         d = functions.quotient(&above, &below);
-        point = motion.settled(motion.point_twice(&point));
+        point = curve.settled(curve.point_twice(&point));
     }
-    let (above, below) = motion.twice(&d, &point);
+    let (above, below) = curve.twice(&d, &point);
     Some(match functions {
-        Functions::OnAxes(x) => motion.on_all_axes(&x, &above, &below, &motion.point_twice(&point)),
+        Functions::OnAxes(x) => curve.on_all_axes(&x, &above, &below, &curve.point_twice(&point)),
         Functions::InPowers(_) => functions.quotient(&above, &below),
     })
 }
@@ -151,7 +151,7 @@ impl<T: Real> Functions<T> {
     }
 }
 
-impl<T: Real> Motion<T> {
+impl<T: Real> Curve<T> {
     fn new(functions: Functions<T>, [alpha, epsilon]: [T; 2]) -> Self {
         let f = functions;
         let [x, products, differences] = f.of_reciprocals();
@@ -173,16 +173,16 @@ impl<T: Real> Motion<T> {
     /// The point where ℘ is `p`, before half a period: there ℘′ is negative.
     ///
     /// Half a period is at least π/2 over the root of the largest difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
-    fn start(&self, p: T) -> Option<Point<T>> {
+    fn start(&self, p: T) -> Option<CurvePoint<T>> {
         let q = self.functions.plus(&self.e.map(|e| -e), p);
         let y = -self.functions.determinant(&q).sqrt();
-        (-self.linear < T::from_ratio(36, 100)).then_some(Point { q, y, z: T::one() })
+        (-self.linear < T::from_ratio(36, 100)).then_some(CurvePoint { q, y, z: T::one() })
     }
 
     /// d of twice the time: what is above and below the bar.
-    fn twice(&self, d: &[T; 3], point: &Point<T>) -> ([T; 3], [T; 3]) {
+    fn twice(&self, d: &[T; 3], point: &CurvePoint<T>) -> ([T; 3], [T; 3]) {
         let f = self.functions;
-        let Point { y, z, .. } = *point;
+        let CurvePoint { y, z, .. } = *point;
         let two = T::one() + T::one();
         let (zz, x) = (z * z, self.abscissa(point));
         let (linear, constant) = (self.linear * zz * zz, self.constant * zz * zz * zz);
@@ -197,19 +197,19 @@ impl<T: Real> Motion<T> {
     }
 
     /// The point at twice the time.
-    fn point_twice(&self, Point { q, y, z }: &Point<T>) -> Point<T> {
+    fn point_twice(&self, CurvePoint { q, y, z }: &CurvePoint<T>) -> CurvePoint<T> {
         let f = self.functions;
         let (squares, quartic) = (f.product(q, q), *z * *z * *z * *z);
         let n = core::array::from_fn(|i| squares[i] - quartic * self.gaps[i]);
-        Point { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
+        CurvePoint { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
     }
 
     /// The same point with numbers of the size of 1, and with the Q of which no digits cancel from their mean, X: by themselves the errors of
     /// their differences would grow fourfold each time.
-    fn settled(&self, Point { q, y, z }: Point<T>) -> Point<T> {
+    fn settled(&self, CurvePoint { q, y, z }: CurvePoint<T>) -> CurvePoint<T> {
         let size = (self.functions.trace(&q) + z * z).recip();
         let scale = size.sqrt();
-        let point = Point { q: q.map(|entry| entry * size), y: y * size * scale, z: z * scale };
+        let point = CurvePoint { q: q.map(|entry| entry * size), y: y * size * scale, z: z * scale };
         let (x, zz) = (self.abscissa(&point), point.z * point.z);
         let from_mean = self.functions.plus(&self.e.map(|e| -(e * zz)), x);
         let q = match self.functions {
@@ -218,16 +218,22 @@ impl<T: Real> Motion<T> {
             }
             Functions::InPowers(_) => from_mean,
         };
-        Point { q, ..point }
+        CurvePoint { q, ..point }
     }
 
     /// X = ⅓ Σ Q_i, as the sum of the roots vanishes.
-    fn abscissa(&self, point: &Point<T>) -> T {
+    fn abscissa(&self, point: &CurvePoint<T>) -> T {
         T::from_ratio(1, 3) * self.functions.trace(&point.q)
     }
 
     /// All d_i from d_j on the axis where |x_j| is least, as the error of the angle is.
-    fn on_all_axes(&self, x: &[T; 3], above: &[T; 3], below: &[T; 3], Point { q, y, z }: &Point<T>) -> [T; 3] {
+    fn on_all_axes(
+        &self,
+        x: &[T; 3],
+        above: &[T; 3],
+        below: &[T; 3],
+        CurvePoint { q, y, z }: &CurvePoint<T>,
+    ) -> [T; 3] {
         let [a, b, c] = x.map(|x| x.abs());
         let best = match (b < a, c < a && c < b) {
             (_, true) => 2,

@@ -12,7 +12,7 @@ use super::{Equation, Jacobian, allowed, is_much_smaller, size};
 use crate::space::larger;
 use crate::{Error, Real, Space};
 use nalgebra::SVector;
-use point::{Homotopy, Point};
+use point::{Homotopy, PathPoint};
 
 /// Bound on the linearisations in following one path; the step that reaches it is finished, which takes at most four more.
 pub const LINEARIZATIONS: u32 = 1024;
@@ -68,7 +68,7 @@ fn unsolvable<T: Real>(s: T) -> Error {
 
 impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {
     /// Newton's method for s = 1 from the tangent at `here`, if that is within `reach` and contracts cleanly on the branch.
-    fn land(&mut self, here: &Point<T, M>, reach: T) -> Option<SVector<T, M>> {
+    fn land(&mut self, here: &PathPoint<T, M>, reach: T) -> Option<SVector<T, M>> {
         let distance = T::one() - here.s;
         if here.slope_s <= T::zero() || distance > reach * here.slope_s {
             return None;

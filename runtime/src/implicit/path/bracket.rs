@@ -1,6 +1,6 @@
 //! The end of the path: s = 1 or the end of the branch, whichever comes first, lies between two points.
 
-use super::point::{Homotopy, Parameter, Point};
+use super::point::{Homotopy, Parameter, PathPoint};
 use super::unsolvable;
 use crate::implicit::Equation;
 use crate::{Error, Real};
@@ -13,8 +13,8 @@ use nalgebra::SVector;
 /// that even there s is exact to round-off.
 pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize>(
     homotopy: &mut Homotopy<'_, T, E, M, N>,
-    mut before: Point<T, M>,
-    mut after: Point<T, M>,
+    mut before: PathPoint<T, M>,
+    mut after: PathPoint<T, M>,
     parameter: Parameter,
 ) -> Result<SVector<T, M>, Error> {
     let half = T::from_ratio(1, 2);
@@ -53,7 +53,12 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
 }
 
 /// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
-fn guess<T: Real, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, parameter: Parameter, width: T) -> T {
+fn guess<T: Real, const M: usize>(
+    before: &PathPoint<T, M>,
+    after: &PathPoint<T, M>,
+    parameter: Parameter,
+    width: T,
+) -> T {
     let length = if after.s >= T::one() {
         (T::one() - before.s) / before.slope_s
     } else {
@@ -65,12 +70,12 @@ fn guess<T: Real, const M: usize>(before: &Point<T, M>, after: &Point<T, M>, par
 
 impl Parameter {
     /// The value of the parameter at a point.
-    fn of<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
+    fn of<T: Real, const M: usize>(self, point: &PathPoint<T, M>) -> T {
         point.xi.as_slice().get(self.0).copied().unwrap_or(point.s)
     }
 
     /// Its change along the tangent.
-    fn slope<T: Real, const M: usize>(self, point: &Point<T, M>) -> T {
+    fn slope<T: Real, const M: usize>(self, point: &PathPoint<T, M>) -> T {
         point.slope_xi.as_slice().get(self.0).copied().unwrap_or(point.slope_s)
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 /// A point (ξ, s) of the path with its unit tangent, in the direction away from the identity.
 #[derive(Clone, Copy)]
-pub(super) struct Point<T: Real, const M: usize> {
+pub(super) struct PathPoint<T: Real, const M: usize> {
     pub xi: SVector<T, M>,
     pub s: T,
     pub slope_xi: SVector<T, M>,
@@ -58,7 +58,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight. There is no solution where det Dρ has another sign than on the branch.
-    pub fn start(&mut self) -> Result<Point<T, M>, Error> {
+    pub fn start(&mut self) -> Result<PathPoint<T, M>, Error> {
         let zero = SVector::from_element(T::zero());
         let Linearization { jacobian, rate, .. } = self.linearize(&zero, T::zero());
         if !(jacobian.all_finite() && rate.is_finite()) {
@@ -70,7 +70,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
             return Err(unsolvable(T::zero()));
         }
         (self.scale, self.weight) = (slope_xi.max_abs(), size(&rate));
-        Ok(Point { xi: zero, s: T::zero(), slope_xi, slope_s: T::one(), is_past: false })
+        Ok(PathPoint { xi: zero, s: T::zero(), slope_xi, slope_s: T::one(), is_past: false })
     }
 
     pub fn is_affordable(&self) -> bool {
@@ -82,7 +82,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     /// The error for too much work.
-    pub fn exhausted(&mut self, here: &Point<T, M>) -> Error {
+    pub fn exhausted(&mut self, here: &PathPoint<T, M>) -> Error {
         let (residual, _) = self.equation.linearize(&self.moving, &here.xi);
         match size(&residual) / self.weight {
             residual if residual.is_finite() => {
@@ -110,7 +110,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     /// The unknown that changes fastest along the path.
-    pub fn fastest(&self, point: &Point<T, M>) -> Parameter {
+    pub fn fastest(&self, point: &PathPoint<T, M>) -> Parameter {
         let mut fastest = (M, point.slope_s.abs());
         for (j, slope) in point.slope_xi.iter().enumerate() {
             let speed = slope.abs() / self.scale;
@@ -124,7 +124,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed.
     ///
     /// `None` if Newton's method does not contract cleanly or the path turns by too much for this length.
-    pub fn step(&mut self, from: &Point<T, M>, parameter: Parameter, length: T) -> Option<Point<T, M>> {
+    pub fn step(&mut self, from: &PathPoint<T, M>, parameter: Parameter, length: T) -> Option<PathPoint<T, M>> {
         let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
         let half = T::from_ratio(1, 2);
         let (mut before, mut residual_before) = (length * half, SVector::from_element(T::zero()));
@@ -157,7 +157,13 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     /// The tangent at a point of the path, and on which side of the end of the branch the point is.
-    fn arrive(&mut self, xi: SVector<T, M>, s: T, parameter: Parameter, from: &Point<T, M>) -> Option<Point<T, M>> {
+    fn arrive(
+        &mut self,
+        xi: SVector<T, M>,
+        s: T,
+        parameter: Parameter,
+        from: &PathPoint<T, M>,
+    ) -> Option<PathPoint<T, M>> {
         let at = self.linearize(&xi, s);
         let (mut slope_xi, mut slope_s) = at.tangent(parameter)?;
         let along = (slope_xi / self.scale).dot(&(from.slope_xi / self.scale)) + slope_s * from.slope_s;
@@ -169,7 +175,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         let turn = larger((slope_xi - from.slope_xi).max_abs() / self.scale, (slope_s - from.slope_s).abs());
         if turn < half {
             let is_past = slope_s <= T::zero() || at.jacobian.orientation() != Some(self.branch);
-            return Some(Point { xi, s, slope_xi, slope_s, is_past });
+            return Some(PathPoint { xi, s, slope_xi, slope_s, is_past });
         }
         None
     }

@@ -1,0 +1,66 @@
+//! States on the cotangent bundle.
+
+use super::{Stepper, check_time, whole_or_lane};
+use crate::{Clebsch, Clock, CotangentState, Error, Mask, Scalar, Space, Time};
+use num_traits::Zero;
+
+impl<S: Clebsch> Stepper<S> {
+    /// The state (q, p) on T*Q, after checks: finite, q on its orbit. Where the time matters it starts at 0.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OffOrbit`].
+    pub fn cotangent_state(&self, q: S::Configuration, p: S::Configuration) -> Result<CotangentState<S>, Error> {
+        self.checked_cotangent_state(S::Scalar::zero(), q, p)
+    }
+
+    /// One step of the discrete symmetric representation on T*Q: (q_k, p_k) ↦ (q_{k+1}, p_{k+1}).
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and [`Error::NoCovector`] where forces act or momenta are stepped alone.
+    #[inline]
+    pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
+        let CotangentState { time, configuration, covector } = state;
+        let (configuration, covector) =
+            match self.system.step_symmetric(&self.constants, time.now(), configuration, covector) {
+                Ok(next) => next,
+                Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
+                Err(error) => return Err(self.refusal_of_covector(state, error)),
+            };
+        let next = CotangentState { time: time.after_step(self.h), configuration, covector };
+        let finite: <S::Scalar as Scalar>::Mask = next.finite();
+        match (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)) {
+            None => Ok(next),
+            Some(lane) => Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) })),
+        }
+    }
+
+    fn checked_cotangent_state(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        p: S::Configuration,
+    ) -> Result<CotangentState<S>, Error> {
+        self.check_configuration(&q)?;
+        if !p.is_finite() {
+            return Err(Error::NotFinite { name: "the covector" });
+        }
+        Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })
+    }
+}
+
+/// Where the cost or the potential depends on the time.
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+    /// The state (q, p) on T*Q at the time t, checked as by [`cotangent_state`](Self::cotangent_state).
+    ///
+    /// # Errors
+    /// As [`cotangent_state`](Self::cotangent_state); [`Error::NotFinite`] for the time too.
+    pub fn cotangent_state_at(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        p: S::Configuration,
+    ) -> Result<CotangentState<S>, Error> {
+        check_time(t)?;
+        self.checked_cotangent_state(t, q, p)
+    }
+}
