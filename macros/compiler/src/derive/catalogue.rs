@@ -60,6 +60,12 @@ pub enum Id {
     RestKick(usize),
     /// The same kick of the covector.
     StartGradient(usize),
+    /// The impulse of the force before the solve.
+    StartForce(usize),
+    /// What of it depends on the velocity.
+    MovingForce(usize),
+    /// The impulse of the force after the move.
+    EndForce(usize),
     /// ρ(x) = 0.
     Equation(usize, usize),
     /// Dρ(x)·δ.
@@ -70,6 +76,8 @@ pub enum Id {
     Solution(usize, usize),
     /// M⁺.
     MomentumUpdate(usize),
+    /// The same with F = I + D.
+    MomentumAfter(usize),
     /// N⁺ − M⁺, the kick after the move.
     EndKick(usize),
     /// The same kick of the covector.
@@ -82,6 +90,14 @@ pub enum Id {
     SplittingKick,
     /// The same kick of the covector.
     SplittingGradient,
+    /// F − I in the chart.
+    Increment,
+    /// q⁺ with F = I + D.
+    Advance,
+    /// q⁺ by the chart coordinates alone.
+    Displacement,
+    /// The cotangent lift with F = I + D.
+    Lift,
     /// What a step of order 16 collocates.
     HamiltonEquations,
 }
@@ -114,12 +130,16 @@ impl Id {
         match self {
             Id::StartKick(index)
             | Id::RestKick(index)
+            | Id::StartForce(index)
+            | Id::MovingForce(index)
+            | Id::EndForce(index)
             | Id::StartGradient(index)
             | Id::Equation(index, _)
             | Id::Jacobian(index, _)
             | Id::JacobianFactor(index, _)
             | Id::Solution(index, _)
             | Id::MomentumUpdate(index)
+            | Id::MomentumAfter(index)
             | Id::EndKick(index)
             | Id::EndGradient(index)
             | Id::CoupledGradient(index) => Some(index),
@@ -160,11 +180,16 @@ impl Id {
             Id::StartGradient(_) | Id::EndGradient(_) | Id::CoupledGradient(_) | Id::SplittingGradient => {
                 unlisted("kick of the covector", Some(ClebschOptimalControl), Cold)
             }
+            Id::StartForce(_) | Id::MovingForce(_) | Id::EndForce(_) => unlisted("impulse of the force", None, Hot),
             Id::Equation(..) => listed("equation", Some(LieGroupMethods), Hot),
             Id::Jacobian(..) => listed("Jacobian", Some(LieGroupMethods), Hot),
             Id::JacobianFactor(..) => unlisted("factor of the Jacobian", None, Hot),
             Id::Solution(..) => listed("solution", None, Hot),
             Id::MomentumUpdate(_) => listed("momentum update", Some(ClebschOptimalControl), Hot),
+            Id::MomentumAfter(_) => unlisted("momentum update", Some(ClebschOptimalControl), Hot),
+            Id::Increment => unlisted("increment", Some(LieGroupMethods), Hot),
+            Id::Advance | Id::Displacement => unlisted("action", Some(ClebschOptimalControl), Hot),
+            Id::Lift => unlisted("cotangent lift", Some(ClebschOptimalControl), Cold),
             Id::SynchronizedMomentum => listed("synchronized momentum", None, Cold),
             Id::HamiltonEquations => listed("Hamilton's equations", Some(MechanicsAndSymmetry), Hot),
         }

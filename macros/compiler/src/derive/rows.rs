@@ -27,6 +27,11 @@ impl<'g> Formulas<'g> {
         self.titled_all(|other| other == id)
     }
 
+    /// The right sides of a formula; `None` where a system does not have it.
+    pub fn value(&self, id: Id) -> Option<&[Expr<'g>]> {
+        self.titled(id).first().map(|row| row.value.as_slice())
+    }
+
     /// The formulas whose ids are of a kind; they stand together in the table.
     pub fn titled_all(&self, is_meant: impl Fn(Id) -> bool) -> &[Formula<'g>] {
         let (table, is_meant) = (self.table(), |row: &Formula<'g>| is_meant(row.id));
@@ -66,6 +71,7 @@ impl<'g> Formulas<'g> {
         for index in 0..self.substeps.len() {
             rows.extend(self.rows_of_substep(index));
         }
+        rows.extend(self.rows_of_move());
         rows.extend(self.row_of_stagger());
         rows.extend(self.rows_of_splitting());
         rows.extend(self.row_of_collocation());

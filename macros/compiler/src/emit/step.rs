@@ -134,7 +134,7 @@ impl Emitter<'_, '_> {
             self.part(title, formulas, signature, kernel, Some(Nesting::Configuration))
         });
         let update = step.update.as_ref().map(|kernel| {
-            let (signature, formulas) = (name("update"), self.program.formulas.titled(Id::MomentumUpdate(index)));
+            let (signature, formulas) = (name("update"), self.program.formulas.titled(Id::MomentumAfter(index)));
             let from = if step.couples { quote!(#time q: &#configuration) } else { quote!(mu: &#momentum) };
             let signature = quote!(#signature(&self, #from, d: &#element) -> #momentum);
             let title = match self.is_compensated() {
@@ -243,7 +243,7 @@ impl Emitter<'_, '_> {
         let step = &self.program.steps[0];
         let increment = (!self.program.formulas.turns_whole()).then(|| self.part(
             "The increment D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
-            &[],
+            self.program.formulas.titled(Id::Increment),
             match self.program.formulas.weighted().is_empty() {
                 true => quote!(increment(&self, x: &#momentum) -> #element),
                 false => {
@@ -264,7 +264,7 @@ impl Emitter<'_, '_> {
                     true => "What F, with chart coordinates x, adds to q: α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
                     false => "The configuration that F, with chart coordinates x, moves q to: q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.",
                 },
-                self.program.formulas.titled(Id::Action),
+                self.program.formulas.titled(Id::Displacement),
                 quote!(displace(&self, q: &#configuration, x: &#momentum) -> #configuration),
                 displace,
                 Some(Nesting::Configuration),
@@ -274,7 +274,7 @@ impl Emitter<'_, '_> {
                     true => "What F = I + D adds to q: Φ_F(q) − q, in which q has cancelled.",
                     false => "The configuration that F = I + D moves q to.",
                 },
-                self.program.formulas.titled(Id::Action),
+                self.program.formulas.titled(Id::Advance),
                 quote!(advance(&self, q: &#configuration, d: &#element) -> #configuration),
                 &step.advance,
                 Some(Nesting::Configuration),
@@ -282,7 +282,7 @@ impl Emitter<'_, '_> {
         };
         let lift = self.part(
             "The covector p carried along by F = I + D, at q⁺.",
-            self.program.formulas.titled(Id::CotangentLift),
+            self.program.formulas.titled(Id::Lift),
             quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
             &self.program.cotangent_lift,
             Some(Nesting::Configuration),

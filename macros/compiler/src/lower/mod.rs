@@ -7,7 +7,6 @@ mod balance;
 mod code;
 mod control;
 mod cost;
-mod displacement;
 mod factors;
 mod fixed_point;
 mod form;
@@ -26,7 +25,7 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Property, Shape, identity};
 
-use crate::derive::{self, Formulas, Stencil, inverse_by};
+use crate::derive::{self, Formulas, Id, Stencil, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Factor, Isotropy, Space};
 
@@ -142,7 +141,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let splitting = stepping::splitting(&formulas, &mut scalars, &mut hoisted);
     let collocation = stepping::collocation(&formulas, &mut scalars, &mut hoisted);
-    let lift = stepping::cotangent_lift(&formulas, &mut scalars);
+    let lift = stepping::of_row(&formulas, Id::Lift, &mut scalars);
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
     let endpoint = control::endpoint(&formulas, &mut scalars);

@@ -2,15 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, Zero, identity};
+use clebsch_symbolic::{Expr, Role, Shape, Zero};
 
-use super::displacement;
 use super::fixed_point;
 use super::kernel::kernel;
 use super::matrices;
 use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
-use crate::derive::{Equation, Formulas, Solution, Structure, Substep, by_inertia, chart_slope, increments};
-use crate::model::Factor;
+use crate::derive::{Equation, Formulas, Id, Solution, Structure, Substep, by_inertia, chart_slope};
 
 /// The kernels of one substep.
 pub struct StepKernels {
@@ -124,7 +122,7 @@ impl StepKernels {
 /// The kernels of all substeps.
 pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mut Hoisted) -> Vec<StepKernels> {
     let mut steps: Vec<StepKernels> =
-        formulas.substeps.iter().map(|substep| step(formulas, substep, scalars, hoisted)).collect();
+        (0..formulas.substeps.len()).map(|index| step(formulas, index, scalars, hoisted)).collect();
     // what serves the inverse Legendre transform alone is never stepped
     for step in steps.iter_mut().skip(formulas.parts) {
         (step.start_force, step.start_moving, step.end_force) = (None, None, None);
@@ -141,11 +139,10 @@ pub(super) fn splitting(
     hoisted: &mut Hoisted,
 ) -> Option<SplittingKernels> {
     let splitting = formulas.splitting.as_ref()?;
-    let leaves = formulas.model.configurations.iter();
-    let gradients: Vec<_> = leaves.map(|leaf| splitting.potential.gradient(leaf.symbol)).collect();
+    let gradient = formulas.value(Id::SplittingGradient)?;
     Some(SplittingKernels {
         kick: stack(scalars, hoisted, &splitting.kick),
-        gradient: separate(scalars, hoisted, &gradients),
+        gradient: separate(scalars, hoisted, gradient),
     })
 }
 
@@ -170,67 +167,35 @@ pub(super) fn collocation(
     })
 }
 
-fn step<'g>(
-    formulas: &Formulas<'g>,
-    substep: &Substep<'g>,
-    scalars: &mut Scalars,
-    hoisted: &mut Hoisted,
-) -> StepKernels {
-    let gradients = |potential: Expr<'g>| -> Vec<Expr<'g>> {
-        formulas.model.configurations.iter().map(|leaf| potential.gradient(leaf.symbol)).collect()
-    };
-    let solves =
-        substep.equations.iter().map(|equation| solve(formulas, substep, equation, scalars, hoisted)).collect();
-    let stacked = |parts: &Option<Vec<Expr<'g>>>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
-        parts.as_ref().map(|parts| stack(scalars, hoisted, parts))
-    };
-    // kicks are functions of the time of the configuration; their kernels, of the time at which the whole step starts
-    let model = &formulas.model;
-    let at = |later: Expr<'g>, parts: &Option<Vec<Expr<'g>>>| -> Option<Vec<Expr<'g>>> {
-        let moved = [(model.time, model.time + later)];
-        parts.as_ref().map(|parts| parts.iter().map(|part| part.substitute(&moved)).collect())
-    };
-    let force = substep.force.as_ref();
-    let start_force = force.and_then(|force| force.start.clone());
-    let start_force = stacked(&at(substep.begins, &start_force), scalars, hoisted);
-    let in_chart = |parts: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
-        let elements = chart_elements(formulas);
-        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
-    };
-    let start_moving = force.filter(|_| substep.other.is_none()).and_then(|force| force.start_moving.clone());
-    let start_moving = stacked(&at(substep.begins, &start_moving).map(in_chart), scalars, hoisted);
-    let end_force = at(substep.ends, &force.map(|force| force.end.clone())).map(in_chart);
-    let end_force = stacked(&end_force, scalars, hoisted);
-    let start = stacked(&at(substep.begins, &substep.start), scalars, hoisted);
-    let end = stacked(&at(substep.ends, &substep.end), scalars, hoisted);
-    let gradient = |later: Expr<'g>, potential: Expr<'g>, scalars: &mut Scalars, hoisted: &mut Hoisted| {
-        let gradients = gradients(potential.substitute(&[(model.time, model.time + later)]));
-        let acts = gradients.iter().any(|gradient| !identity::vanishes(*gradient));
-        // forces in 𝔤* have no covectors, so that a forced system has no symmetric representation
-        (acts && model.force.is_none()).then(|| separate(scalars, hoisted, &gradients))
-    };
-    let start_gradient = gradient(substep.begins, substep.lagrangian.start, scalars, hoisted);
-    let end_gradient = gradient(substep.ends, substep.lagrangian.end, scalars, hoisted);
+fn step(formulas: &Formulas<'_>, index: usize, scalars: &mut Scalars, hoisted: &mut Hoisted) -> StepKernels {
+    let substep = &formulas.substeps[index];
+    let numbers = 0..substep.equations.len();
+    let solves = numbers.map(|number| solve(formulas, (index, number), scalars, hoisted)).collect();
+    let mut stacked = |id: Id| formulas.value(id).map(|parts| stack(scalars, hoisted, parts));
+    let start_force = stacked(Id::StartForce(index));
+    let start_moving = stacked(Id::MovingForce(index));
+    let end_force = stacked(Id::EndForce(index));
+    let start = stacked(Id::StartKick(index));
+    let end = stacked(Id::EndKick(index));
+    let mut separated = |id: Id| formulas.value(id).map(|parts| separate(scalars, hoisted, parts));
+    let start_gradient = separated(Id::StartGradient(index));
+    let end_gradient = separated(Id::EndGradient(index));
+    let rest = formulas.value(Id::RestKick(index)).map(|rest| stack(scalars, hoisted, rest));
+    let coupled_gradient = formulas.value(Id::CoupledGradient(index));
+    let coupled_gradient = coupled_gradient.map(|gradients| separate(scalars, hoisted, gradients));
     let couples = substep.other.is_some();
-    let rest = stacked(&substep.rest, scalars, hoisted);
-    let coupled_gradient = (substep.lagrangian.couples && model.force.is_none()).then(|| {
-        let moved = increments(formulas);
-        let gradients: Vec<_> =
-            gradients(substep.lagrangian.kinetic).iter().map(|gradient| gradient.substitute(&moved)).collect();
-        separate(scalars, hoisted, &gradients)
-    });
-    let advance = advance(formulas, scalars);
+    let advance = of_row(formulas, Id::Advance, scalars);
     // where F − I and the next momentum are found at once, none is made of the other
-    let (increment, update) = match formulas.turns_whole() {
-        true => (kernel(scalars, &[], Hoisting::Nothing), None),
-        false => (increment(formulas, scalars), update(formulas, substep, scalars, hoisted)),
-    };
+    let increment = of_row(formulas, Id::Increment, scalars);
+    let update = formulas
+        .value(Id::MomentumAfter(index))
+        .map(|after| if couples { stack(scalars, hoisted, after) } else { super::stack(scalars, after) });
     let by_increments = match update.is_some() {
         // the increments are made in any case
         true => advance.cost().total(),
         false => increment.cost().total() + advance.cost().total(),
     };
-    let displace = displacement::displaced(formulas).map(|images| plain(scalars, &images));
+    let displace = formulas.value(Id::Displacement).map(|images| plain(scalars, images));
     let displace = displace.filter(|_| formulas.weighted().is_empty() && !formulas.turns_whole());
     let displace = displace.filter(|displace| displace.cost().total() < by_increments);
     StepKernels {
@@ -253,6 +218,11 @@ fn step<'g>(
     }
 }
 
+/// The kernel of a formula, nothing taken out.
+pub(super) fn of_row(formulas: &Formulas<'_>, id: Id, scalars: &mut Scalars) -> Kernel {
+    plain(scalars, formulas.value(id).unwrap_or_default())
+}
+
 /// Vectors in one output, constants taken out.
 fn stack(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) -> Kernel {
     if scalars.keeps_matrices {
@@ -272,11 +242,12 @@ fn separate(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) ->
 
 fn solve<'g>(
     formulas: &Formulas<'g>,
-    substep: &Substep<'g>,
-    equation: &Equation<'g>,
+    (index, number): (usize, usize),
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> Solve {
+    let substep = &formulas.substeps[index];
+    let equation = &substep.equations[number];
     let start = match (equation.formula, equation.solution) {
         (Some(formula), _) => Some(vec![formula]),
         (None, Solution::Linear | Solution::FreeRotation) => None,
@@ -471,75 +442,4 @@ fn momentum_entry<'g>(formulas: &Formulas<'g>, mut component: usize) -> Expr<'g>
         component -= mu.shape().rows;
     }
     formulas.model.graph.integer(0)
-}
-
-/// F − I of each factor, from the chart coordinates.
-fn increment(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let weighted = formulas.weighted();
-    let increment = |k: usize| match weighted.iter().position(|&other| other == k) {
-        Some(number) => weighted_increment(formulas, k, number),
-        None => formulas.symbols.chart_increment(&formulas.model, k),
-    };
-    let increments: Vec<_> = (0..formulas.model.factors.len()).map(increment).collect();
-    plain(scalars, &increments)
-}
-
-/// F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
-fn weighted_increment<'g>(formulas: &Formulas<'g>, k: usize, number: usize) -> Expr<'g> {
-    let x = formulas.symbols.stacked_coordinates(k);
-    let w = formulas.model.graph.symbol("w", Shape::scalar(), Role::ChartWeight(number), Property::General);
-    let hat = formulas.model.factors[k].group.wedge(x);
-    2 * (w * hat + hat * hat) / (w * w + x.dot(x))
-}
-
-/// The replacement of each group element by that of the chart, and of its logarithm.
-fn chart_elements<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let symbols = &formulas.symbols;
-    let element = |(k, factor): (usize, &Factor<'g>)| {
-        let element = symbols.chart_element(&formulas.model, k);
-        let logarithm = match symbols.charts[k] {
-            Chart::Exponential => symbols.stacked_coordinates(k),
-            _ => factor.group.logarithm(element),
-        };
-        [(factor.symbol, element), (symbols.logarithms[k], logarithm)]
-    };
-    formulas.model.factors.iter().enumerate().flat_map(element).collect()
-}
-
-/// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
-fn advance(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    if formulas.is_compensated() {
-        return plain(scalars, &formulas.displacements());
-    }
-    let elements = increments(formulas);
-    let images: Vec<_> = formulas.model.action.iter().map(|image| image.substitute(&elements).expand()).collect();
-    plain(scalars, &images)
-}
-
-/// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one; the other trivialisation of ∂_F K where the cost couples. Where sums
-/// keep their rests, what is added to what was solved for.
-fn update<'g>(
-    formulas: &Formulas<'g>,
-    substep: &Substep<'g>,
-    scalars: &mut Scalars,
-    hoisted: &mut Hoisted,
-) -> Option<Kernel> {
-    let elements = increments(formulas);
-    if let Some(other) = &substep.other {
-        let updates: Vec<_> = other.iter().map(|update| update.substitute(&elements).expand()).collect();
-        return Some(stack(scalars, hoisted, &updates));
-    }
-    if formulas.is_compensated() {
-        return formulas.momentum_increments(substep).map(|increments| super::stack(scalars, &increments));
-    }
-    let updates = formulas.carried_on(substep)?;
-    let updates: Vec<_> = updates.into_iter().map(|update| update.substitute(&elements).expand()).collect();
-    Some(super::stack(scalars, &updates))
-}
-
-/// (TΦ_F)^{-*} p with F = I + D.
-pub(super) fn cotangent_lift(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let elements = increments(formulas);
-    let lifts: Vec<_> = formulas.cotangent_lift.iter().map(|lift| lift.substitute(&elements).expand()).collect();
-    plain(scalars, &lifts)
 }

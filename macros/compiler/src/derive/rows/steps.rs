@@ -5,37 +5,81 @@ use clebsch_symbolic::Expr;
 use crate::derive::{Equation, Formula, Formulas, Id, Solution, Substep};
 
 impl<'g> Formulas<'g> {
+    /// Kicks are functions of the time at which the step starts, as their methods are.
     pub(super) fn rows_of_substep(&self, index: usize) -> Vec<Formula<'g>> {
         let (substep, q) = (&self.substeps[index], self.q());
         let mut rows = Vec::new();
         if let Some(start) = &substep.start {
-            rows.push(Formula::shorter(Id::StartKick(index), "M − N", start));
+            rows.push(Formula::shorter(Id::StartKick(index), "M − N", &self.from_start(substep.begins, start)));
         }
         for number in 0..substep.equations.len() {
             rows.extend(self.rows_of_equation(index, number));
         }
         rows.push(self.row_of_update(index, substep));
+        if let Some(after) = self.momentum_after(substep).filter(|_| !self.turns_whole()) {
+            let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
+            rows.push(Formula::shorter(Id::MomentumAfter(index), symbol, &after));
+        }
         if let Some(end) = &substep.end {
-            let symbol = format!("N⁺ − M⁺, at {}", self.place_of_end(end));
-            rows.push(Formula::shorter(Id::EndKick(index), symbol, end));
+            let end = self.from_start(substep.ends, end);
+            rows.push(Formula::shorter(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), &end));
         }
         if let Some(rest) = &substep.rest {
             rows.push(Formula::shorter(Id::RestKick(index), format!("−r({q}, I)"), rest));
         }
-        let lagrangian = &substep.lagrangian;
-        rows.push(self.row_of_gradient(Id::StartGradient(index), format!("∂U₀/∂{q}"), lagrangian.start));
-        let (end, place) = (lagrangian.end, self.place_of_end(&[lagrangian.end]));
-        rows.push(self.row_of_gradient(Id::EndGradient(index), format!("∂U₁/∂{q}, at {place}"), end));
-        if lagrangian.couples {
-            rows.push(self.row_of_gradient(Id::CoupledGradient(index), format!("∂K/∂{q}"), lagrangian.kinetic));
-        }
+        rows.extend(self.rows_of_covectors(index, substep));
+        rows.extend(self.rows_of_forces(index, substep));
         rows
     }
 
-    /// The gradient of a part of the discrete Lagrangian with respect to the configuration.
-    fn row_of_gradient(&self, id: Id, symbol: String, part: Expr<'g>) -> Formula<'g> {
-        let gradients = self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol));
-        Formula::shorter(id, symbol, &gradients.collect::<Vec<_>>())
+    /// The kicks of the covector.
+    fn rows_of_covectors(&self, index: usize, substep: &Substep<'g>) -> Vec<Formula<'g>> {
+        let (q, lagrangian) = (self.q(), &substep.lagrangian);
+        let start = self.covector_kick(lagrangian.start, substep.begins);
+        let end = self.covector_kick(lagrangian.end, substep.ends);
+        let table = [
+            (Id::StartGradient(index), format!("∂U₀/∂{q}"), start),
+            (Id::EndGradient(index), format!("∂U₁/∂{q}, at {q}⁺"), end),
+            (Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)),
+        ];
+        let row =
+            |(id, symbol, value): (Id, String, Option<Vec<Expr<'g>>>)| Some(Formula::shorter(id, symbol, &value?));
+        table.into_iter().filter_map(row).collect()
+    }
+
+    /// The impulses of a force; what depends on the velocity, in the chart.
+    fn rows_of_forces(&self, index: usize, substep: &Substep<'g>) -> Vec<Formula<'g>> {
+        let Some(force) = &substep.force else { return Vec::new() };
+        let moving = force.start_moving.as_ref().filter(|_| substep.other.is_none());
+        let start = force.start.as_ref().map(|start| self.from_start(substep.begins, start));
+        let moving = moving.map(|moving| self.in_chart(&self.from_start(substep.begins, moving)));
+        let end = self.in_chart(&self.from_start(substep.ends, &force.end));
+        let table = [
+            (Id::StartForce(index), "M − N by f".to_string(), start),
+            (Id::MovingForce(index), "M − N by f".to_string(), moving),
+            (Id::EndForce(index), format!("N⁺ − M⁺ by f, at {}⁺", self.q()), Some(end)),
+        ];
+        let row =
+            |(id, symbol, value): (Id, String, Option<Vec<Expr<'g>>>)| Some(Formula::shorter(id, symbol, &value?));
+        table.into_iter().filter_map(row).collect()
+    }
+
+    /// The move of a configuration and of a covector, by the increments D = F − I.
+    pub(super) fn rows_of_move(&self) -> Vec<Formula<'g>> {
+        let q = self.q();
+        let after = if self.is_compensated() { format!("{q}⁺ − {q}") } else { format!("{q}⁺") };
+        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
+        let d = self.letter(&self.symbols.increments);
+        let p = self.letter(&self.symbols.covectors);
+        let lift = self.at_increments(&self.cotangent_lift);
+        let mut rows = Vec::new();
+        if !self.turns_whole() {
+            rows.push(Formula::shorter(Id::Increment, format!("{d}({x})"), &self.chart_increments()));
+        }
+        rows.push(Formula::shorter(Id::Advance, after.as_str(), &self.advance()));
+        rows.extend(self.displaced().map(|displaced| Formula::shorter(Id::Displacement, after, &displaced)));
+        rows.push(Formula::shorter(Id::Lift, format!("(TΦ_{})^-* {p} at {q}⁺", self.f()), &lift));
+        rows
     }
 
     /// An equation with its Jacobian, and its solution where there is a formula for it.
@@ -106,7 +150,8 @@ impl<'g> Formulas<'g> {
             format!(" + h^3 g\\, G^T \\Sigma^{{-1}} G,\\quad G = J({q}, \\partial V)"),
         );
         let kick = Formula::new(Id::SplittingKick, format!("M⁺ − M at {q}"), &splitting.kick);
-        let covector = self.row_of_gradient(Id::SplittingGradient, format!("∂U/∂{q} with U"), splitting.potential);
+        let gradients = self.gradients(splitting.potential);
+        let covector = Formula::new(Id::SplittingGradient, format!("∂U/∂{q} with U"), &gradients);
         vec![
             kick.in_words(format!("J({q}, ∂U), U = {energy}"), format!("J({q}, \\partial U),\\quad U = {latex}")),
             covector.in_words(energy, latex),

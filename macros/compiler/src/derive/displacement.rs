@@ -2,15 +2,17 @@
 
 use clebsch_symbolic::{Chart, Expr, identity};
 
-use crate::derive::Formulas;
+use super::Formulas;
 use crate::model::Isotropy;
 
-/// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not
-/// move like that.
-///
-/// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
-pub(super) fn displaced<'g>(formulas: &Formulas<'g>) -> Option<Vec<Expr<'g>>> {
-    (0..formulas.model.configurations.len()).map(|leaf| displaced_leaf(formulas, leaf)).collect()
+impl<'g> Formulas<'g> {
+    /// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not
+    /// move like that.
+    ///
+    /// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
+    pub fn displaced(&self) -> Option<Vec<Expr<'g>>> {
+        (0..self.model.configurations.len()).map(|leaf| displaced_leaf(self, leaf)).collect()
+    }
 }
 
 fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> {
