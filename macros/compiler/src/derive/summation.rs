@@ -104,7 +104,7 @@ pub(super) fn is_compensated(model: &Model<'_>) -> bool {
 
 /// Where compensated summation is asked for.
 fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
-    model.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
+    model.dials.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
 }
 
 /// Compensated sums need increments.

@@ -184,7 +184,7 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
         Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
         Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => None,
     };
-    match (discretization, model.chart.as_ref().map(|chart| chart.value)) {
+    match (discretization, model.dials.chart.as_ref().map(|chart| chart.value)) {
         (Some(Discretization::Exponential), _) | (_, Some(ChartChoice::Exponential)) => Chart::Exponential,
         (_, Some(ChartChoice::Cayley)) => Chart::Cayley,
         (Some(Discretization::Cayley), None) if factor.group.has_cayley_chart(model.graph) => Chart::Cayley,
@@ -199,7 +199,7 @@ pub(super) fn check_poles(
     substeps: &[Substep<'_>],
 ) -> Result<(), Diagnostics> {
     let by_cayley = matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Cayley, .. });
-    let chosen = model.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
+    let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
     let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
     let has_poles =
         |equation: &Equation<'_>| equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates);

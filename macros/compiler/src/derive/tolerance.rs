@@ -12,11 +12,11 @@ pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: boo
     let solutions: Vec<Solution> =
         substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
     let is_iterated = collocates || solutions.contains(&Solution::Newton);
-    if let Some(iterations) = &model.iterations {
+    if let Some(iterations) = &model.dials.iterations {
         let asked = (Feature::Iterations, Found::at(iterations.span));
         features::check(asked, |feature| Found::when(feature == Feature::ExplicitEquation && !is_iterated))?;
     }
-    let Some(tolerance) = &model.tolerance else { return Ok(()) };
+    let Some(tolerance) = &model.dials.tolerance else { return Ok(()) };
     let turns_freely = solutions.contains(&Solution::FreeRotation);
     // without kicks d is found once, to round-off
     let is_series = turns_freely && model.potential.is_some();

@@ -93,8 +93,9 @@ impl Emitter<'_, '_> {
         let configuration = self.configuration_type();
         let (start_of_pair, count) = (self.flat(), self.entries().count());
         let (dq, dp) = (self.built("change", 0), self.built("change", count));
-        let tolerance = Literal::f64_unsuffixed(self.model.tolerance.as_ref().map_or(0.0, |tolerance| tolerance.value));
-        let most = match &self.model.iterations {
+        let tolerance =
+            Literal::f64_unsuffixed(self.model.dials.tolerance.as_ref().map_or(0.0, |tolerance| tolerance.value));
+        let most = match &self.model.dials.iterations {
             Some(iterations) => Literal::u32_unsuffixed(iterations.value).into_token_stream(),
             None => quote!(#private::SWEEPS),
         };

@@ -181,7 +181,7 @@ impl Emitter<'_, '_> {
         let rotations = self.free_rotations().map(|(name, solve)| {
             let inertia = self.block_of_inertia(solve);
             let kind = self.kind_of_free_rotation();
-            match &self.model.tolerance {
+            match &self.model.dials.tolerance {
                 Some(tolerance) => {
                     let part = Literal::f64_unsuffixed(tolerance.value);
                     quote!(#name: #private::#kind::to_tolerance(&#inertia, h, #part)?,)

@@ -249,7 +249,7 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
-        let tolerance = self.model.tolerance.as_ref().map(|tolerance| {
+        let tolerance = self.model.dials.tolerance.as_ref().map(|tolerance| {
             let part = Literal::f64_unsuffixed(tolerance.value);
             quote! {
                 /// The declared tolerance.
@@ -267,7 +267,7 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
         });
-        let limit = self.model.iterations.as_ref().map(|iterations| {
+        let limit = self.model.dials.iterations.as_ref().map(|iterations| {
             let most = Literal::u32_unsuffixed(iterations.value);
             quote! {
                 /// The declared number of iterations.

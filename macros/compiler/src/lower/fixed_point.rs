@@ -31,7 +31,8 @@ pub(super) fn residual<'g>(
 ) -> Option<Kernel> {
     // the predictor is s·h·Σ⁻¹ in the unknowns themselves
     let serves = equation.is_inertial && !equation.moves && equation.coupled.is_empty();
-    let (predict, solver) = (newton.predict.filter(|_| serves)?, formulas.model.solver);
+    let (predict, solver) =
+        (newton.predict.filter(|_| serves)?, formulas.model.dials.solver.as_ref().map(|solver| solver.value));
     if solver == Some(Solver::Newton) {
         return None;
     }
@@ -56,7 +57,7 @@ pub(super) fn residual_of_matrices<'g>(
 ) -> Option<Kernel> {
     let serves = equation.is_inertial && !equation.moves && equation.coupled.is_empty() && predict.is_some();
     // a linear system costs more than many residuals
-    let is_asked = formulas.model.solver != Some(Solver::Newton);
+    let is_asked = formulas.model.dials.solver.as_ref().map(|solver| solver.value) != Some(Solver::Newton);
     (serves && is_asked && equation.solution == Solution::Newton).then(|| matrices::kernel(&[equation.residual]))
 }
 

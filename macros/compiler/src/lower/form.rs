@@ -55,7 +55,7 @@ impl Form {
 /// A system too large for the only form that it has, or a form that is asked for and not there.
 pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
     let estimate = estimate(formulas);
-    let asked = formulas.model.code.as_ref();
+    let asked = formulas.model.dials.code.as_ref();
     let dimension = formulas.inertia.shape().rows;
     let is_long = estimate > LARGEST_UNROLLED && dimension >= FEWEST_UNKNOWNS;
     let is_point = dimension >= FEWEST_OF_SPHERES && formulas.follows_great_circles();

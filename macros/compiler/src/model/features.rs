@@ -3,7 +3,6 @@
 //! A stage says which features it has found and where; [`refusals`] looks the combinations up. A rule for a new feature is a row.
 
 mod feature;
-#[cfg(test)]
 mod markdown;
 mod rows;
 
@@ -11,6 +10,7 @@ use proc_macro2::Span;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 pub(crate) use feature::Feature;
+pub use markdown::features_as_markdown;
 use rows::ROWS;
 
 /// Features that do not go with each other: each of the first with each of the second.

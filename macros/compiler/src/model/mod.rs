@@ -37,9 +37,10 @@ mod vectors;
 mod velocity;
 
 pub use crate::parse::{
-    ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
+    ChartChoice, CodeForm, Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
 };
 pub use access::{Access, Part};
+pub use features::features_as_markdown;
 pub use groups::is_large;
 pub use layout::Layout;
 pub use outline::{Outline, outline};
@@ -141,15 +142,10 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         control: formulas.control,
         endpoint: formulas.endpoint,
         symmetries: formulas.symmetries,
-        solver: dials.solver.as_ref().map(|solver| solver.value),
-        tolerance: dials.tolerance.clone(),
-        iterations: dials.iterations.clone(),
-        summation: dials.summation.clone(),
-        code: dials.code.clone(),
         isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
-        chart: dials.chart.clone(),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
         emit: dials.emit,
+        dials: dials.of_steps(),
         spans: closures::spans(declaration),
         power: None,
     })?;

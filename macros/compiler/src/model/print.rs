@@ -5,10 +5,7 @@ use std::fmt;
 use clebsch_symbolic::Expr;
 
 use super::scalar::spell_scalar;
-use super::{
-    ChartChoice, CodeForm, Configuration, Discretization, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order,
-    Parameter, Promise, Side, Solver, Space, Summation,
-};
+use super::{Configuration, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter, Promise, Side, Space};
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -66,23 +63,8 @@ impl fmt::Display for Model<'_> {
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;
         }
-        if let Some(solver) = self.solver {
-            writeln!(f, "  solver     {solver}")?;
-        }
-        if let Some(tolerance) = &self.tolerance {
-            writeln!(f, "  tolerance  {:e}", tolerance.value)?;
-        }
-        if let Some(iterations) = &self.iterations {
-            writeln!(f, "  iterations {}", iterations.value)?;
-        }
-        if let Some(summation) = &self.summation {
-            writeln!(f, "  summation  {}", summation.value)?;
-        }
-        if let Some(code) = &self.code {
-            writeln!(f, "  code       {}", code.value)?;
-        }
-        if let Some(chart) = &self.chart {
-            writeln!(f, "  chart      {}", chart.value)?;
+        for (name, value) in self.dials.given() {
+            writeln!(f, "  {name:<10} {value}")?;
         }
         match self.is_steered() {
             true => Ok(()),
@@ -154,62 +136,5 @@ impl fmt::Display for Side {
 impl fmt::Display for Order {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.number())
-    }
-}
-
-impl fmt::Display for Discretization {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Discretization::Cayley => "cayley",
-            Discretization::Exponential => "exponential",
-            Discretization::Projection => "projection",
-            Discretization::MoserVeselov => "moser_veselov",
-            Discretization::Exact => "exact",
-        })
-    }
-}
-
-impl fmt::Display for ChartChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ChartChoice::Cayley => "cayley",
-            ChartChoice::Exponential => "exponential",
-        })
-    }
-}
-
-impl fmt::Display for Solver {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Solver::Newton => "newton",
-            Solver::FixedPoint => "fixed_point",
-        })
-    }
-}
-
-impl fmt::Display for Summation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Summation::Plain => "plain",
-            Summation::Compensated => "compensated",
-        })
-    }
-}
-
-impl fmt::Display for CodeForm {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            CodeForm::Unrolled => "unrolled",
-            CodeForm::Matrices => "matrices",
-        })
-    }
-}
-
-impl fmt::Display for Isotropy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Isotropy::Fixed => "fixed",
-            Isotropy::Free => "free",
-        })
     }
 }

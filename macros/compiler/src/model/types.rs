@@ -4,9 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::{Access, Layout, Power};
-use crate::parse::{
-    ChartChoice, CodeForm, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
-};
+use crate::parse::{Dials, Discretization, Emit, Isotropy, Opaque, Order, Promise};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub struct Model<'g> {
@@ -54,19 +52,8 @@ pub struct Model<'g> {
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// What becomes of motions of the group that move no configuration.
     pub isotropy: Isotropy,
-    /// The chart that the user chooses.
-    pub chart: Option<Located<ChartChoice>>,
-    /// The solver that the user chooses.
-    pub solver: Option<Solver>,
-    /// The part of a step by which its implicit equations, or the series of free rotations between kicks, may be missed; `None` for
-    /// round-off.
-    pub tolerance: Option<Located<f64>>,
-    /// The most iterations for one implicit equation; `None` for the bounds of the runtime.
-    pub iterations: Option<Located<u32>>,
-    /// How a step adds to q and N; `None` for plain sums.
-    pub summation: Option<Located<Summation>>,
-    /// How a step is written as code, where the user chooses.
-    pub code: Option<Located<CodeForm>>,
+    /// The dials of a step that the user chooses; the others have become what the model is made of.
+    pub dials: Dials,
     /// Where the potential is placed.
     pub order: Order,
     /// What is emitted beside the integrator.

@@ -5,7 +5,7 @@ use syn::ext::IdentExt;
 use syn::parse::ParseStream;
 use syn::{Attribute, DeriveInput, Meta, Token};
 
-use super::keys::{KEYS, Keys, Kind};
+use super::keys::{KEYS, Key, Keys};
 use super::{groups, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, nearest};
 
@@ -46,18 +46,18 @@ fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics
         groups::read(&key, stream, keys, diagnostics)?;
         return end_of_item(&key, stream);
     }
-    let kind = find(&key).ok_or_else(|| unknown_key(&key))?;
+    let found = find(&key).ok_or_else(|| unknown_key(&key))?;
     if !keys.give(&key) {
         return Err(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"));
     }
-    if kind == Kind::Later {
+    if found.comes_later() {
         return Err(Diagnostic::later(key.span(), format!("the key `{key}`")));
     }
     if stream.parse::<Token![=]>().is_err() {
         let error = Diagnostic::new(key.span(), format!("the key `{key}` has no value"));
-        return Err(error.help(format!("write `{key} = {}`", values::example(kind))));
+        return Err(error.help(format!("write `{key} = {}`", found.example)));
     }
-    values::read(&key, kind, stream, keys, diagnostics)?;
+    values::read(&key, found, stream, keys, diagnostics)?;
     end_of_item(&key, stream)
 }
 
@@ -70,15 +70,15 @@ fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
     Err(error.help("separate the keys by commas"))
 }
 
-fn find(key: &Ident) -> Option<Kind> {
-    KEYS.iter().find(|(name, _)| key == name).map(|&(_, kind)| kind)
+fn find(key: &Ident) -> Option<&'static Key> {
+    KEYS.iter().find(|known| key == known.name)
 }
 
 fn unknown_key(key: &Ident) -> Diagnostic {
     let name = key.to_string();
-    let similar = nearest(&name, KEYS.iter().map(|&(name, _)| name));
+    let similar = nearest(&name, KEYS.iter().map(|key| key.name));
     let known: Vec<String> =
-        KEYS.iter().filter(|(_, kind)| *kind != Kind::Later).map(|(name, _)| format!("`{name}`")).collect();
+        KEYS.iter().filter(|key| !key.comes_later()).map(|key| format!("`{}`", key.name)).collect();
     let error = Diagnostic::new(key.span(), format!("unknown key `{name}`"));
     match similar {
         Some(similar) => error.help(format!("write `{similar}`")),

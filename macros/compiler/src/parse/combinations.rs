@@ -46,5 +46,5 @@ fn place(keys: &Keys, feature: Feature) -> Option<Span> {
 /// The key that a feature is, if it is one.
 fn key(feature: Feature) -> Option<&'static str> {
     let word = feature.words().strip_prefix('`')?.strip_suffix('`')?;
-    KEYS.iter().map(|&(name, _)| name).find(|name| *name == word)
+    KEYS.iter().map(|key| key.name).find(|name| *name == word)
 }

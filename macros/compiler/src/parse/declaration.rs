@@ -3,7 +3,8 @@
 use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
-use super::keys::{Dials, Keys};
+use super::dials::Dials;
+use super::keys::Keys;
 use super::{Choice, Closure, DeclaredGroup, Field, Opaque, combinations, control};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 

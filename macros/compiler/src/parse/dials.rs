@@ -1,4 +1,87 @@
-//! What a declaration chooses from: the values of its dials and of the promises on its fields.
+//! What a declaration chooses from: its dials with their values, and the promises on its fields.
+
+use std::fmt;
+
+use proc_macro2::Ident;
+
+use super::keys::Located;
+
+/// The keys that are no closures; each has a default.
+#[derive(Clone, Default, Debug)]
+pub struct Dials {
+    /// `order = 2`.
+    pub order: Option<Located<Order>>,
+    /// `discretization = cayley`.
+    pub discretization: Option<Located<Discretization>>,
+    /// `chart = exponential`.
+    pub chart: Option<Located<ChartChoice>>,
+    /// `solver = newton`.
+    pub solver: Option<Located<Solver>>,
+    /// `tolerance = 1e-8`.
+    pub tolerance: Option<Located<f64>>,
+    /// `iterations = 4`.
+    pub iterations: Option<Located<u32>>,
+    /// `summation = compensated`.
+    pub summation: Option<Located<Summation>>,
+    /// `code = matrices`.
+    pub code: Option<Located<CodeForm>>,
+    /// `isotropy = fixed`.
+    pub isotropy: Option<Located<Isotropy>>,
+    /// `emit = [generated]`.
+    pub emit: Emit,
+    /// `scalar = f32`, for systems without fields.
+    pub scalar: Option<Ident>,
+    /// `crate = path`.
+    pub krate: Option<syn::Path>,
+}
+
+/// A value that a word chooses.
+pub(super) trait Word: Copy + PartialEq + 'static {
+    /// The words with their values.
+    const WORDS: &'static [(&'static str, Self)];
+
+    /// The word of a value.
+    fn word(self) -> &'static str {
+        // by construction: every value has a word
+        Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
+}
+
+/// The words of a dial's values, by which these are read and printed.
+macro_rules! words {
+    ($dial:ident: $($word:literal $value:ident),+) => {
+        impl Word for $dial {
+            const WORDS: &'static [(&'static str, $dial)] = &[$(($word, $dial::$value)),+];
+        }
+
+        impl fmt::Display for $dial {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.word())
+            }
+        }
+    };
+}
+
+words!(Discretization: "cayley" Cayley, "exponential" Exponential, "projection" Projection, "moser_veselov" MoserVeselov, "exact" Exact);
+words!(ChartChoice: "cayley" Cayley, "exponential" Exponential);
+words!(Solver: "newton" Newton, "fixed_point" FixedPoint);
+words!(Summation: "plain" Plain, "compensated" Compensated);
+words!(CodeForm: "unrolled" Unrolled, "matrices" Matrices);
+words!(Isotropy: "fixed" Fixed, "free" Free);
+
+/// What may be emitted beside the integrator; `None` for what comes later.
+pub(super) const EMITTED: [(&str, Option<Emit>); 6] = [
+    ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
+    ("latex", Some(Emit { latex: true, ..Emit::NOTHING })),
+    ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
+    ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
+    ("momentum", Some(Emit { momentum: true, ..Emit::NOTHING })),
+    ("connection", None),
+];
+
+/// Orders by number.
+pub(super) const ORDERS: [Order; 6] =
+    [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
 
 /// A promise about the values of a field, which the stepper checks and simplification uses.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -133,16 +216,11 @@ impl Emit {
     pub(super) const NOTHING: Emit =
         Emit { generated: false, latex: false, tangent: false, boundary: false, momentum: false };
 
-    /// The words that ask for it.
-    pub(super) fn words(self) -> Vec<&'static str> {
-        let all = [
-            (self.generated, "generated"),
-            (self.latex, "latex"),
-            (self.tangent, "tangent"),
-            (self.boundary, "boundary"),
-            (self.momentum, "momentum"),
-        ];
-        all.into_iter().filter(|(asked, _)| *asked).map(|(_, word)| word).collect()
+    /// The list of words that asks for it; `None` for nothing.
+    pub(super) fn text(self) -> Option<String> {
+        let asked = EMITTED.iter().filter(|(_, emit)| emit.is_some_and(|emit| self.and(emit) == self));
+        let words: Vec<&str> = asked.map(|(word, _)| *word).collect();
+        (!words.is_empty()).then(|| format!("[{}]", words.join(", ")))
     }
 
     /// What either of two asks for.

@@ -1,9 +1,14 @@
-//! The keys of `#[clebsch(…)]`: which there are, which come later, and what was given.
+//! The keys of `#[clebsch(…)]`: one table says how each is read, its default and what it belongs to.
 
+mod markdown;
+
+pub use markdown::keys_as_markdown;
 use proc_macro2::{Ident, Span};
 
-use super::dials::{ChartChoice, CodeForm, Discretization, Emit, Isotropy, Order, Solver, Summation};
+use super::dials::{Dials, EMITTED, ORDERS};
+use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
+use crate::diagnostic::Diagnostic;
 
 /// A value and where it was written.
 #[derive(Clone, Debug)]
@@ -14,132 +19,115 @@ pub struct Located<T> {
     pub span: Span,
 }
 
-/// What a key's value is.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+/// A key: what can stand on the left of `=`.
+pub(super) struct Key {
+    /// The word.
+    pub name: &'static str,
+    /// How its value is read.
+    pub kind: Kind,
+    /// A value that it may have.
+    pub example: &'static str,
+    /// What holds where it is left out.
+    pub default: &'static str,
+    /// What it belongs to.
+    pub of: &'static str,
+}
+
+/// How the value of a key is read.
+#[derive(Copy, Clone)]
 pub(super) enum Kind {
-    /// A closure, and how it usually begins.
-    Closure(&'static str),
+    /// A closure, and where it is put.
+    Closure(fn(&mut Keys) -> &mut Option<Closure>),
     /// A closure, or two methods of the struct.
     Potential,
     /// A closure, or a list of them.
     Symmetry,
-    Order,
-    Discretization,
-    Chart,
-    Solver,
-    Tolerance,
-    Iterations,
-    Summation,
-    Code,
-    Isotropy,
-    Emit,
-    Scalar,
-    Crate,
+    /// Anything else: how it is read, and how it prints where it was given.
+    Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<String>),
     /// Part of the language, but not of this version.
     Later,
 }
 
-/// All keys.
-pub(super) const KEYS: [(&str, Kind); 27] = [
-    ("action", Kind::Closure("|F: SO<3>, R: SO<3>| …")),
-    ("cost", Kind::Closure("|h, F| …")),
-    ("lagrangian", Kind::Closure("|omega| …")),
-    ("potential", Kind::Potential),
-    ("symmetry", Kind::Symmetry),
-    ("force", Kind::Closure("|omega, torque: Vector3| torque - self.damping * omega")),
-    ("force_on", Kind::Closure("|x, thrust: Vector3| thrust")),
-    ("controls", Kind::Closure("|u: Vector2| vector![u.x, u.y, 0]")),
-    ("dynamics", Kind::Closure("|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]")),
-    ("effort", Kind::Closure("|h, torque| h * torque.norm_squared() / 2")),
-    ("bounds", Kind::Closure("|u| [u.x <= 1, -1 <= u.x]")),
-    ("endpoint", Kind::Closure("|q| …")),
-    ("isotropy", Kind::Isotropy),
-    ("order", Kind::Order),
-    ("discretization", Kind::Discretization),
-    ("chart", Kind::Chart),
-    ("solver", Kind::Solver),
-    ("tolerance", Kind::Tolerance),
-    ("iterations", Kind::Iterations),
-    ("summation", Kind::Summation),
-    ("code", Kind::Code),
-    ("emit", Kind::Emit),
-    ("scalar", Kind::Scalar),
-    ("crate", Kind::Crate),
-    ("constraint", Kind::Later),
-    ("discrete_constraint", Kind::Later),
-    ("space", Kind::Later),
+use Kind::{Dial, Later, Symmetry};
+
+const MECHANICS: &str = "mechanics";
+const STEERED: &str = "inputs that move the configuration";
+const CHOICE: &str = "inputs that are chosen";
+const ALL: &str = "every declaration";
+const ITERATED: &str = "implicit momentum equations";
+
+/// All keys: the name, how the value is read, an example, the default, and what the key belongs to.
+#[rustfmt::skip]
+pub(super) const KEYS: [Key; 27] = [
+    closure("action", |keys| &mut keys.action, "|F: SO<3>, R: SO<3>| …", "", "every declaration but `dynamics`"),
+    closure("cost", |keys| &mut keys.cost, "|h, F| …", "", "mechanics, or the price of a step of inputs"),
+    closure("lagrangian", |keys| &mut keys.lagrangian, "|omega| …", "", MECHANICS),
+    key("potential", Kind::Potential, "|q| …", "none", MECHANICS),
+    key("symmetry", Symmetry, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS),
+    closure("force", |keys| &mut keys.force, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS),
+    closure("force_on", |keys| &mut keys.force_on, "|x, thrust: Vector3| thrust", "none", MECHANICS),
+    closure("controls", |keys| &mut keys.controls, "|u: Vector2| vector![u.x, u.y, 0]", "", STEERED),
+    closure("dynamics", |keys| &mut keys.dynamics, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", STEERED),
+    closure("effort", |keys| &mut keys.effort, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
+    closure("bounds", |keys| &mut keys.bounds, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
+    closure("endpoint", |keys| &mut keys.endpoint, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
+    key("order", Dial(|dials, value| value.order(&ORDERS, &mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
+    key("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
+    key("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
+    key("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver)), "fixed_point", "what takes fewer operations", ITERATED),
+    key("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations)), "4", "until round-off", ITERATED),
+    key("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| Some(format!("{:e}", dials.tolerance.as_ref()?.value))), "1e-8", "round-off", ITERATED),
+    key("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
+    key("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
+    key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy)), "free", "`fixed`", MECHANICS),
+    key("emit", Dial(|dials, value| value.words(&EMITTED, &mut dials.emit), |dials| dials.emit.text()), "[generated]", "`[]`", ALL),
+    key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string)), "f64", "`f64`", "structs without fields"),
+    key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens)), "::clebsch", "`::clebsch`", ALL),
+    key("constraint", Later, "…", "", ""),
+    key("discrete_constraint", Later, "…", "", ""),
+    key("space", Later, "…", "", ""),
 ];
 
-/// The dials that a name sets: the word, and its value or `None` if it comes later.
-pub(super) const DISCRETIZATIONS: [(&str, Option<Discretization>); 5] = [
-    ("cayley", Some(Discretization::Cayley)),
-    ("exponential", Some(Discretization::Exponential)),
-    ("projection", Some(Discretization::Projection)),
-    ("moser_veselov", Some(Discretization::MoserVeselov)),
-    ("exact", Some(Discretization::Exact)),
-];
+const fn key(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
+    Key { name, kind, example, default, of }
+}
 
-/// Charts by name.
-pub(super) const CHARTS: [(&str, Option<ChartChoice>); 2] =
-    [("cayley", Some(ChartChoice::Cayley)), ("exponential", Some(ChartChoice::Exponential))];
+const fn closure(
+    name: &'static str,
+    place: fn(&mut Keys) -> &mut Option<Closure>,
+    example: &'static str,
+    default: &'static str,
+    of: &'static str,
+) -> Key {
+    key(name, Kind::Closure(place), example, default, of)
+}
 
-/// Solvers by name.
-pub(super) const SOLVERS: [(&str, Option<Solver>); 2] =
-    [("newton", Some(Solver::Newton)), ("fixed_point", Some(Solver::FixedPoint))];
+/// A value as it is written, where it was given.
+fn text<T: ToString>(value: &Option<Located<T>>) -> Option<String> {
+    value.as_ref().map(|located| located.value.to_string())
+}
 
-/// Kinds of summation by name.
-pub(super) const SUMMATIONS: [(&str, Option<Summation>); 2] =
-    [("plain", Some(Summation::Plain)), ("compensated", Some(Summation::Compensated))];
+impl Key {
+    /// Whether it belongs to a later version.
+    pub fn comes_later(&self) -> bool {
+        matches!(self.kind, Kind::Later)
+    }
+}
 
-/// Forms of code by name.
-pub(super) const CODES: [(&str, Option<CodeForm>); 2] =
-    [("unrolled", Some(CodeForm::Unrolled)), ("matrices", Some(CodeForm::Matrices))];
+impl Dials {
+    /// The dials that were given, with their values as they are written, in the order of the table.
+    pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, String)> {
+        KEYS.iter().filter_map(|key| match key.kind {
+            Kind::Dial(_, text) => Some((key.name, text(self)?)),
+            _ => None,
+        })
+    }
 
-/// What becomes of motions that move nothing, by name.
-pub(super) const ISOTROPIES: [(&str, Option<Isotropy>); 2] =
-    [("fixed", Some(Isotropy::Fixed)), ("free", Some(Isotropy::Free))];
-
-/// What may be emitted beside the integrator.
-pub(super) const EMITTED: [(&str, Option<Emit>); 6] = [
-    ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
-    ("latex", Some(Emit { latex: true, ..Emit::NOTHING })),
-    ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
-    ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
-    ("momentum", Some(Emit { momentum: true, ..Emit::NOTHING })),
-    ("connection", None),
-];
-
-/// Orders by number.
-pub(super) const ORDERS: [Order; 6] =
-    [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
-
-/// The keys that are no closures; each has a default.
-#[derive(Clone, Default, Debug)]
-pub struct Dials {
-    /// `order = 2`.
-    pub order: Option<Located<Order>>,
-    /// `discretization = cayley`.
-    pub discretization: Option<Located<Discretization>>,
-    /// `chart = exponential`.
-    pub chart: Option<Located<ChartChoice>>,
-    /// `solver = newton`.
-    pub solver: Option<Located<Solver>>,
-    /// `tolerance = 1e-8`.
-    pub tolerance: Option<Located<f64>>,
-    /// `iterations = 4`.
-    pub iterations: Option<Located<u32>>,
-    /// `summation = compensated`.
-    pub summation: Option<Located<Summation>>,
-    /// `code = matrices`.
-    pub code: Option<Located<CodeForm>>,
-    /// `isotropy = fixed`.
-    pub isotropy: Option<Located<Isotropy>>,
-    /// `emit = [generated]`.
-    pub emit: Emit,
-    /// `scalar = f32`, for systems without fields.
-    pub scalar: Option<Ident>,
-    /// `crate = path`.
-    pub krate: Option<syn::Path>,
+    /// Those that say how a step is made, of a system that has all the others.
+    pub(crate) fn of_steps(&self) -> Dials {
+        let Dials { chart, solver, tolerance, iterations, summation, code, .. } = self.clone();
+        Dials { chart, solver, tolerance, iterations, summation, code, ..Dials::default() }
+    }
 }
 
 /// All keys that were given.

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::dials::Emit;
 use super::{Declaration, Definition, Kinetic, Potential, spell, spell_type};
 
 impl fmt::Display for Declaration {
@@ -43,42 +42,8 @@ impl fmt::Display for Declaration {
         for symmetry in &self.symmetries {
             writeln!(f, "  symmetry   = {}", symmetry.spell())?;
         }
-        let dials = &self.dials;
-        if let Some(order) = &dials.order {
-            writeln!(f, "  order      = {}", order.value)?;
-        }
-        if let Some(discretization) = &dials.discretization {
-            writeln!(f, "  discretization = {}", discretization.value)?;
-        }
-        if let Some(chart) = &dials.chart {
-            writeln!(f, "  chart      = {}", chart.value)?;
-        }
-        if let Some(solver) = &dials.solver {
-            writeln!(f, "  solver     = {}", solver.value)?;
-        }
-        if let Some(iterations) = &dials.iterations {
-            writeln!(f, "  iterations = {}", iterations.value)?;
-        }
-        if let Some(tolerance) = &dials.tolerance {
-            writeln!(f, "  tolerance  = {:e}", tolerance.value)?;
-        }
-        if let Some(summation) = &dials.summation {
-            writeln!(f, "  summation  = {}", summation.value)?;
-        }
-        if let Some(code) = &dials.code {
-            writeln!(f, "  code       = {}", code.value)?;
-        }
-        if let Some(isotropy) = &dials.isotropy {
-            writeln!(f, "  isotropy   = {}", isotropy.value)?;
-        }
-        if dials.emit != Emit::default() {
-            writeln!(f, "  emit       = [{}]", dials.emit.words().join(", "))?;
-        }
-        if let Some(scalar) = &dials.scalar {
-            writeln!(f, "  scalar     = {scalar}")?;
-        }
-        if let Some(krate) = &dials.krate {
-            writeln!(f, "  crate      = {}", super::spelling::tokens(krate))?;
+        for (name, value) in self.dials.given() {
+            writeln!(f, "  {name:<10} = {value}")?;
         }
         for field in &self.fields {
             let promise = field.promise.map(|(promise, _)| format!(", {promise:?}").to_lowercase()).unwrap_or_default();

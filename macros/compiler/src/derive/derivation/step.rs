@@ -114,7 +114,7 @@ fn spaces(formulas: &Formulas<'_>) -> String {
 
 /// How much work a step may be.
 fn iterations(formulas: &Formulas<'_>) -> String {
-    let Some(iterations) = &formulas.model.iterations else { return String::new() };
+    let Some(iterations) = &formulas.model.dials.iterations else { return String::new() };
     format!(
         "At most {} iterations for each momentum equation, as asked for; a step that needs more is an error.\n",
         iterations.value
@@ -123,7 +123,7 @@ fn iterations(formulas: &Formulas<'_>) -> String {
 
 /// What an iteration that ends early leaves as it is, and what it does not.
 fn tolerance(formulas: &Formulas<'_>) -> String {
-    let Some(tolerance) = &formulas.model.tolerance else { return String::new() };
+    let Some(tolerance) = &formulas.model.dials.tolerance else { return String::new() };
     let kept = formulas.conserved_by_any_element();
     let kept: Vec<&str> = kept.into_iter().map(|momentum| momentum.name.as_str()).collect();
     let kept = if kept.is_empty() {
@@ -152,8 +152,8 @@ fn collocated(formulas: &Formulas<'_>, collocation: &Collocation<'_>) -> String 
     if collocation.is_affine {
         text += "The action moves the origin: J is affine in q.\n";
     }
-    let most = formulas.model.iterations.as_ref().map_or(64, |iterations| iterations.value);
-    text += match &formulas.model.tolerance {
+    let most = formulas.model.dials.iterations.as_ref().map_or(64, |iterations| iterations.value);
+    text += match &formulas.model.dials.tolerance {
         None => format!("Slopes are found by sweeps over all stages, {most} at most, until only rounding changes.\n"),
         Some(tolerance) => format!(
             "Slopes are found by sweeps over all stages, {most} at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \

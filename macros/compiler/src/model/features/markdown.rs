@@ -1,12 +1,12 @@
 //! The table as the docs print it.
 
-use std::path::Path;
-
+#[cfg(test)]
+use super::combinations;
 use super::rows::ROWS;
-use super::{Feature, Row, combinations, filled};
+use super::{Feature, Row, filled};
 
-/// The table as Markdown.
-fn table() -> String {
+/// The table of what does not go together in Markdown.
+pub fn features_as_markdown() -> String {
     let head = "| what | does not go with | why | what to write |\n|---|---|---|---|\n";
     ROWS.iter().map(row).fold(head.to_string(), |table, row| table + &row)
 }
@@ -34,9 +34,12 @@ fn words(features: &[Feature], separator: &str) -> String {
 
 #[test]
 fn the_docs_show_the_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/features.md");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/features.md");
     let page = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(page.contains(&table()), "copy this table into docs/features.md:\n\n{}", table());
+    assert!(
+        page.contains(&features_as_markdown()),
+        "cargo run -p clebsch-compiler --example features > docs/features.md"
+    );
 }
 
 #[test]
