@@ -147,6 +147,58 @@ impl Id {
         }
     }
 
+    /// The equation whose formula it is, by its number in its substep.
+    pub fn equation(self) -> Option<usize> {
+        match self {
+            Id::Equation(_, number)
+            | Id::Jacobian(_, number)
+            | Id::JacobianFactor(_, number)
+            | Id::Solution(_, number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// The generated methods and types whose documentation shows it, without the suffixes of substeps.
+    pub fn shown_by(self) -> &'static [&'static str] {
+        match self {
+            Id::Action => &["act"],
+            Id::MomentumMap => &["momentum_map"],
+            Id::Coadjoint => &["coadjoint"],
+            Id::Lagrangian => &["velocity"],
+            Id::PotentialEnergy => &["potential"],
+            Id::KineticEnergyOfMomentum => &["kinetic_energy"],
+            Id::Force => &["start_force", "moving_force", "end_force"],
+            Id::Legendre => &["legendre"],
+            Id::LegendreNext => &["legendre_next"],
+            Id::Term(_) => &["potential_of_sites"],
+            Id::Controls => &["follow"],
+            Id::Price => &["price"],
+            Id::Bounds => &["bounds"],
+            Id::PriceOfEnd => &["endpoint"],
+            Id::Conserved(_) => &["conserved"],
+            Id::StartKick(_) => &["start_kick"],
+            Id::RestKick(_) => &["rest_kick"],
+            Id::StartGradient(_) => &["start_gradient"],
+            Id::Equation(..) => &["Equation", "residual", "linearize"],
+            Id::Jacobian(..) => &["linearize", "system"],
+            Id::JacobianFactor(..) => &["linearize"],
+            Id::Solution(..) => &["closed_form", "explicit"],
+            Id::MomentumAfter(_) => &["update"],
+            Id::EndKick(_) => &["end_kick"],
+            Id::EndGradient(_) => &["end_gradient"],
+            Id::CoupledGradient(_) => &["coupled_gradient"],
+            Id::SynchronizedMomentum => &["stagger"],
+            Id::SplittingKick => &["kick"],
+            Id::SplittingGradient => &["kick_gradient"],
+            Id::Increment => &["increment"],
+            Id::Advance => &["advance"],
+            Id::Displacement => &["displace"],
+            Id::Lift => &["lift"],
+            Id::HamiltonEquations => &["slope"],
+            _ => &[],
+        }
+    }
+
     /// What the table says.
     pub fn entry(self) -> Entry {
         let listed = |title, source, heat| Entry { title, source, heat, is_listed: true };

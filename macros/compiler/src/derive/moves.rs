@@ -7,7 +7,7 @@ use crate::model::Factor;
 
 impl<'g> Formulas<'g> {
     /// Functions of the time at which a step starts, of functions of a time that is `later`.
-    pub(super) fn from_start(&self, later: Expr<'g>, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub(super) fn as_of_start(&self, later: Expr<'g>, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let moved = [(self.model.time, self.model.time + later)];
         parts.iter().map(|part| part.substitute(&moved)).collect()
     }
@@ -16,7 +16,7 @@ impl<'g> Formulas<'g> {
     ///
     /// Forces in 𝔤* have no covectors, so that a forced system has no kicks of covectors.
     pub(super) fn covector_kick(&self, part: Expr<'g>, later: Expr<'g>) -> Option<Vec<Expr<'g>>> {
-        let part = self.from_start(later, &[part])[0];
+        let part = self.as_of_start(later, &[part])[0];
         let gradients = self.gradients(part);
         let acts = self.model.force.is_none() && gradients.iter().any(|gradient| !identity::vanishes(*gradient));
         acts.then_some(gradients)

@@ -302,6 +302,7 @@ impl Emitter<'_, '_> {
         let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
         let formulas = &self.program.formulas;
         let documentation = docs::formulas("The price of a step.", formulas.titled(Id::Price), Some(&kernels.price));
+        let of_end = docs::formulas("The price of the end.", formulas.titled(Id::PriceOfEnd), None);
         let of_bounds = docs::formulas("The bounds.", formulas.titled(Id::Bounds), Some(&kernels.bounds));
         quote! {
             #documentation
@@ -328,7 +329,7 @@ impl Emitter<'_, '_> {
                 let (values, by_motion, by_input, motions, mixed, inputs) = #expanded;
                 #private::bounds(values, &by_motion, by_input, &motions, &mixed, inputs)
             }
-            /// The price of the end.
+            #of_end
             fn endpoint(&self, t: #scalar, x: &Self::Place) -> #scalar {
                 let q = #q;
                 #endpoint

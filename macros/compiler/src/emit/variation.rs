@@ -6,6 +6,7 @@ use quote::{format_ident, quote};
 
 use super::code::Nesting;
 use super::{Emitter, Generics, code, docs, matrices};
+use crate::derive::Id;
 use crate::lower::{EdgeKernels, Kernel, VariationKernels};
 
 impl Emitter<'_, '_> {
@@ -108,7 +109,8 @@ impl Emitter<'_, '_> {
     /// The move by an increment. Where sums keep their rests, the kernel has what is added.
     fn advance_of_motions(&self) -> TokenStream {
         let kernel = &self.program.steps[0].advance;
-        let documentation = docs::formulas("The configuration that F = I + D moves q to.", &[], Some(kernel));
+        let formulas = self.program.formulas.titled(Id::Advance);
+        let documentation = docs::formulas("The configuration that F = I + D moves q to.", formulas, Some(kernel));
         let moved = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
         let moved = if self.is_compensated() { self.moved_to(quote!({ #moved })) } else { moved };
         quote! {

@@ -10,7 +10,7 @@ impl<'g> Formulas<'g> {
         let (substep, q) = (&self.substeps[index], self.q());
         let mut rows = Vec::new();
         if let Some(start) = &substep.start {
-            rows.push(Formula::shorter(Id::StartKick(index), "M − N", &self.from_start(substep.begins, start)));
+            rows.push(Formula::shorter(Id::StartKick(index), "M − N", &self.as_of_start(substep.begins, start)));
         }
         for number in 0..substep.equations.len() {
             rows.extend(self.rows_of_equation(index, number));
@@ -21,7 +21,7 @@ impl<'g> Formulas<'g> {
             rows.push(Formula::shorter(Id::MomentumAfter(index), symbol, &after));
         }
         if let Some(end) = &substep.end {
-            let end = self.from_start(substep.ends, end);
+            let end = self.as_of_start(substep.ends, end);
             rows.push(Formula::shorter(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), &end));
         }
         if let Some(rest) = &substep.rest {
@@ -51,9 +51,9 @@ impl<'g> Formulas<'g> {
     fn rows_of_forces(&self, index: usize, substep: &Substep<'g>) -> Vec<Formula<'g>> {
         let Some(force) = &substep.force else { return Vec::new() };
         let moving = force.start_moving.as_ref().filter(|_| substep.other.is_none());
-        let start = force.start.as_ref().map(|start| self.from_start(substep.begins, start));
-        let moving = moving.map(|moving| self.in_chart(&self.from_start(substep.begins, moving)));
-        let end = self.in_chart(&self.from_start(substep.ends, &force.end));
+        let start = force.start.as_ref().map(|start| self.as_of_start(substep.begins, start));
+        let moving = moving.map(|moving| self.in_chart(&self.as_of_start(substep.begins, moving)));
+        let end = self.in_chart(&self.as_of_start(substep.ends, &force.end));
         let table = [
             (Id::StartForce(index), "M − N by f".to_string(), start),
             (Id::MovingForce(index), "M − N by f".to_string(), moving),

@@ -1,0 +1,142 @@
+//! What the documentation of generated code shows is what is computed: each formula as the table has it, by its id.
+
+use std::path::Path;
+
+use clebsch_compiler::derive::{Formula, Formulas};
+use clebsch_compiler::lower::Program;
+use clebsch_compiler::{Graph, compile, emit};
+use quote::ToTokens;
+use syn::{Attribute, Expr, ImplItem, Item, Lit, Meta, Type};
+
+/// A method or type of generated code with its documentation.
+struct Documented {
+    /// Its name, without the suffix of a substep.
+    name: String,
+    /// The substep and the equation that it belongs to; `None` for those of the whole system.
+    place: Option<(usize, Option<usize>)>,
+    lines: Vec<String>,
+}
+
+impl Documented {
+    /// The equations that it shows.
+    fn equations(&self) -> Vec<&str> {
+        let shown = self.lines.iter().map(String::as_str).skip_while(|line| *line != "```text").skip(1);
+        shown.take_while(|line| *line != "```").collect()
+    }
+
+    fn shows(&self, row: &Formula<'_>) -> bool {
+        let substep = row.id.substep();
+        row.id.shown_by().contains(&self.name.as_str())
+            && (substep.is_none() || substep == self.place.map(|(index, _)| index))
+            && row.id.equation() == self.place.and_then(|(_, number)| number)
+    }
+}
+
+/// The substep that a suffix stands for.
+fn substep(formulas: &Formulas<'_>, suffix: &str) -> usize {
+    match suffix {
+        "_whole" | "Whole" => formulas.parts,
+        "_adjoint" | "Adjoint" => 1,
+        _ => 0,
+    }
+}
+
+/// The name of a method of a step without its suffix, and its place.
+fn of_step(formulas: &Formulas<'_>, name: &str) -> (String, Option<(usize, Option<usize>)>) {
+    let suffix = ["_first", "_adjoint", "_whole"].into_iter().find(|suffix| name.ends_with(suffix)).unwrap_or_default();
+    (name.trim_end_matches(suffix).to_string(), Some((substep(formulas, suffix), None)))
+}
+
+/// The place of the type of a momentum equation, `EquationFirst1`.
+fn of_equation(formulas: &Formulas<'_>, name: &str) -> Option<(usize, Option<usize>)> {
+    let suffix = name.strip_prefix("Equation")?.trim_end_matches(|c: char| c.is_ascii_digit());
+    let number: usize = name.trim_start_matches(|c: char| !c.is_ascii_digit()).parse().ok()?;
+    Some((substep(formulas, suffix), Some(number - 1)))
+}
+
+fn documentation(attributes: &[Attribute]) -> Vec<String> {
+    let line = |attribute: &Attribute| match &attribute.meta {
+        Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
+            Expr::Lit(literal) => match &literal.lit {
+                Lit::Str(text) => Some(text.value().trim().to_string()),
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
+    };
+    attributes.iter().filter_map(line).collect()
+}
+
+/// All methods and types of the generated code of a program.
+fn documented(program: &Program<'_>) -> Vec<Documented> {
+    let formulas = &program.formulas;
+    let file = syn::parse_file(&emit::generated(program)).expect("generated Rust");
+    let is_power = |owner: &str| formulas.model.power.as_ref().is_some_and(|power| power.item.ident == owner);
+    let mut all = Vec::new();
+    for item in file.items {
+        match item {
+            Item::Struct(item) => {
+                let place = of_equation(formulas, &item.ident.to_string());
+                let name = if place.is_some() { "Equation".to_string() } else { item.ident.to_string() };
+                all.push(Documented { name, place, lines: documentation(&item.attrs) });
+            }
+            Item::Impl(item) => {
+                let Type::Path(path) = &*item.self_ty else { continue };
+                let owner = path.path.segments.last().expect("a path").ident.to_string();
+                for method in &item.items {
+                    let ImplItem::Fn(method) = method else { continue };
+                    let (mut name, mut place) = of_step(formulas, &method.sig.ident.to_string());
+                    place = of_equation(formulas, &owner).or(place);
+                    if owner == "Velocity" {
+                        name = "velocity".to_string();
+                    }
+                    let shown = Documented { name, place, lines: documentation(&method.attrs) };
+                    // a power hands what it is asked to its sites
+                    if !is_power(&owner) || !shown.equations().is_empty() {
+                        all.push(shown);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+/// What the documentation of a program shows and the table does not say, or the other way round.
+fn differences(program: &Program<'_>) -> Vec<String> {
+    let mut found = Vec::new();
+    for item in documented(program) {
+        let rows: Vec<_> = program.formulas.table().iter().filter(|row| item.shows(row)).collect();
+        let expected: Vec<String> = rows.iter().map(|row| row.equation()).collect();
+        let source = rows.first().and_then(|row| row.source).map(|source| format!("Source: {source}."));
+        let shown = item.lines.iter().find(|line| line.starts_with("Source:"));
+        if item.equations() != expected || shown != source.as_ref() {
+            let (name, place, shown) = (&item.name, item.place, item.equations());
+            found.push(format!("`{name}` {place:?} shows {shown:?} and not {expected:?}"));
+        }
+    }
+    found
+}
+
+#[test]
+fn methods_show_the_formulas_that_they_compute() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/accept");
+    let (mut count, mut different) = (0, Vec::new());
+    for entry in std::fs::read_dir(folder).expect("a folder of fixtures") {
+        let path = entry.expect("a file").path();
+        let source = std::fs::read_to_string(&path).expect("a readable fixture");
+        let file = syn::parse_file(&source).expect("Rust source");
+        for item in file.items {
+            let Item::Struct(item) = item else { continue };
+            let graph = Graph::new();
+            let program = compile(&graph, item.to_token_stream()).unwrap_or_else(|errors| panic!("{errors}"));
+            let found = differences(&program);
+            different.extend(found.into_iter().map(|difference| format!("{}: {difference}", path.display())));
+            count += 1;
+        }
+    }
+    assert!(different.is_empty(), "{}", different.join("\n"));
+    assert!(count >= 50, "only {count} fixtures");
+}
