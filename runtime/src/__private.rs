@@ -19,7 +19,7 @@ pub use crate::free_rotation_4d::{FreeRotation4, KeptRotation4, free_momentum_4d
 pub use crate::implicit::{
     Equation, Jacobian, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
 };
-pub use crate::linear::{Orientation, solve_dense, solve_symmetric};
+pub use crate::linear::{solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::matrices::{determinant, embedded, matrix_of, shifted, skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
@@ -27,6 +27,7 @@ pub use crate::orbit::{
     largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
     orthogonal_with_rest, orthogonality_defect,
 };
+pub use crate::orientation::Orientation;
 pub use crate::parameters::{
     InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric,
     check_unit, distance_of_projection, invert, invert_uniform, orientation_of_inertia, orientation_of_uniform,

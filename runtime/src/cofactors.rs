@@ -5,7 +5,7 @@
 //!
 //! All of it is inlined where it is called: a Jacobian that goes through memory costs more than the solution.
 
-use crate::linear::Orientation;
+use crate::orientation::Orientation;
 use crate::{Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -161,7 +161,8 @@ fn norm<T: Scalar>(x: &[T; 3]) -> T {
 
 #[cfg(test)]
 mod tests {
-    use crate::linear::{Orientation, solve_dense};
+    use crate::linear::solve_dense;
+    use crate::orientation::Orientation;
     use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
     use proptest::prelude::*;
 

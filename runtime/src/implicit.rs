@@ -16,8 +16,8 @@ pub use jacobian::Jacobian;
 pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
-use crate::linear::Orientation;
 use crate::matrices::total;
+use crate::orientation::Orientation;
 use crate::space::larger;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;

@@ -165,6 +165,7 @@ mod matrices;
 mod newton;
 mod opaque;
 mod orbit;
+mod orientation;
 mod parameters;
 mod power;
 mod root;

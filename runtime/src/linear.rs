@@ -4,90 +4,11 @@
 //! overflows long before its factors do.
 
 use crate::cofactors;
+use crate::orientation::Orientation;
 use crate::space::larger;
 use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
-use core::ops::Mul;
 use nalgebra::{SMatrix, SVector};
-
-/// The sign of the determinant of a matrix, in each lane in which the matrix is regular.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Orientation {
-    /// The lanes with det > 0, one bit for each.
-    positive: u16,
-    /// The lanes with det < 0.
-    negative: u16,
-}
-
-impl Mul for Orientation {
-    type Output = Self;
-
-    /// The sign of the product of two determinants.
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        Self {
-            positive: self.positive & other.positive | self.negative & other.negative,
-            negative: self.positive & other.negative | self.negative & other.positive,
-        }
-    }
-}
-
-impl Orientation {
-    /// det > 0 of a single number.
-    pub const POSITIVE: Self = Self { positive: 1, negative: 0 };
-    /// det < 0 of a single number.
-    pub const NEGATIVE: Self = Self { positive: 0, negative: 1 };
-
-    /// The sign of the determinant of `rows`, `None` where it is singular or not finite in some lane.
-    #[inline]
-    pub fn of<T: Scalar, const M: usize>(rows: [[T; M]; M]) -> Option<Self> {
-        eliminate::<T, M, 0>(rows, &mut [[]; M]).filter(|orientation| orientation.lanes::<T>().all())
-    }
-
-    /// The sign of a single number in all lanes.
-    #[cfg(all(test, feature = "lanes"))]
-    pub(crate) fn everywhere(single: Self) -> Self {
-        Self { positive: single.positive * u16::MAX, negative: single.negative * u16::MAX }
-    }
-
-    /// From the lanes in which the matrix is regular, and those in which an odd number of signs was negative.
-    #[inline]
-    pub(crate) fn new<M: Mask>(regular: M, negative: M) -> Self {
-        Self { positive: (regular & !negative).bits(), negative: (regular & negative).bits() }
-    }
-
-    /// Whether the matrix is regular in all lanes.
-    #[inline]
-    pub(crate) fn is_known<T: Scalar>(self) -> bool {
-        self.lanes::<T>().all()
-    }
-
-    /// The lanes in which the matrix is regular.
-    #[inline]
-    fn lanes<T: Scalar>(self) -> T::Mask {
-        T::Mask::from_bits(self.positive | self.negative)
-    }
-
-    /// The sign in one lane.
-    #[inline]
-    pub(crate) fn lane(self, lane: usize) -> Self {
-        Self { positive: self.positive >> lane & 1, negative: self.negative >> lane & 1 }
-    }
-
-    /// The lanes in which the sign is that of `other`.
-    #[inline]
-    pub(crate) fn agrees<T: Scalar>(self, other: Self) -> T::Mask {
-        T::Mask::from_bits(self.positive & other.positive | self.negative & other.negative)
-    }
-
-    /// The sign here in the lanes of `mask`, that of `other` elsewhere.
-    #[inline]
-    fn or(self, mask: u16, other: Option<Self>) -> Self {
-        let merge = |own, other| own & mask | other & !mask;
-        let other = other.unwrap_or(Self { positive: 0, negative: 0 });
-        Self { positive: merge(self.positive, other.positive), negative: merge(self.negative, other.negative) }
-    }
-}
 
 /// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
 ///
@@ -160,6 +81,14 @@ pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
         }
     });
     Some(Orientation::new(regular, negative))
+}
+
+impl Orientation {
+    /// The sign of the determinant of `rows`, `None` where it is singular or not finite in some lane.
+    #[inline]
+    pub fn of<T: Scalar, const M: usize>(rows: [[T; M]; M]) -> Option<Self> {
+        eliminate::<T, M, 0>(rows, &mut [[]; M]).filter(|orientation| orientation.lanes::<T>().all())
+    }
 }
 
 /// Exchanges two rows in the lanes of `mask`.
@@ -292,9 +221,9 @@ pub fn solve_symmetric<T: Scalar, const M: usize>(
     Some((x.zip_map(&others, |x, other| T::select(is_definite, x, other)), orientation.or(is_definite.bits(), signs)))
 }
 
-/// A square matrix by rows.
+/// A matrix by rows.
 #[inline]
-pub(crate) fn rows<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> [[T; N]; N] {
+pub(crate) fn rows<T: Scalar, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> [[T; C]; R] {
     from_fn(|i| from_fn(|j| matrix.get((i, j)).copied().unwrap_or_else(T::zero)))
 }
 

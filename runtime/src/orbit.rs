@@ -1,6 +1,7 @@
 //! Where configurations lie: by how much they are off their groups and spheres.
 
-use crate::linear::{Orientation, rows};
+use crate::linear::rows;
+use crate::orientation::Orientation;
 use crate::space::{lane_of, larger};
 use crate::summation::accumulate;
 use crate::{Mask, Scalar};

@@ -1,6 +1,7 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
-use crate::linear::{Orientation, eliminate, multiple_of_identity, power_of_two_near, rows};
+use crate::linear::{eliminate, multiple_of_identity, power_of_two_near, rows};
+use crate::orientation::Orientation;
 use crate::space::{check_lanes, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar, Space};
 use core::array::from_fn;

@@ -86,13 +86,7 @@ pub fn endpoint<T: Scalar, const M: usize, const D: usize>(
 
 /// No price of the end.
 pub fn no_endpoint<T: Scalar, const D: usize>() -> EndpointExpansion<T, D> {
-    let zero = T::zero();
-    EndpointExpansion {
-        price: zero,
-        by_time: zero,
-        slope: SVector::from_element(zero),
-        curvature: SMatrix::from_element(zero),
-    }
+    EndpointExpansion::none()
 }
 
 /// Bounds as functions of a place of which q is the first part.

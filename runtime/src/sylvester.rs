@@ -7,8 +7,9 @@
 //! Source: Bartels and Stewart, *Solution of the matrix equation AX + XB = C*, Communications of the ACM 15 (1972) 820–826.
 
 use crate::implicit::Jacobian;
-use crate::linear::{Orientation, eliminate, entry, power_of_two_near, rows, solve_dense};
+use crate::linear::{eliminate, entry, power_of_two_near, rows, solve_dense};
 use crate::matrices::{matrix_of, skew, skew_components};
+use crate::orientation::Orientation;
 use crate::schur::Schur;
 use crate::space::{lane_of, set_lane};
 use crate::{Mask, Real, Scalar, Space};
@@ -270,8 +271,9 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
 mod tests {
     use super::Sylvester;
     use crate::implicit::Jacobian;
-    use crate::linear::{Orientation, rows, solve_dense};
+    use crate::linear::{rows, solve_dense};
     use crate::matrices::matrix_of;
+    use crate::orientation::Orientation;
     use nalgebra::{SMatrix, SVector};
 
     /// Numbers between −1 and 1 by a linear congruence.

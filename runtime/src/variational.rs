@@ -90,7 +90,7 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
     #[inline]
     fn endpoint(&self, _t: Self::Scalar, _q: &Self::Configuration) -> EndpointExpansion<Self::Scalar, M> {
-        crate::steered::no_endpoint()
+        EndpointExpansion::none()
     }
 
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.

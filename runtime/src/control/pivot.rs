@@ -4,7 +4,6 @@ use crate::Real;
 use crate::linear::rows;
 use crate::newton::{Curvature, Ldl, Spectrum, UNITS, turned_over};
 use crate::space::larger;
-use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
 /// The inverse of a Hessian.
@@ -53,8 +52,8 @@ impl<T: Real, const U: usize> Pivot<T, U> {
     pub fn against<const K: usize>(&self, b: &SMatrix<T, U, K>) -> SMatrix<T, U, K> {
         match &self.factors {
             Factors::Triangular(factors) => {
-                let mut w = from_fn(|i| from_fn(|j| -b[(i, j)]));
-                factors.forward::<K>(&mut w);
+                let mut w = rows(&-b);
+                factors.forward(&mut w);
                 let mut x = factors.divided(&w);
                 factors.backward(&mut x);
                 SMatrix::from_fn(|i, j| x[i][j])

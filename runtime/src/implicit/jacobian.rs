@@ -1,6 +1,7 @@
 //! Dρ(ξ) as the solvers take it: a matrix, or a linear map that is inverted by its structure.
 
-use crate::linear::{Orientation, eliminate, rows, solve_dense};
+use crate::linear::{eliminate, rows, solve_dense};
+use crate::orientation::Orientation;
 use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};

@@ -1,7 +1,7 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
 use super::{Equation, Jacobian, QUICK, at_identity, path, size, with_derivatives};
-use crate::linear::Orientation;
+use crate::orientation::Orientation;
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;

@@ -1,7 +1,8 @@
 //! Implicit equations that are affine in the unknowns: one elimination solves them.
 
 use super::{Equation, lane};
-use crate::linear::{Orientation, solve_dense};
+use crate::linear::solve_dense;
+use crate::orientation::Orientation;
 use crate::{Error, Mask, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 

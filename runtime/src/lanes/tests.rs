@@ -1,7 +1,8 @@
 //! Lanes against single numbers, bit for bit.
 
 use super::{F32x8, F64x4, F64x8};
-use crate::linear::{Orientation, eliminate, solve_symmetric};
+use crate::linear::{eliminate, solve_symmetric};
+use crate::orientation::Orientation;
 use crate::{Mask, Scalar};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;

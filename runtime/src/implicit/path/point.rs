@@ -2,7 +2,7 @@
 
 use super::unsolvable;
 use crate::implicit::{Equation, Jacobian, is_much_smaller, size};
-use crate::linear::Orientation;
+use crate::orientation::Orientation;
 use crate::space::larger;
 use crate::{Error, Real, Space};
 use nalgebra::SVector;
