@@ -29,18 +29,8 @@ impl Group {
     /// The chart in which the implicit equation is solved, unless a declaration chooses another.
     pub fn chart(self, graph: &Graph) -> Chart {
         match self {
-            Group::SpecialOrthogonal(_)
-            | Group::PseudoOrthogonal(..)
-            | Group::Symplectic(_)
-            | Group::Unitary(_)
-            | Group::UnitQuaternions
-            | Group::SpecialLinear(2) => Chart::Cayley,
-            Group::SpecialEuclidean(_) | Group::Similarity(_) => Chart::Product,
-            Group::GeneralLinear(_) | Group::Heisenberg(_) | Group::Affine(_) => Chart::Affine,
-            Group::SpecialLinear(_) => Chart::Root,
-            Group::SpecialUnitary(_) => Chart::Exponential,
-            Group::Translation(_) => Chart::Identity,
             Group::Declared(declared) => graph.definition_at(declared.index).chart,
+            _ => self.row().chart,
         }
     }
 

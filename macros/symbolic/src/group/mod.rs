@@ -8,6 +8,7 @@ mod chart;
 mod declared;
 mod motion;
 pub(crate) mod sample;
+mod table;
 
 use std::rc::Rc;
 
@@ -87,22 +88,8 @@ impl Group {
 
     /// The letters and the sizes of a built-in group.
     pub fn symbol(self) -> (&'static str, Vec<usize>) {
-        match self {
-            Group::SpecialOrthogonal(n) => ("SO", vec![n]),
-            Group::PseudoOrthogonal(p, q) => ("SO", vec![p, q]),
-            Group::SpecialEuclidean(n) => ("SE", vec![n]),
-            Group::Translation(n) => ("Translation", vec![n]),
-            Group::GeneralLinear(n) => ("GL", vec![n]),
-            Group::SpecialLinear(n) => ("SL", vec![n]),
-            Group::Symplectic(n) => ("Sp", vec![n]),
-            Group::Unitary(n) => ("U", vec![n]),
-            Group::SpecialUnitary(n) => ("SU", vec![n]),
-            Group::UnitQuaternions => ("SU", vec![2]),
-            Group::Heisenberg(n) => ("Heisenberg", vec![n]),
-            Group::Affine(n) => ("Aff", vec![n]),
-            Group::Similarity(n) => ("Sim", vec![n]),
-            Group::Declared(_) => ("", Vec::new()),
-        }
+        let row = self.row();
+        (row.name, row.sizes.into_iter().flatten().collect())
     }
 
     /// Whether a user has declared it.
@@ -112,37 +99,12 @@ impl Group {
 
     /// The shape of the arrays that represent elements.
     pub fn element_shape(self) -> Shape {
-        match self {
-            Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) | Group::SpecialLinear(n) | Group::Symplectic(n) => {
-                Shape::square(n)
-            }
-            Group::PseudoOrthogonal(p, q) => Shape::square(p + q),
-            Group::SpecialEuclidean(n) | Group::Affine(n) | Group::Similarity(n) => Shape::square(n + 1),
-            Group::Translation(n) => Shape::vector(n),
-            Group::Unitary(n) | Group::SpecialUnitary(n) => Shape::square(2 * n),
-            Group::UnitQuaternions => Shape::vector(4),
-            Group::Heisenberg(n) => Shape::square(n + 2),
-            Group::Declared(declared) => Shape::square(declared.size),
-        }
+        self.row().shape
     }
 
     /// The dimension m.
     pub fn dimension(self) -> usize {
-        let rotations = |n: usize| n * (n - 1) / 2;
-        match self {
-            Group::SpecialOrthogonal(n) => rotations(n),
-            Group::PseudoOrthogonal(p, q) => rotations(p + q),
-            Group::SpecialEuclidean(n) => rotations(n) + n,
-            Group::Similarity(n) => rotations(n) + 1 + n,
-            Group::Translation(n) => n,
-            Group::GeneralLinear(n) | Group::Unitary(n) => n * n,
-            Group::SpecialLinear(n) | Group::SpecialUnitary(n) => n * n - 1,
-            Group::Symplectic(n) => n * (n + 1) / 2,
-            Group::UnitQuaternions => 3,
-            Group::Heisenberg(n) => 2 * n + 1,
-            Group::Affine(n) => n * n + n,
-            Group::Declared(declared) => declared.dimension,
-        }
+        self.row().dimension
     }
 
     /// What holds for every element.
