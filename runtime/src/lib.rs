@@ -38,7 +38,7 @@
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
 //! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
-//! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`] |
+//! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`], in a `Box` |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
@@ -64,7 +64,7 @@
 //! |---|---|
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
-//! | `alloc` | `Ensemble`: many bodies, on the heap; `Integrator::on_heap`: one large state there |
+//! | `alloc` | `Ensemble`: many bodies, on the heap |
 //! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |

@@ -10,8 +10,7 @@ use core::fmt::{self, Debug, Formatter};
 /// It makes the steps of [`Stepper::step`], to the last bit, and where one fails the state is what it was. Small states are better off in a `Stepper`, which
 /// keeps them in registers.
 ///
-/// An integrator is where it is put: on the stack, in a struct of yours, or with the feature `alloc` on the heap, by `Integrator::on_heap`, which allocates
-/// once.
+/// An integrator is where it is put: on the stack, in a struct of yours, or on the heap, by `Box::new(stepper.integrator(state))`, which allocates once.
 ///
 /// ```
 /// use clebsch::Clebsch;
@@ -148,25 +147,6 @@ impl<S: Clebsch> Drive for Integrator<S> {
 
     fn steps(&self) -> u64 {
         Self::steps(self)
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<S: Clebsch> Integrator<S> {
-    /// An integrator on the heap, of a system with the step size `h`, from the state (q, N), after the checks of [`Clebsch::stepper`] and
-    /// [`Stepper::state`]. Nothing is allocated after it.
-    ///
-    /// # Errors
-    /// Those of [`Clebsch::stepper`] and [`Stepper::state`].
-    pub fn on_heap(
-        system: S,
-        h: S::Scalar,
-        q: S::Configuration,
-        mu: S::Momentum,
-    ) -> Result<alloc::boxed::Box<Self>, Error> {
-        let stepper = system.into_stepper(h)?;
-        let start = stepper.state(q, mu)?;
-        Ok(alloc::boxed::Box::new(stepper.integrator(start)))
     }
 }
 

@@ -162,7 +162,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("maps_of_all_kinds_of_numbers_are_inverted", &["Jacobian::solve"]),
         ("skew_matrices_have_components",    &["skew", "skew_components", "skew_times", "skew_outer"]),
         ("inertias_are_inverted",            &["InertiaInverse::new", "InertiaInverse::matrix", "InertiaInverse::times", "InertiaInverse::energy", "invert_uniform", "kinetic_energy_uniform", "orientation_of_inertia", "orientation_of_uniform"]),
-        ("integrators_step_in_place",           &["Clebsch::step_into", "in_place", "Stepper::integrator", "Integrator::on_heap", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),
+        ("integrators_step_in_place",           &["Clebsch::step_into", "in_place", "Stepper::integrator", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),
         ("states_hold_what_they_step_in",        &["Clebsch::held", "Clebsch::momentum_held"]),
         ("covectors_are_turned_in_their_plane", &["turned_in_plane"]),
         ("points_follow_great_circles",      &["tangent", "momentum_of_tangent", "push", "turn_freely", "turn_great_circle"]),
