@@ -154,7 +154,8 @@ fn in_order<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
 /// A ring at its start, with steps of this size.
 fn ring<S: Spins<N>, const N: usize>(flags: &Flags, step_size: f64) -> Result<Ring<S, N>, Failure> {
     let (q, mu) = flags.start(N);
-    let stepper = flags.ring().into_stepper(step_size)?;
+    let ring: S = flags.ring();
+    let stepper = ring.into_stepper(step_size)?;
     stepper.sites(SiteStorage::of(q, mu)).map_err(|failure| Failure::Start(failure.error))
 }
 
