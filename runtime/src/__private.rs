@@ -4,7 +4,6 @@
 //! this file is the module of paths in the compiler's `emit` stage.
 
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
-pub use crate::composition::{Composed, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17, compose, compose_symmetric};
 pub use crate::element::{
     below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,
 };
@@ -33,20 +32,27 @@ pub use crate::parameters::{
     check_unit, distance_of_projection, invert, invert_uniform, orientation_of_inertia, orientation_of_uniform,
     projection,
 };
-pub use crate::power::{Power, PowerConstants, wrapped};
-pub use crate::sphere::{
-    in_place, momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane,
+pub use crate::parts::{
+    FreeMotion, GreatCircles, HamiltonEquations, Parts, SplitKicks, Substep, Varied, VariedSubstep,
 };
-pub use crate::splitting::{GRADIENT_4, GRADIENT_6, PLAIN_4, PLAIN_6, split};
+pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
+pub use crate::scheme::{
+    AdjointPair, AlongFreeMotion, Apart, Collocated, Composed, FreeGreatCircle, FreeSites, GradientFour, GradientSix,
+    GreatCircle, KickDriftKick, Kicks, OfOrderEight, OfOrderFour, OfOrderSix, PlainFour, PlainSix, Scheme, Shared,
+    SitesOfFirstOrder, SitesOfSecondOrder, Sizes, Split, Stages, Stepping, compose, split,
+};
+pub use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_on_orbit, check_reached, check_state, displacement, endpoint,
     forced_step, no_endpoint, pair,
 };
 pub use crate::stumpff::stumpff;
-pub use crate::summation::accumulate;
+pub use crate::summation::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
 pub use core;
+pub use core::option::Option::{self, None, Some};
+pub use core::result::Result::{self, Err, Ok};
 pub use nalgebra::{Quaternion, SMatrix, SVector};
 pub use num_traits::{One, Zero};
 

@@ -6,6 +6,7 @@
 //! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them again. A site is a
 //! system of its own; what is here is the same for every power and does not grow with N.
 
+use crate::scheme::{self, Scheme};
 use crate::space::larger;
 use crate::{Clebsch, Clock, Error, Scalar, Space, Time};
 use core::array::from_fn;
@@ -17,10 +18,12 @@ pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element
 /// The momentum of a site.
 pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
 /// What no step of a power with these sites changes.
-type Constants<P, const N: usize> =
-    PowerConstants<<P as Clebsch>::Scalar, <<P as Power<N>>::Site as Clebsch>::Constants>;
+pub type Constants<P, const N: usize> =
+    PowerConstants<<P as Clebsch>::Scalar, scheme::Constants<<P as Power<N>>::Site>>;
 /// A state of all sites.
 type Arrays<P, const N: usize> = ([Point<P, N>; N], [SiteMomentum<P, N>; N]);
+/// How a site is stepped.
+type SiteScheme<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Scheme;
 /// The representing matrix of the momentum of a site.
 type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::MomentumMatrix;
 
@@ -59,6 +62,14 @@ fn plus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
 #[inline]
 fn minus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
     a.zip_map(b, |a, b| a - b)
+}
+
+/// What no step of a site changes.
+///
+/// # Errors
+/// Those of [`Clebsch::constants`].
+fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constants<S>, Error> {
+    S::Scheme::constants(site, h)
 }
 
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
@@ -108,8 +119,8 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         const { assert!(N > 0, "a power has at least one site") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
-        (1..others).try_for_each(|i| self.site(i).constants(h).map(drop))?;
-        Ok(PowerConstants { h, site: self.site(0).constants(h)? })
+        (1..others).try_for_each(|i| site_constants(&self.site(i), h).map(drop))?;
+        Ok(PowerConstants { h, site: site_constants(&self.site(0), h)? })
     }
 
     /// Φ_F(q), site by site.
@@ -203,12 +214,12 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         &self,
         constants: &Constants<Self, N>,
         i: usize,
-        act: impl FnOnce(&Self::Site, &<Self::Site as Clebsch>::Constants) -> Result<R, Error>,
+        act: impl FnOnce(&Self::Site, &scheme::Constants<Self::Site>) -> Result<R, Error>,
     ) -> Result<R, Error> {
         let site = self.site(i);
         match Self::IS_UNIFORM {
             true => act(&site, &constants.site),
-            false => act(&site, &site.constants(constants.h)?),
+            false => act(&site, &site_constants(&site, constants.h)?),
         }
     }
 
@@ -227,9 +238,10 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         n: &SiteMomentum<Self, N>,
     ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
         self.at_site(constants, i, |site, constants| {
-            let impulse = site.impulse(constants, t, q, n);
-            let (q, held, _) = site.step(constants, t, q, &Self::Site::held(q, n), &impulse, &())?;
-            Ok((q, Self::Site::momentum_held(&q, &held)))
+            let left = SiteScheme::<Self, N>::left(site, constants, t, q, n);
+            let held = SiteScheme::<Self, N>::held(q, n);
+            let (q, held, _) = SiteScheme::<Self, N>::step(site, constants, t, (q, &held, &left), &())?;
+            Ok((q, SiteScheme::<Self, N>::momentum(&q, &held)))
         })
     }
 
@@ -421,7 +433,9 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         let mut elements = [Space::origin(); N];
         for (i, element) in elements.iter_mut().enumerate() {
             let n = plus(&mu[i], &kick[i]);
-            *element = self.at_site(constants, i, |site, constants| site.inverse_legendre(constants, t, &q[i], &n))?;
+            *element = self.at_site(constants, i, |site, constants| {
+                SiteScheme::<Self, N>::inverse_legendre(site, constants, t, &q[i], &n)
+            })?;
         }
         Ok(elements)
     }
@@ -462,7 +476,9 @@ pub trait Power<const N: usize>: Clebsch + Sized {
         };
         let (mut next, mut moved) = (*q, kicked(p, t, q, start));
         for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
-            (*q, *p) = self.at_site(constants, i, |site, constants| site.step_symmetric(constants, t, q, p))?;
+            (*q, *p) = self.at_site(constants, i, |site, constants| {
+                SiteScheme::<Self, N>::step_symmetric(site, constants, t, q, p)
+            })?;
         }
         let p = kicked(&moved, t + constants.h, &next, end);
         Ok((next, p))
@@ -478,7 +494,9 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     ) -> Self::Scalar {
         let mut sum = <Self::Scalar as num_traits::Zero>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
-            let energy = self.at_site(constants, i, |site, constants| Ok(site.kinetic_energy(constants, t, q, mu)));
+            let energy = self.at_site(constants, i, |site, constants| {
+                Ok(site.kinetic_energy(SiteScheme::<Self, N>::whole(constants), t, q, mu))
+            });
             // by construction: the constants of all sites have been made once
             sum += energy.unwrap_or(Self::Scalar::from_f64(f64::INFINITY));
         }

@@ -1,5 +1,6 @@
 //! States that are written and read back, with the feature `serde`.
 
+use crate::scheme::{Held, Left};
 use crate::stepper::{check_configuration, check_momentum};
 use crate::{Clebsch, Error, Space, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
@@ -21,12 +22,12 @@ impl<S: Clebsch> Serialize for State<S>
 where
     S::Time: Serialize,
     S::Configuration: Serialize,
-    S::Held: Serialize,
-    S::Impulse: Serialize,
+    Held<S>: Serialize,
+    Left<S>: Serialize,
     S::Scalar: Serialize,
 {
     fn serialize<W: Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
-        let Self { time, configuration, held: momentum, impulse, h } = self;
+        let Self { time, configuration, held: momentum, left: impulse, h } = self;
         Record { time, configuration, momentum, impulse, step_size: h }.serialize(writer)
     }
 }
@@ -38,13 +39,13 @@ impl<'de, S: Clebsch> Deserialize<'de> for SavedState<S>
 where
     S::Time: Deserialize<'de>,
     S::Configuration: Deserialize<'de>,
-    S::Held: Deserialize<'de>,
-    S::Impulse: Deserialize<'de>,
+    Held<S>: Deserialize<'de>,
+    Left<S>: Deserialize<'de>,
     S::Scalar: Deserialize<'de>,
 {
     fn deserialize<R: Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
         let Record { time, configuration, momentum, impulse, step_size: h } = Record::deserialize(reader)?;
-        Ok(Self(State { time, configuration, held: momentum, impulse, h }))
+        Ok(Self(State { time, configuration, held: momentum, left: impulse, h }))
     }
 }
 
@@ -98,7 +99,7 @@ impl<S: Clebsch> Stepper<S> {
         if !state.time.now().is_finite() {
             return Err(Error::NotFinite { name: "the time" });
         }
-        if !(state.impulse.is_finite() && state.h.is_finite()) {
+        if !(state.left.is_finite() && state.h.is_finite()) {
             return Err(Error::NotFinite { name: "what is left of the last step" });
         }
         Ok(state)

@@ -111,19 +111,6 @@ pub fn turn_freely<T: Scalar, const N: usize>(
     Ok(())
 }
 
-/// A state after steps that are made where it stands.
-///
-/// # Errors
-/// Those of the steps.
-#[inline]
-pub fn in_place<Q, W, I>(
-    mut state: (Q, W, I),
-    steps: impl FnOnce((&mut Q, &mut W, &mut I)) -> Result<(), Error>,
-) -> Result<(Q, W, I), Error> {
-    steps((&mut state.0, &mut state.1, &mut state.2))?;
-    Ok(state)
-}
-
 /// q and p, both turned by F with the momentum M = pqᵀ − qpᵀ, along a great circle of a sphere of any radius: the plane of q and p turns by the angle with the
 /// sine a|M|, a is h/κ, κ the inertia. What p has along q stays along q. Lanes without a solution are NaN.
 ///

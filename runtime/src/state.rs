@@ -1,5 +1,6 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
+use crate::scheme::{Held, Left, Scheme};
 use crate::{Clebsch, Clock, Mask, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
 
@@ -14,8 +15,8 @@ pub struct State<S: Clebsch> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
     /// N, or what stands for it.
-    pub(crate) held: S::Held,
-    pub(crate) impulse: S::Impulse,
+    pub(crate) held: Held<S>,
+    pub(crate) left: Left<S>,
     /// The step size that the impulse is for.
     pub(crate) h: S::Scalar,
 }
@@ -32,7 +33,7 @@ impl<S: Clebsch> State<S> {
     /// A state of a point on a large sphere, which is turned in (q, w), makes its components here, n(n − 1)/2 of them.
     #[inline]
     pub fn momentum(&self) -> S::Momentum {
-        S::momentum_held(&self.configuration, &self.held)
+        S::Scheme::momentum(&self.configuration, &self.held)
     }
 
     /// (q, N)
@@ -64,7 +65,7 @@ impl<S: Clebsch> State<S> {
         self.time.take_lane(lane, &other.time);
         self.configuration.set_lane(lane, &other.configuration.lane(lane));
         self.held.set_lane(lane, &other.held.lane(lane));
-        self.impulse.set_lane(lane, &other.impulse.lane(lane));
+        self.left.set_lane(lane, &other.left.lane(lane));
         self.h.set_lane(lane, &Space::lane(&other.h, lane));
     }
 }

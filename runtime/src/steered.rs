@@ -2,6 +2,7 @@
 
 use crate::linear::{eliminate, rows};
 use crate::newton::shortest;
+use crate::scheme::{Constants, Scheme};
 use crate::space::{lane_of, set_lane};
 use crate::stepper::{check_configuration, check_momentum, check_on_orbit as on_orbit};
 use crate::tangent::{of_edge, times};
@@ -30,7 +31,7 @@ pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentu
 #[inline]
 pub fn forced_step<S: Clebsch>(
     system: &S,
-    constants: &S::Constants,
+    constants: &Constants<S>,
     t: S::Scalar,
     (q, mu): &(S::Configuration, S::Momentum),
     u: &S::Input,
@@ -38,9 +39,10 @@ pub fn forced_step<S: Clebsch>(
 where
     (S::Configuration, S::Momentum): Space<S::Scalar>,
 {
-    let impulse = system.impulse(constants, t, q, mu);
-    let (q, held, _) = system.step(constants, t, q, &S::held(q, mu), &impulse, u)?;
-    check_reached((q, S::momentum_held(&q, &held)))
+    let left = S::Scheme::left(system, constants, t, q, mu);
+    let held = S::Scheme::held(q, mu);
+    let (q, held, _) = S::Scheme::step(system, constants, t, (q, &held, &left), u)?;
+    check_reached((q, S::Scheme::momentum(&q, &held)))
 }
 
 /// The shortest η with GᵀG η = Gᵀ(q⁺ − q).

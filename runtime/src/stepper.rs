@@ -12,6 +12,7 @@ mod staggered;
 mod step_size;
 mod symmetric;
 
+use crate::scheme::{Constants, Scheme};
 use crate::space::check_lanes;
 use crate::{Clebsch, Error, Scalar, Space};
 use num_traits::Zero;
@@ -23,7 +24,7 @@ use num_traits::Zero;
 pub struct Stepper<S: Clebsch> {
     pub(crate) system: S,
     pub(crate) h: S::Scalar,
-    pub(crate) constants: S::Constants,
+    pub(crate) constants: Constants<S>,
 }
 
 impl<S: Clebsch> Stepper<S> {
@@ -33,7 +34,7 @@ impl<S: Clebsch> Stepper<S> {
             h if h.is_finite() && h != Zero::zero() => Ok(()),
             h => Err(Error::StepSize { value: h.to_f64() }),
         })?;
-        let constants = system.constants(h)?;
+        let constants = S::Scheme::constants(&system, h)?;
         Ok(Self { system, h, constants })
     }
 

@@ -1,4 +1,4 @@
-//! Compensated summation: sums that keep what rounding takes off.
+//! How a step adds to q and N: as numbers are added, or with compensated sums, which keep what rounding takes off.
 
 use crate::{Scalar, Space};
 
@@ -28,6 +28,114 @@ pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
 pub fn accumulate<T: Scalar, S: Space<T>>(sum: &S, rest: &S, increment: &S) -> (S, S) {
     let increment = increment.zip_map(rest, |d, r| d + r);
     (sum.zip_map(&increment, |s, y| exact_sum(s, y).0), sum.zip_map(&increment, |s, y| exact_sum(s, y).1))
+}
+
+/// How a step adds to q and N.
+pub trait Sums {
+    /// Whether what rounding takes off is kept, and added in the next step.
+    const ARE_COMPENSATED: bool;
+
+    /// What rounding has taken off a sum; `()` where that is not kept.
+    type Rest<T: Scalar, V: Space<T>>: Space<T>;
+    /// What one step leaves to the next: an impulse I and the rests of q and N.
+    type Left<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>: Space<T>;
+
+    /// Both in one.
+    fn joined<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(
+        impulse: I,
+        rests: Rests<Self, T, Q, N>,
+    ) -> Self::Left<T, I, Q, N>;
+
+    /// The impulse and the rests.
+    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(
+        left: &Self::Left<T, I, Q, N>,
+    ) -> (I, Rests<Self, T, Q, N>);
+
+    /// The sum and its new rest.
+    fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, increment: &V) -> V;
+
+    /// What a kernel has made of a sum: it gives the new sum itself, or, where sums are compensated, what is added.
+    fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V;
+
+    /// The same where no rest is kept.
+    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V;
+}
+
+/// What rounding has taken off q and N.
+pub type Rests<S, T, Q, N> = (<S as Sums>::Rest<T, Q>, <S as Sums>::Rest<T, N>);
+
+/// Sums as numbers are added.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain;
+
+impl Sums for Plain {
+    const ARE_COMPENSATED: bool = false;
+
+    type Rest<T: Scalar, V: Space<T>> = ();
+    type Left<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>> = I;
+
+    #[inline(always)]
+    fn joined<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(impulse: I, _: ((), ())) -> I {
+        impulse
+    }
+
+    #[inline(always)]
+    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &I) -> (I, ((), ())) {
+        (*left, ((), ()))
+    }
+
+    #[inline(always)]
+    fn sum<T: Scalar, V: Space<T>>(sum: &V, (): &mut (), increment: &V) -> V {
+        sum.zip_map(increment, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn made<T: Scalar, V: Space<T>>(_: &V, (): &mut (), made: V) -> V {
+        made
+    }
+
+    #[inline(always)]
+    fn made_plainly<T: Scalar, V: Space<T>>(_: &V, made: V) -> V {
+        made
+    }
+}
+
+/// Compensated sums.
+#[derive(Clone, Copy, Debug)]
+pub struct Compensated;
+
+impl Sums for Compensated {
+    const ARE_COMPENSATED: bool = true;
+
+    type Rest<T: Scalar, V: Space<T>> = V;
+    type Left<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>> = (I, (Q, N));
+
+    #[inline(always)]
+    fn joined<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(impulse: I, rests: (Q, N)) -> (I, (Q, N)) {
+        (impulse, rests)
+    }
+
+    #[inline(always)]
+    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &(I, (Q, N))) -> (I, (Q, N)) {
+        *left
+    }
+
+    #[inline(always)]
+    fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut V, increment: &V) -> V {
+        let (sum, left) = accumulate(sum, rest, increment);
+        *rest = left;
+        sum
+    }
+
+    #[inline(always)]
+    fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut V, made: V) -> V {
+        Self::sum(sum, rest, &made)
+    }
+
+    #[inline(always)]
+    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V {
+        sum.zip_map(&made, |a, b| a + b)
+    }
 }
 
 #[cfg(test)]

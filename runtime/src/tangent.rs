@@ -1,6 +1,7 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
 use crate::linear::{eliminate, rows};
+use crate::scheme::Scheme;
 use crate::{Carried, Clebsch, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
@@ -215,9 +216,9 @@ where
     fn stepped(&self, state: &State<S>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S>, Error> {
         let time = state.time.after_step(self.step_size());
         // of the same size, but at another configuration: what does not depend on either stays
-        let impulse = self.system().impulse_after(self.constants(), time.now(), &q, &mu, &state.impulse);
-        let held = S::held(&q, &mu);
-        let next = State { time, configuration: q, held, impulse, h: self.step_size() };
+        let left = S::Scheme::left_after(self.system(), self.constants(), time.now(), &q, &mu, &state.left);
+        let held = S::Scheme::held(&q, &mu);
+        let next = State { time, configuration: q, held, left, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
     }
 

@@ -1,5 +1,8 @@
 //! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
 
+use crate::parts::Varied;
+use crate::scheme::Constants;
+use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, Ends, FirstDerivatives, SecondDerivatives};
 use crate::{Clebsch, EndpointExpansion, Error};
 use nalgebra::{SMatrix, SVector};
 
@@ -12,9 +15,11 @@ use nalgebra::{SMatrix, SVector};
 /// increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
-pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>> {
-    /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1.
-    const EDGES: usize;
+pub trait Variational<const M: usize>:
+    Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>, Scheme: Edges<Self, M>>
+{
+    /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1; of a composed step those of all its steps.
+    const EDGES: usize = <Self::Scheme as Edges<Self, M>>::EDGES;
 
     /// The increments of τ(η) and of τ(−η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map
     /// or the exponential. They have most of their terms in common.
@@ -36,56 +41,68 @@ pub trait Variational<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebs
     /// The increment D of the group element with F⁻ℓd(q, F) = μ on an edge: its implicit solve.
     ///
     /// # Errors
-    /// As [`Clebsch::inverse_legendre`].
+    /// Those of [`Stepper::inverse_legendre`](crate::Stepper::inverse_legendre).
+    #[inline]
     fn drift(
         &self,
-        constants: &Self::Constants,
+        constants: &Constants<Self>,
         edge: usize,
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
         u: &Self::Input,
-    ) -> Result<Self::Element, Error>;
+    ) -> Result<Self::Element, Error> {
+        Self::Scheme::visit(self, constants, edge, t, Drift { q, mu, u })
+    }
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
     #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
+    #[inline]
     fn edge(
         &self,
-        constants: &Self::Constants,
+        constants: &Constants<Self>,
         edge: usize,
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
         u: &Self::Input,
-    ) -> Edge<Self::Scalar, M>;
+    ) -> Edge<Self::Scalar, M> {
+        Self::Scheme::visit(self, constants, edge, t, SecondDerivatives(Ends { q, d, next, u }))
+    }
 
     /// [`edge`](Self::edge) without derivatives of the momenta.
     #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
+    #[inline]
     fn momenta(
         &self,
-        constants: &Self::Constants,
+        constants: &Constants<Self>,
         edge: usize,
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
         u: &Self::Input,
-    ) -> Momenta<Self::Scalar, M>;
+    ) -> Momenta<Self::Scalar, M> {
+        Self::Scheme::visit(self, constants, edge, t, FirstDerivatives(Ends { q, d, next, u }))
+    }
 
     /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
     /// Together they say everything, and nothing of the size of inertia/h cancels.
     #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
+    #[inline]
     fn carried(
         &self,
-        constants: &Self::Constants,
+        constants: &Constants<Self>,
         edge: usize,
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
         u: &Self::Input,
-    ) -> Carried<Self::Scalar, M>;
+    ) -> Carried<Self::Scalar, M> {
+        Self::Scheme::visit(self, constants, edge, t, AtFixedElement(Ends { q, d, next, u }))
+    }
 
     /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
     #[inline]
@@ -154,12 +171,23 @@ pub struct Carried<T, const M: usize> {
     pub after_by_end: SMatrix<T, M, M>,
 }
 
+/// The derivatives of F⁻ℓd and of F⁺ℓd, one column for each quantity.
+type BothSlopes<T, const M: usize, const P: usize> = (SMatrix<T, M, P>, SMatrix<T, M, P>);
+
 /// A system whose steps have been differentiated with respect to all that is fixed during a step, P quantities. Implemented by
 /// `#[derive(Clebsch)]` with `emit = [tangent]`.
-pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
+pub trait Sensitive<const M: usize, const P: usize>:
+    Variational<M> + Varied<M, Slopes = BothSlopes<<Self as Clebsch>::Scalar, M, P>>
+{
     /// The quantities as a declaration writes them, without `self.`: the entries of the fields that closures read, in their order and
     /// row by row, then `h`, then `t` where the time matters, then those of the input. The two entries of a symmetric matrix are one quantity.
     const QUANTITIES: [&'static str; P];
+    /// The column of h.
+    #[doc(hidden)]
+    const STEP_SIZE: Option<usize> = None;
+    /// The column of t.
+    #[doc(hidden)]
+    const TIME: Option<usize> = None;
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
     #[allow(
@@ -167,14 +195,19 @@ pub trait Sensitive<const M: usize, const P: usize>: Variational<M> {
         clippy::too_many_arguments,
         reason = "an edge is its place and time, its ends and its input; both its momenta have slopes"
     )]
+    #[inline]
     fn edge_slopes(
         &self,
-        constants: &Self::Constants,
+        constants: &Constants<Self>,
         edge: usize,
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
         next: &Self::Configuration,
         u: &Self::Input,
-    ) -> (SMatrix<Self::Scalar, M, P>, SMatrix<Self::Scalar, M, P>);
+    ) -> (SMatrix<Self::Scalar, M, P>, SMatrix<Self::Scalar, M, P>) {
+        let slopes = Self::Scheme::visit(self, constants, edge, t, ByQuantities(Ends { q, d, next, u }));
+        let of_step = |slopes| Self::Scheme::slopes_of_step(constants, edge, slopes, (Self::STEP_SIZE, Self::TIME));
+        (of_step(slopes.0), of_step(slopes.1))
+    }
 }

@@ -4,6 +4,7 @@
 
 #![allow(missing_docs)]
 
+use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Vector3};
@@ -52,7 +53,7 @@ macro_rules! potentials {
                     let (derived, expected) = (particle.potential(0.0, &x), plain(&particle, x));
                     assert!((derived - expected).abs() <= 1e-13 * (1.0 + expected.abs()), "{derived} and {expected}");
                     let h = 2.0;
-                    let constants = particle.constants(h).expect("a regular particle");
+                    let constants = particle.step_constants(h).expect("a regular particle");
                     // J(x, −h/2 ∂V) = −∂V
                     let kick = particle.impulse(&constants, 0.0, &x, &nalgebra::zero());
                     for i in 0..3 {

@@ -6,11 +6,11 @@ use clebsch_compiler::derive::{Formula, Formulas};
 use clebsch_compiler::lower::Program;
 use clebsch_compiler::{Graph, compile, emit};
 use quote::ToTokens;
-use syn::{Attribute, Expr, ImplItem, Item, Lit, Meta, Type};
+use syn::{Attribute, Expr, ImplItem, Item, ItemImpl, Lit, Meta, PathArguments, Type};
 
 /// A method or type of generated code with its documentation.
 struct Documented {
-    /// Its name, without the suffix of a substep.
+    /// Its name.
     name: String,
     /// The substep and the equation that it belongs to; `None` for those of the whole system.
     place: Option<(usize, Option<usize>)>,
@@ -20,8 +20,12 @@ struct Documented {
 impl Documented {
     /// The equations that it shows.
     fn equations(&self) -> Vec<&str> {
-        let shown = self.lines.iter().map(String::as_str).skip_while(|line| *line != "```text").skip(1);
-        shown.take_while(|line| *line != "```").collect()
+        self.lines.iter().filter_map(|line| line.strip_prefix('`')?.strip_suffix('`')).collect()
+    }
+
+    /// The source that it names.
+    fn source(&self) -> Option<&str> {
+        self.lines.iter().find_map(|line| line.find("Source: ").map(|start| &line[start..]))
     }
 
     fn shows(&self, row: &Formula<'_>) -> bool {
@@ -41,10 +45,18 @@ fn substep(formulas: &Formulas<'_>, suffix: &str) -> usize {
     }
 }
 
-/// The name of a method of a step without its suffix, and its place.
-fn of_step(formulas: &Formulas<'_>, name: &str) -> (String, Option<(usize, Option<usize>)>) {
-    let suffix = ["_first", "_adjoint", "_whole"].into_iter().find(|suffix| name.ends_with(suffix)).unwrap_or_default();
-    (name.trim_end_matches(suffix).to_string(), Some((substep(formulas, suffix), None)))
+/// The substep of an implementation of `Substep<K>`.
+fn of_trait(item: &ItemImpl) -> Option<(usize, Option<usize>)> {
+    let last = item.trait_.as_ref()?.0.segments.last()?;
+    let PathArguments::AngleBracketed(arguments) = &last.arguments else { return None };
+    let first = arguments.args.first().filter(|_| last.ident == "Substep")?;
+    Some((first.to_token_stream().to_string().parse().ok()?, None))
+}
+
+/// Whether it is the move of a step that takes the coordinates, and not the increment.
+fn moves_by_coordinates(program: &Program<'_>, item: &ItemImpl, method: &str) -> bool {
+    let of = item.trait_.as_ref().and_then(|(path, _)| path.segments.last());
+    method == "advance" && of.is_some_and(|of| of.ident == "Parts") && program.steps[0].displace.is_some()
 }
 
 /// The place of the type of a momentum equation, `EquationFirst1`.
@@ -86,8 +98,11 @@ fn documented(program: &Program<'_>) -> Vec<Documented> {
                 let owner = path.path.segments.last().expect("a path").ident.to_string();
                 for method in &item.items {
                     let ImplItem::Fn(method) = method else { continue };
-                    let (mut name, mut place) = of_step(formulas, &method.sig.ident.to_string());
-                    place = of_equation(formulas, &owner).or(place);
+                    let mut name = method.sig.ident.to_string();
+                    let place = of_equation(formulas, &owner).or_else(|| of_trait(&item));
+                    if moves_by_coordinates(program, &item, &name) {
+                        name = "displace".to_string();
+                    }
                     if owner == "Velocity" {
                         name = "velocity".to_string();
                     }
@@ -111,8 +126,7 @@ fn differences(program: &Program<'_>) -> Vec<String> {
         let rows: Vec<_> = program.formulas.table().iter().filter(|row| item.shows(row)).collect();
         let expected: Vec<String> = rows.iter().map(|row| row.equation()).collect();
         let source = rows.first().and_then(|row| row.source).map(|source| format!("Source: {source}."));
-        let shown = item.lines.iter().find(|line| line.starts_with("Source:"));
-        if item.equations() != expected || shown != source.as_ref() {
+        if item.equations() != expected || item.source() != source.as_deref() {
             let (name, place, shown) = (&item.name, item.place, item.equations());
             found.push(format!("`{name}` {place:?} shows {shown:?} and not {expected:?}"));
         }

@@ -3,6 +3,7 @@
 use super::Node;
 use super::sweep::Endpoints;
 use crate::newton::Curvature;
+use crate::scheme::Scheme;
 use crate::{Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -26,7 +27,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
         let ratio = S::Scalar::from_f64(path.len() as f64) / S::Scalar::from_f64(COARSE as f64);
         let few = path.get_mut(..COARSE).filter(|_| ratio >= S::Scalar::from_f64((MANY / COARSE) as f64))?;
         let h = self.h * ratio;
-        let constants = self.system.constants(h).ok()?;
+        let constants = S::Scheme::constants(self.system, h).ok()?;
         let endpoints = Endpoints { h, constants: &constants, ..*self };
         endpoints.fill(few, eta * ratio);
         let mut end = endpoints.roll_out(few);

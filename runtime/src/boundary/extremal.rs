@@ -2,6 +2,7 @@
 
 use super::Node;
 use super::sweep::time_after;
+use crate::scheme::Scheme;
 use crate::{Real, State, Stepper, Time, Variational};
 use core::fmt::{self, Debug, Formatter};
 use core::iter::FusedIterator;
@@ -85,9 +86,9 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
         };
         let Stepper { system, h, constants } = self.stepper;
         let t = time_after::<S, M>(self.time, *h, steps);
-        let impulse = system.impulse(constants, t, &configuration, &momentum);
-        let held = S::held(&configuration, &momentum);
-        Some(State { time: S::Time::at(t), configuration, held, impulse, h: *h })
+        let left = S::Scheme::left(system, constants, t, &configuration, &momentum);
+        let held = S::Scheme::held(&configuration, &momentum);
+        Some(State { time: S::Time::at(t), configuration, held, left, h: *h })
     }
 }
 

@@ -3,6 +3,7 @@
 use super::sweep::Endpoints;
 use super::{Boundary, Guess, Node};
 use crate::newton::{Sample, Trial, check_limits, critical_step_size};
+use crate::scheme::Scheme;
 use crate::{Error, Real, Scalar, Variational};
 use core::ops::RangeInclusive;
 use num_traits::One;
@@ -34,7 +35,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
         let mut guess = guess;
         let trial = |h| {
             let system = &self.stepper.system;
-            let constants = system.constants(h)?;
+            let constants = S::Scheme::constants(system, h)?;
             let sign = S::Scalar::one();
             let endpoints = Endpoints { system, h, constants: &constants, time: self.time, start, target, sign };
             let end = endpoints.prepare(path, &guess)?;
@@ -52,7 +53,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// The derivative of the sum by h at a fixed path.
     fn slope(&self, path: &[Node<S, M>], end: &S::Configuration, step: S::Scalar) -> Result<Sample<S::Scalar>, Error> {
         let [longer, shorter] = [self.h + step, self.h - step].map(|h| -> Result<S::Scalar, Error> {
-            let constants = self.system.constants(h)?;
+            let constants = S::Scheme::constants(self.system, h)?;
             let endpoints = Endpoints { h, constants: &constants, ..*self };
             Ok(endpoints.sum(path, end))
         });

@@ -16,6 +16,7 @@ use super::end::PathEnd;
 use super::pivot::Feedback;
 use super::vertex::{PathSummary, Pending};
 use crate::newton::Curvature;
+use crate::scheme::Constants;
 use crate::{Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 use num_traits::Zero;
@@ -25,7 +26,7 @@ use num_traits::Zero;
 pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub system: &'a S,
     pub h: S::Scalar,
-    pub constants: &'a S::Constants,
+    pub constants: &'a Constants<S>,
     /// The time of the start.
     pub time: S::Scalar,
     pub start: &'a S::Configuration,

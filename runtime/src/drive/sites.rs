@@ -2,6 +2,7 @@
 
 use super::Drive;
 use crate::power::{Point, Power, SiteMomentum};
+use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 
@@ -166,9 +167,15 @@ where
         let t = self.time.now();
         let first = P::ORDER == 1;
         let start = if first { None } else { Some(kick) };
-        if let Err((site, error)) =
-            system.drift_into(P::constants_of_sites(self.stepper.constants()), t, q, mu, start, next, moved)
-        {
+        if let Err((site, error)) = system.drift_into(
+            P::constants_of_sites(P::Scheme::whole(self.stepper.constants())),
+            t,
+            q,
+            mu,
+            start,
+            next,
+            moved,
+        ) {
             return Err(SiteError { site: Some(site), error });
         }
         let time = self.time.after_step(h);
@@ -230,7 +237,7 @@ where
         let q: &[Point<P, N>; N] = sites!(self.configuration(), N);
         let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
         let (system, t) = (self.stepper.system(), self.time.now());
-        Ok(system.power_kinetic_energy(P::constants_of_sites(self.stepper.constants()), t, q, mu)
+        Ok(system.power_kinetic_energy(P::constants_of_sites(P::Scheme::whole(self.stepper.constants())), t, q, mu)
             + system.potential_of_sites(t, q))
     }
 

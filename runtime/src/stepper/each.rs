@@ -1,6 +1,7 @@
 //! Steps of several bodies side by side, where the scalar has lanes: one that fails does not keep the others.
 
 use super::Stepper;
+use crate::scheme::{Held, Left};
 use crate::{Clebsch, Error, Mask, Scalar, Space, State};
 use num_traits::Zero;
 
@@ -23,11 +24,11 @@ impl<S: Clebsch> Stepper<S> {
     #[cold]
     pub fn failure(&self, state: &State<S>, lane: usize) -> Option<Error> {
         let mut alone = *state;
-        alone.held = S::Held::filled(S::Scalar::zero() / S::Scalar::zero());
+        alone.held = Held::<S>::filled(S::Scalar::zero() / S::Scalar::zero());
         alone.held.set_lane(lane, &state.held.lane(lane));
         // nothing is known of their motions
-        alone.impulse = S::Impulse::filled(S::Scalar::zero());
-        alone.impulse.set_lane(lane, &state.impulse.lane(lane));
+        alone.left = Left::<S>::filled(S::Scalar::zero());
+        alone.left.set_lane(lane, &state.left.lane(lane));
         match self.attempt(&alone, &S::Input::origin()) {
             Err(error) => Some(self.refusal(&alone, &S::Input::origin(), lane, error)),
             Ok(next) if next.finite().lane(lane) => None,

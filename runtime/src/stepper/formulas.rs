@@ -2,6 +2,7 @@
 
 use super::Stepper;
 use super::whole_or_lane;
+use crate::scheme::Scheme;
 use crate::{Clebsch, Error, Mask, Scalar, Space};
 use num_traits::Zero;
 
@@ -42,7 +43,7 @@ impl<S: Clebsch> Stepper<S> {
                 return Err(Error::NotFinite { name });
             }
         }
-        match self.system.inverse_legendre(&self.constants, t, q, mu) {
+        match S::Scheme::inverse_legendre(&self.system, &self.constants, t, q, mu) {
             Ok(element) if element.is_finite() => Ok(element),
             Ok(element) => {
                 let finite = element.finite();

@@ -1,6 +1,7 @@
 //! What is read from a stepper and its states.
 
 use super::Stepper;
+use crate::scheme::{Constants, Scheme};
 use crate::{Clebsch, Conserves, Error, Space, State, Time};
 
 impl<S: Clebsch> Stepper<S> {
@@ -16,7 +17,8 @@ impl<S: Clebsch> Stepper<S> {
     /// Hessian Σ; +∞ where no velocity has this momentum.
     #[inline]
     pub fn kinetic_energy(&self, state: &State<S>) -> S::Scalar {
-        self.system.kinetic_energy(&self.constants, state.time.now(), &state.configuration, &state.momentum())
+        let constants = S::Scheme::whole(&self.constants);
+        self.system.kinetic_energy(constants, state.time.now(), &state.configuration, &state.momentum())
     }
 
     /// The step size h, seconds in SI units.
@@ -48,7 +50,7 @@ impl<S: Clebsch> Stepper<S> {
 
     /// What no step changes.
     #[inline]
-    pub(crate) fn constants(&self) -> &S::Constants {
+    pub(crate) fn constants(&self) -> &Constants<S> {
         &self.constants
     }
 }

@@ -1,6 +1,7 @@
 //! What is told of a step that fails: what it is that is not finite, and how long a step would do.
 
 use super::Stepper;
+use crate::scheme::{Constants, Scheme};
 use crate::{Clebsch, CotangentState, Error, Mask, Scalar, Space, State, Time};
 
 /// Step sizes that are tried to find the longest one that can be solved, at most.
@@ -21,11 +22,11 @@ impl<S: Clebsch> Stepper<S> {
     #[cold]
     #[inline(never)]
     pub(crate) fn refusal(&self, state: &State<S>, u: &S::Input, lane: usize, error: Error) -> Error {
-        let State { time, configuration, held, impulse, .. } = state;
+        let State { time, configuration, held, left, .. } = state;
         self.explained(lane, error, |constants| {
             let t = time.now();
-            let kick = self.system.impulse_after(constants, t, configuration, &state.momentum(), impulse);
-            let (q, mu, _) = self.system.step(constants, t, configuration, held, &kick, u)?;
+            let left = S::Scheme::left_after(&self.system, constants, t, configuration, &state.momentum(), left);
+            let (q, mu, _) = S::Scheme::step(&self.system, constants, t, (configuration, held, &left), u)?;
             Ok((q.finite() & mu.finite()).lane(lane))
         })
     }
@@ -36,7 +37,7 @@ impl<S: Clebsch> Stepper<S> {
     pub(super) fn refusal_of_covector(&self, state: &CotangentState<S>, error: Error) -> Error {
         let CotangentState { time, configuration, covector } = state;
         self.explained(0, error, |constants| {
-            let (q, p) = self.system.step_symmetric(constants, time.now(), configuration, covector)?;
+            let (q, p) = S::Scheme::step_symmetric(&self.system, constants, time.now(), configuration, covector)?;
             Ok((q.finite() & p.finite()).lane(0))
         })
     }
@@ -51,21 +52,23 @@ impl<S: Clebsch> Stepper<S> {
         mu: &S::Momentum,
         error: Error,
     ) -> Error {
-        self.explained(0, error, |constants| Ok(self.system.inverse_legendre(constants, t, q, mu)?.finite().lane(0)))
+        self.explained(0, error, |constants| {
+            Ok(S::Scheme::inverse_legendre(&self.system, constants, t, q, mu)?.finite().lane(0))
+        })
     }
 
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
-    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&S::Constants) -> Result<bool, Error>) -> Error {
+    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S>) -> Result<bool, Error>) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
             Error::Unsolvable { solvable_fraction, .. } => {
                 let h = self.h.lane(lane).to_f64();
-                if S::IS_FREE_MOTION || size_of::<S::Constants>() > CONSTANTS * S::Scalar::LANES {
+                if S::IS_FREE_MOTION || size_of::<Constants<S>>() > CONSTANTS * S::Scalar::LANES {
                     let solvable_step = S::IS_FREE_MOTION.then_some(h * solvable_fraction);
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };
                 }
-                let tried = |h: f64| match self.system.constants(S::Scalar::from_f64(h)) {
+                let tried = |h: f64| match S::Scheme::constants(&self.system, S::Scalar::from_f64(h)) {
                     Ok(constants) => stepped(&constants),
                     Err(error) => Err(error),
                 };
@@ -98,7 +101,7 @@ impl<S: Clebsch> Stepper<S> {
 
     /// Whether the impulse at q, without momentum, is finite: that of the potential.
     pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
-        self.system.impulse(&self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
+        S::Scheme::left(&self.system, &self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
     }
 }
 

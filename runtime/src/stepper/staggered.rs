@@ -1,6 +1,7 @@
 //! Momenta of steps of first order, which are staggered: read at the time of their configuration, and started from there.
 
 use super::{Stepper, check_gradient, check_momentum, check_time};
+use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, Error, Space, State, Time};
 use num_traits::Zero;
 
@@ -59,7 +60,8 @@ impl<S: Clebsch> Stepper<S> {
     #[inline]
     pub fn synchronized_energy(&self, state: &State<S>) -> S::Scalar {
         let (t, q) = (state.time.now(), &state.configuration);
-        self.system.kinetic_energy(&self.constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
+        let constants = S::Scheme::whole(&self.constants);
+        self.system.kinetic_energy(constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
     }
 
     /// The state of a body at q whose momentum there is π, after the checks of [`state`](Self::state): with `order = 1` its momentum N is ahead of π by

@@ -1,6 +1,7 @@
 //! State after state.
 
 use super::{GRADIENT, Stepper, check_momentum, check_time, whole_or_lane};
+use crate::scheme::{Left, Scheme};
 use crate::{Clebsch, Clock, Error, Mask, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
 
@@ -37,15 +38,16 @@ impl<S: Clebsch> Stepper<S> {
     #[inline]
     pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
         let State { time, configuration, held, .. } = state;
-        let (impulse, none) = (self.impulse_of(state), S::Input::origin());
-        let advanced =
-            self.system.steps(&self.constants, (time.now(), self.h), steps, configuration, held, &impulse, &none);
-        let (configuration, held, impulse) = match advanced {
+        let left = self.left_of(state);
+        let start = (configuration, held, &left);
+        let none = S::Input::origin();
+        let advanced = S::Scheme::steps(&self.system, &self.constants, (time.now(), self.h), steps, start, &none);
+        let (configuration, held, left) = match advanced {
             Ok(next) => next,
             Err(error) => return Err(self.refused_after(state, steps, error)),
         };
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
-        let next = State { time, configuration, held, impulse, h: self.h };
+        let next = State { time, configuration, held, left, h: self.h };
         if !next.is_finite() {
             let error = self.beyond(&next);
             return Err(self.refused_after(state, steps, error));
@@ -93,11 +95,13 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        let (t, State { configuration: q, held, impulse, .. }) = (state.time.now(), state);
-        let into = (&mut next.configuration, &mut next.held, &mut next.impulse);
-        let stepped = match size_of::<S::Impulse>() == 0 || state.h == self.h {
-            true => self.system.step_into(&self.constants, t, (q, held, impulse), u, into),
-            false => self.system.step_into(&self.constants, t, (q, held, &self.impulse_of(state)), u, into),
+        let State { configuration: q, held, left, .. } = state;
+        let t = state.time.now();
+        let into = (&mut next.configuration, &mut next.held, &mut next.left);
+        let stepped = if size_of::<Left<S>>() == 0 || state.h == self.h {
+            S::Scheme::step_into(&self.system, &self.constants, t, (q, held, left), u, into)
+        } else {
+            S::Scheme::step_into(&self.system, &self.constants, t, (q, held, &self.left_of(state)), u, into)
         };
         if stepped.is_err() {
             return Err(self.refused(state, u));
@@ -128,14 +132,14 @@ impl<S: Clebsch> Stepper<S> {
 
     /// The state (q, N) with what its first step takes.
     pub(super) fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
-        let impulse = self.system.impulse(&self.constants, t, &q, &mu);
-        if !impulse.is_finite() {
+        let left = S::Scheme::left(&self.system, &self.constants, t, &q, &mu);
+        if !left.is_finite() {
             let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
             let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
             return Err(Error::NotFinite { name });
         }
-        let held = S::held(&q, &mu);
-        Ok(State { time: S::Time::at(t), configuration: q, held, impulse, h: self.h })
+        let held = S::Scheme::held(&q, &mu);
+        Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
     }
 
     /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN.
@@ -144,7 +148,7 @@ impl<S: Clebsch> Stepper<S> {
     /// Where no lane has a solution, the error of the first whose momentum is finite.
     #[inline(always)]
     pub(super) fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
-        self.attempt_with(state, &self.impulse_of(state), u)
+        self.attempt_with(state, &self.left_of(state), u)
     }
 
     /// The same with the impulse at the configuration.
@@ -152,11 +156,11 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Those of [`attempt`](Self::attempt).
     #[inline(always)]
-    pub(crate) fn attempt_with(&self, state: &State<S>, impulse: &S::Impulse, u: &S::Input) -> Result<State<S>, Error> {
+    pub(crate) fn attempt_with(&self, state: &State<S>, left: &Left<S>, u: &S::Input) -> Result<State<S>, Error> {
         let State { time, configuration, held, .. } = state;
-        match self.system.step(&self.constants, time.now(), configuration, held, impulse, u) {
-            Ok((configuration, held, impulse)) => {
-                Ok(State { time: time.after_step(self.h), configuration, held, impulse, h: self.h })
+        match S::Scheme::step(&self.system, &self.constants, time.now(), (configuration, held, left), u) {
+            Ok((configuration, held, left)) => {
+                Ok(State { time: time.after_step(self.h), configuration, held, left, h: self.h })
             }
             Err(error) => Err(error),
         }
@@ -164,13 +168,14 @@ impl<S: Clebsch> Stepper<S> {
 
     /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
     #[inline]
-    fn impulse_of(&self, state: &State<S>) -> S::Impulse {
-        if size_of::<S::Impulse>() == 0 || state.h == self.h {
-            return state.impulse;
+    fn left_of(&self, state: &State<S>) -> Left<S> {
+        if size_of::<Left<S>>() == 0 || state.h == self.h {
+            return state.left;
         }
-        let State { time, configuration, impulse, .. } = state;
-        let anew = self.system.impulse_after(&self.constants, time.now(), configuration, &state.momentum(), impulse);
-        if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, &state.impulse, state.h.equals(self.h)) }
+        let State { time, configuration, left, .. } = state;
+        let (system, constants) = (&self.system, &self.constants);
+        let anew = S::Scheme::left_after(system, constants, time.now(), configuration, &state.momentum(), left);
+        if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, left, state.h.equals(self.h)) }
     }
 
     /// The error of a step that no lane can make, which is tried once more for it.

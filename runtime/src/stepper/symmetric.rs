@@ -1,6 +1,7 @@
 //! States on the cotangent bundle.
 
 use super::{Stepper, check_time, whole_or_lane};
+use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, CotangentState, Error, Mask, Scalar, Space, Time};
 use num_traits::Zero;
 
@@ -21,7 +22,7 @@ impl<S: Clebsch> Stepper<S> {
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let CotangentState { time, configuration, covector } = state;
         let (configuration, covector) =
-            match self.system.step_symmetric(&self.constants, time.now(), configuration, covector) {
+            match S::Scheme::step_symmetric(&self.system, &self.constants, time.now(), configuration, covector) {
                 Ok(next) => next,
                 Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
                 Err(error) => return Err(self.refusal_of_covector(state, error)),

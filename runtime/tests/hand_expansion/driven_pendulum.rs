@@ -36,10 +36,9 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
-        type Held = Self::Momentum;
         type Input = ();
-        type Impulse = SVector<f64, 3>;
         type Constants = Constants;
+        type Scheme = ::clebsch::__private::KickDriftKick<::clebsch::__private::Shared>;
         type Time = ::clebsch::Clock<f64>;
         const NAME: &'static str = "DrivenPendulum";
         const ORDER: u32 = 2;
@@ -81,72 +80,6 @@ const _: () = {
         /// T*R_F ∂_F ℓd: N⁺^ = mass·length² (F − Fᵀ)/(2h) − (h/2)(q⁺ × ∇V(t + h, q⁺))^
         fn legendre_next(&self, h: f64, t: f64, q: &SVector<f64, 3>, f: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
             components(f) * (inertia(self) / (2.0 * h)) - moment(self, t + h, &(f * q)) * (h / 2.0)
-        }
-
-        /// F with π^ = mass·length² (F − Fᵀ)/(2h), π = N − (h/2) J(q, ∇V)
-        #[inline]
-        fn inverse_legendre(
-            &self,
-            constants: &Constants,
-            t: f64,
-            q: &SVector<f64, 3>,
-            mu: &SVector<f64, 3>,
-        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let d = increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q, mu)))?;
-            Ok(::clebsch::__private::from_increment(&d))
-        }
-
-        #[inline]
-        fn held(_: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
-            *mu
-        }
-
-        #[inline]
-        fn momentum_held(_: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
-            *held
-        }
-
-        /// −(h/2) J(q, ∇V(t, q))
-        #[inline]
-        fn impulse(
-            &self,
-            constants: &Constants,
-            t: f64,
-            q: &SVector<f64, 3>,
-            _mu: &SVector<f64, 3>,
-        ) -> SVector<f64, 3> {
-            moment(self, t, q) * -constants.half_h
-        }
-
-        /// π = N − (h/2) J(q, ∇V), q⁺ = F q, N⁺ = π − (h/2) J(q⁺, ∇V⁺)
-        #[inline]
-        fn step(
-            &self,
-            constants: &Constants,
-            t: f64,
-            q: &SVector<f64, 3>,
-            mu: &SVector<f64, 3>,
-            impulse: &SVector<f64, 3>,
-            _u: &(),
-        ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
-            let kicked = mu + impulse;
-            let next = q + increment(constants, &kicked)? * q;
-            let impulse_next = self.impulse(constants, t + constants.h, &next, mu);
-            Ok((next, kicked + impulse_next, impulse_next))
-        }
-
-        /// p̃ = p − (h/2) ∇V, q⁺ = F q, p⁺ = F p̃ − (h/2) ∇V⁺
-        #[inline]
-        fn step_symmetric(
-            &self,
-            constants: &Constants,
-            t: f64,
-            q: &SVector<f64, 3>,
-            p: &SVector<f64, 3>,
-        ) -> ::core::result::Result<(SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
-            let kicked = p - gradient(self, t) * constants.half_h;
-            let d = increment(constants, &self.momentum_map(q, &kicked))?;
-            Ok((q + d * q, kicked + d * kicked - gradient(self, t + constants.h) * constants.half_h))
         }
 
         /// V(t, q) = mass·length·(gravity + shake cos(rate t)) q₃
@@ -202,8 +135,6 @@ const _: () = {
 
     #[automatically_derived]
     impl ::clebsch::Variational<3> for DrivenPendulum {
-        const EDGES: usize = 1;
-
         /// cay(±η) − I = (±η^ + ½ η^²)/(1 + ¼|η|²)
         #[inline]
         fn retractions(&self, eta: &SVector<f64, 3>) -> [SMatrix<f64, 3, 3>; 2] {
@@ -221,20 +152,7 @@ const _: () = {
         /// q + Dq
         #[inline]
         fn advance(&self, q: &SVector<f64, 3>, d: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
-            q + d * q
-        }
-
-        /// The increment of the solve after the kick.
-        fn drift(
-            &self,
-            constants: &Constants,
-            _edge: usize,
-            t: f64,
-            q: &SVector<f64, 3>,
-            mu: &SVector<f64, 3>,
-            _u: &(),
-        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            increment(constants, &(mu + ::clebsch::Clebsch::impulse(self, constants, t, q, mu)))
+            ::clebsch::__private::Parts::advance(self, q, d)
         }
 
         /// ξ_Q
@@ -242,6 +160,121 @@ const _: () = {
             xi.cross(q)
         }
 
+        /// (e_i × q)·(e_j × q) = |q|²I − qqᵀ
+        #[inline]
+        fn orbit_metric(&self, q: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            SMatrix::<f64, 3, 3>::identity() * q.norm_squared() - q * q.transpose()
+        }
+
+        /// q × (target − q)
+        #[inline]
+        fn approach(&self, q: &SVector<f64, 3>, target: &SVector<f64, 3>) -> SVector<f64, 3> {
+            q.cross(&(target - q))
+        }
+    }
+
+    impl ::clebsch::__private::Parts for DrivenPendulum {
+        type Sums = ::clebsch::__private::Plain;
+        type Coordinates = SMatrix<f64, 3, 3>;
+        type Motion = SMatrix<f64, 3, 3>;
+        const IS_SHORT: bool = true;
+
+        /// What is solved for is F − I itself.
+        #[inline]
+        fn increment(&self, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            *d
+        }
+
+        /// I + D
+        #[inline]
+        fn element(d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            ::clebsch::__private::from_increment(d)
+        }
+
+        #[inline]
+        fn motion(&self, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            *d
+        }
+
+        /// q⁺ = q + Dq
+        #[inline]
+        fn advance(&self, q: &SVector<f64, 3>, d: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            q + d * q
+        }
+
+        /// F p
+        #[inline]
+        fn lift(&self, _: &SVector<f64, 3>, p: &SVector<f64, 3>, d: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            p + d * p
+        }
+    }
+
+    impl ::clebsch::__private::Substep<0> for DrivenPendulum {
+        /// −(h/2) J(q, ∇V(t, q))
+        #[inline]
+        fn start_kick(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            Some(moment(self, t, q) * -constants.half_h)
+        }
+
+        /// −(h/2) J(q⁺, ∇V(t + h, q⁺))
+        #[inline]
+        fn end_kick(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            Some(moment(self, t + constants.h, q) * -constants.half_h)
+        }
+
+        /// −(h/2) ∇V(t)
+        #[inline]
+        fn start_gradient(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            let _ = q;
+            Some(gradient(self, t) * -constants.half_h)
+        }
+
+        /// −(h/2) ∇V(t + h)
+        #[inline]
+        fn end_gradient(
+            &self,
+            constants: &Constants,
+            t: f64,
+            q: &SVector<f64, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            let _ = q;
+            Some(gradient(self, t + constants.h) * -constants.half_h)
+        }
+
+        /// π^ = mass·length² (F − Fᵀ)/(2h)
+        #[inline]
+        fn solve(
+            &self,
+            constants: &Constants,
+            _: f64,
+            _: &SVector<f64, 3>,
+            mu: &SVector<f64, 3>,
+            (): &(),
+        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
+            increment(constants, mu)
+        }
+    }
+
+    impl ::clebsch::__private::Varied<3> for DrivenPendulum {
+        type Slopes = ();
+    }
+
+    impl ::clebsch::__private::VariedSubstep<0, 3> for DrivenPendulum {
         /// ℓd = c|D|²/2 − (h/2)(V(t, q) + V(t + h, q⁺)), c = mass·length²/(2h), g = (h/2)∇V(t), g⁺ = (h/2)∇V(t + h):
         ///
         /// ∂N/∂η = −c(tr(F)I − Fᵀ) + qgᵀ − (q·g)I, ∂N/∂η′ = c(tr(F)I − F)
@@ -251,7 +284,6 @@ const _: () = {
         fn edge(
             &self,
             constants: &Constants,
-            _edge: usize,
             t: f64,
             q: &SVector<f64, 3>,
             d: &SMatrix<f64, 3, 3>,
@@ -279,7 +311,6 @@ const _: () = {
         fn momenta(
             &self,
             constants: &Constants,
-            _edge: usize,
             t: f64,
             q: &SVector<f64, 3>,
             d: &SMatrix<f64, 3, 3>,
@@ -300,7 +331,6 @@ const _: () = {
         fn carried(
             &self,
             constants: &Constants,
-            number: usize,
             t: f64,
             q: &SVector<f64, 3>,
             d: &SMatrix<f64, 3, 3>,
@@ -309,7 +339,7 @@ const _: () = {
         ) -> ::clebsch::Carried<f64, 3> {
             let (g, g_next) =
                 (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
-            let edge = ::clebsch::Variational::edge(self, constants, number, t, q, d, next, u);
+            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, q, d, next, u);
             let identity = SMatrix::<f64, 3, 3>::identity();
             let adjoint = identity + d;
             ::clebsch::Carried {
@@ -322,16 +352,15 @@ const _: () = {
             }
         }
 
-        /// (e_i × q)·(e_j × q) = |q|²I − qqᵀ
-        #[inline]
-        fn orbit_metric(&self, q: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
-            SMatrix::<f64, 3, 3>::identity() * q.norm_squared() - q * q.transpose()
-        }
-
-        /// q × (target − q)
-        #[inline]
-        fn approach(&self, q: &SVector<f64, 3>, target: &SVector<f64, 3>) -> SVector<f64, 3> {
-            q.cross(&(target - q))
+        fn slopes(
+            &self,
+            _: &Constants,
+            _: f64,
+            _: &SVector<f64, 3>,
+            _: &SMatrix<f64, 3, 3>,
+            _: &SVector<f64, 3>,
+            (): &(),
+        ) {
         }
     }
 

@@ -40,10 +40,9 @@ const _: () = {
         type Element = SMatrix<f64, 3, 3>;
         type Momentum = SVector<f64, 3>;
         type MomentumMatrix = SMatrix<f64, 3, 3>;
-        type Held = Self::Momentum;
         type Input = ();
-        type Impulse = SVector<f64, 3>;
         type Constants = Constants;
+        type Scheme = ::clebsch::__private::KickDriftKick<::clebsch::__private::Shared>;
         type Time = ();
         const NAME: &'static str = "HeavyTop";
         const ORDER: u32 = 2;
@@ -96,81 +95,6 @@ const _: () = {
             components(&(self.mass_matrix * f)) / h + torque(&(self.center * (self.weight * h / 2.0)), &(r * f))
         }
 
-        /// F with π^ = (F𝒥 − 𝒥Fᵀ)/h, π = N − (h/2) J(R, ∇V)
-        #[inline]
-        fn inverse_legendre(
-            &self,
-            constants: &Constants,
-            t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            mu: &SVector<f64, 3>,
-        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let kicked = mu + self.impulse(constants, t, r, mu);
-            let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
-            Ok(SMatrix::<f64, 3, 3>::identity() + increment(&c))
-        }
-
-        #[inline]
-        fn held(_: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
-            *mu
-        }
-
-        #[inline]
-        fn momentum_held(_: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
-            *held
-        }
-
-        /// −(h/2) J(R, ∇V) = (h/2)·weight·Γ × center, Γ = Rᵀe₃
-        #[inline]
-        fn impulse(
-            &self,
-            constants: &Constants,
-            _t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            _mu: &SVector<f64, 3>,
-        ) -> SVector<f64, 3> {
-            torque(&constants.moment, r)
-        }
-
-        /// π = N − (h/2) J(R, ∇V)
-        ///
-        /// R⁺ = R F = R + R(F − I)
-        ///
-        /// N⁺ = Fᵀπ − (h/2) J(R⁺, ∇V⁺), Fᵀπ = π + (F − I)ᵀπ
-        #[inline]
-        fn step(
-            &self,
-            constants: &Constants,
-            t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            mu: &SVector<f64, 3>,
-            impulse: &SVector<f64, 3>,
-            _u: &(),
-        ) -> ::core::result::Result<(SMatrix<f64, 3, 3>, SVector<f64, 3>, SVector<f64, 3>), ::clebsch::Error> {
-            let kicked = mu + impulse;
-            let c = ::clebsch::__private::solve(&Equation { constants }, &kicked)?;
-            let motion = increment(&c);
-            let next = r + r * motion;
-            let impulse_next = self.impulse(constants, t + constants.h, &next, mu);
-            Ok((next, kicked + motion.tr_mul(&kicked) + impulse_next, impulse_next))
-        }
-
-        /// P̃ = P − (h/2) ∇V(R), R⁺ = R F, P⁺ = P̃ F⁻ᵀ − (h/2) ∇V(R⁺)
-        #[inline]
-        fn step_symmetric(
-            &self,
-            constants: &Constants,
-            _t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            p: &SMatrix<f64, 3, 3>,
-        ) -> ::core::result::Result<(SMatrix<f64, 3, 3>, SMatrix<f64, 3, 3>), ::clebsch::Error> {
-            let kick = half_gradient(constants);
-            let kicked = p - kick;
-            let c = ::clebsch::__private::solve(&Equation { constants }, &self.momentum_map(r, &kicked))?;
-            let motion = increment(&c);
-            Ok((r + r * motion, kicked + kicked * motion - kick))
-        }
-
         /// V(R) = weight·(R center)₃
         #[inline]
         fn potential(&self, _t: f64, r: &SMatrix<f64, 3, 3>) -> f64 {
@@ -199,18 +123,6 @@ const _: () = {
         fn orbit_defect(&self, r: &SMatrix<f64, 3, 3>) -> f64 {
             ::clebsch::__private::orthogonality_defect(r)
         }
-
-        /// The action is free.
-        #[inline]
-        fn isotropy_defect(&self, _r: &SMatrix<f64, 3, 3>, _mu: &SVector<f64, 3>) -> f64 {
-            0.0
-        }
-
-        /// The action is free.
-        #[inline]
-        fn project_momentum(&self, _r: &SMatrix<f64, 3, 3>, mu: &SVector<f64, 3>) -> SVector<f64, 3> {
-            *mu
-        }
     }
 
     #[automatically_derived]
@@ -226,8 +138,6 @@ const _: () = {
 
     #[automatically_derived]
     impl ::clebsch::Variational<3> for HeavyTop {
-        const EDGES: usize = 1;
-
         /// cay(η) − I, cay(−η) − I
         #[inline]
         fn retractions(&self, eta: &SVector<f64, 3>) -> [SMatrix<f64, 3, 3>; 2] {
@@ -244,21 +154,7 @@ const _: () = {
         /// R + RD
         #[inline]
         fn advance(&self, r: &SMatrix<f64, 3, 3>, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
-            r + r * d
-        }
-
-        /// The increment of the solve after the kick.
-        fn drift(
-            &self,
-            constants: &Constants,
-            _edge: usize,
-            t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            mu: &SVector<f64, 3>,
-            _u: &(),
-        ) -> ::core::result::Result<SMatrix<f64, 3, 3>, ::clebsch::Error> {
-            let kicked = mu + ::clebsch::Clebsch::impulse(self, constants, t, r, mu);
-            Ok(increment(&::clebsch::__private::solve(&Equation { constants }, &kicked)?))
+            ::clebsch::__private::Parts::advance(self, r, d)
         }
 
         /// ξ_Q
@@ -266,6 +162,132 @@ const _: () = {
             r * hat(xi)
         }
 
+        /// ⟨R E_i, R E_j⟩
+        #[inline]
+        fn orbit_metric(&self, _r: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            SMatrix::<f64, 3, 3>::identity() * 2.0
+        }
+
+        /// ⟨target − R, R E_i⟩
+        #[inline]
+        fn approach(&self, r: &SMatrix<f64, 3, 3>, target: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
+            components(&r.tr_mul(&(target - r)))
+        }
+    }
+
+    impl ::clebsch::__private::Parts for HeavyTop {
+        type Sums = ::clebsch::__private::Plain;
+        type Coordinates = SVector<f64, 3>;
+        type Motion = SMatrix<f64, 3, 3>;
+        const IS_SHORT: bool = true;
+
+        /// F − I
+        #[inline]
+        fn increment(&self, c: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            increment(c)
+        }
+
+        /// I + D
+        #[inline]
+        fn element(d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            ::clebsch::__private::from_increment(d)
+        }
+
+        #[inline]
+        fn motion(&self, c: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+            increment(c)
+        }
+
+        /// R⁺ = R F = R + R(F − I)
+        #[inline]
+        fn advance(&self, r: &SMatrix<f64, 3, 3>, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            r + r * d
+        }
+
+        /// P F⁻ᵀ = P + P(F − I)
+        #[inline]
+        fn lift(&self, _: &SMatrix<f64, 3, 3>, p: &SMatrix<f64, 3, 3>, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            p + p * d
+        }
+    }
+
+    impl ::clebsch::__private::Substep<0> for HeavyTop {
+        /// −(h/2) J(R, ∇V) = (h/2)·weight·Γ × center, Γ = Rᵀe₃
+        #[inline]
+        fn start_kick(
+            &self,
+            constants: &Constants,
+            _: f64,
+            r: &SMatrix<f64, 3, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            Some(torque(&constants.moment, r))
+        }
+
+        /// The same at R⁺.
+        #[inline]
+        fn end_kick(
+            &self,
+            constants: &Constants,
+            _: f64,
+            r: &SMatrix<f64, 3, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            Some(torque(&constants.moment, r))
+        }
+
+        /// −(h/2) ∇V
+        #[inline]
+        fn start_gradient(
+            &self,
+            constants: &Constants,
+            _: f64,
+            _: &SMatrix<f64, 3, 3>,
+        ) -> ::core::option::Option<SMatrix<f64, 3, 3>> {
+            Some(-half_gradient(constants))
+        }
+
+        /// −(h/2) ∇V
+        #[inline]
+        fn end_gradient(
+            &self,
+            constants: &Constants,
+            _: f64,
+            _: &SMatrix<f64, 3, 3>,
+        ) -> ::core::option::Option<SMatrix<f64, 3, 3>> {
+            Some(-half_gradient(constants))
+        }
+
+        /// π^ = (F𝒥 − 𝒥Fᵀ)/h
+        #[inline]
+        fn solve(
+            &self,
+            constants: &Constants,
+            _: f64,
+            _: &SMatrix<f64, 3, 3>,
+            mu: &SVector<f64, 3>,
+            (): &(),
+        ) -> ::core::result::Result<SVector<f64, 3>, ::clebsch::Error> {
+            ::clebsch::__private::solve(&Equation { constants }, mu)
+        }
+
+        /// Fᵀπ = π + (F − I)ᵀπ
+        #[inline]
+        fn update(
+            &self,
+            _: &Constants,
+            _: f64,
+            _: &SMatrix<f64, 3, 3>,
+            mu: &SVector<f64, 3>,
+            d: &SMatrix<f64, 3, 3>,
+        ) -> ::core::option::Option<SVector<f64, 3>> {
+            Some(mu + d.tr_mul(mu))
+        }
+    }
+
+    impl ::clebsch::__private::Varied<3> for HeavyTop {
+        type Slopes = ();
+    }
+
+    impl ::clebsch::__private::VariedSubstep<0, 3> for HeavyTop {
         /// ℓd = tr(D𝒥Dᵀ)/(2h) − (h/2)(V(R) + V(R⁺)), A = F𝒥, m = (h/2)·weight·center:
         ///
         /// ∂N/∂η = (A − tr(A)I)/h − (Γ·m)I + Γmᵀ, ∂N/∂η′ = (tr(A)I − A)F/h
@@ -275,11 +297,10 @@ const _: () = {
         fn edge(
             &self,
             constants: &Constants,
-            _edge: usize,
             _t: f64,
             r: &SMatrix<f64, 3, 3>,
             d: &SMatrix<f64, 3, 3>,
-            next: &SMatrix<f64, 3, 3>,
+            _next: &SMatrix<f64, 3, 3>,
             _u: &(),
         ) -> ::clebsch::Edge<f64, 3> {
             let (by_h, m) = (1.0 / constants.h, &constants.moment);
@@ -307,7 +328,6 @@ const _: () = {
         fn momenta(
             &self,
             constants: &Constants,
-            _edge: usize,
             _t: f64,
             r: &SMatrix<f64, 3, 3>,
             d: &SMatrix<f64, 3, 3>,
@@ -329,7 +349,6 @@ const _: () = {
         fn carried(
             &self,
             constants: &Constants,
-            number: usize,
             t: f64,
             r: &SMatrix<f64, 3, 3>,
             d: &SMatrix<f64, 3, 3>,
@@ -339,7 +358,7 @@ const _: () = {
             let m = &constants.moment;
             let gamma = vector([r[(2, 0)], r[(2, 1)], r[(2, 2)]]);
             let gamma_next = gamma + d.tr_mul(&gamma);
-            let edge = ::clebsch::Variational::edge(self, constants, number, t, r, d, next, u);
+            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, r, d, next, u);
             let identity = SMatrix::<f64, 3, 3>::identity();
             let adjoint = identity + d.transpose();
             ::clebsch::Carried {
@@ -352,16 +371,15 @@ const _: () = {
             }
         }
 
-        /// ⟨R E_i, R E_j⟩
-        #[inline]
-        fn orbit_metric(&self, _r: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
-            SMatrix::<f64, 3, 3>::identity() * 2.0
-        }
-
-        /// ⟨target − R, R E_i⟩
-        #[inline]
-        fn approach(&self, r: &SMatrix<f64, 3, 3>, target: &SMatrix<f64, 3, 3>) -> SVector<f64, 3> {
-            components(&r.tr_mul(&(target - r)))
+        fn slopes(
+            &self,
+            _: &Constants,
+            _: f64,
+            _: &SMatrix<f64, 3, 3>,
+            _: &SMatrix<f64, 3, 3>,
+            _: &SMatrix<f64, 3, 3>,
+            (): &(),
+        ) {
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::run::Task;
 use crate::trajectories::Recorder;
-use clebsch::{Clebsch, SiteStorage, Sites};
+use clebsch::{Clebsch, SiteStorage};
 use clebsch_tests::fixtures::spin_chain::SpinChain;
 use nalgebra::Vector3;
 
@@ -59,7 +59,10 @@ pub fn all(task: &Recorder) {
         let spins = SpinChain::<N> { exchange: 0.7, field: Vector3::new(0.1, 0.2, 0.5) };
         let mu = q.map(|q| q.cross(&Vector3::new(0.3, -0.2, 0.1)));
         let storage = SiteStorage::of(q.to_vec(), mu.to_vec());
-        let mut sites = Sites::new(spins, 0.02, storage).expect("spins");
+        let mut sites = spins
+            .into_stepper(0.02)
+            .and_then(|stepper| stepper.sites(storage).map_err(|error| error.error))
+            .expect("spins");
         for _ in 0..1000 {
             sites.step().expect("a step");
             sites.configuration().iter().for_each(|q| record.add(q));

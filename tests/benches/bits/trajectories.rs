@@ -2,7 +2,7 @@
 
 use crate::record::Record;
 use crate::run::{Start, Task, stepped, uneven};
-use clebsch::{Clebsch, CotangentState, Error, Integrator, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, CotangentState, Error, Scalar, Space, State, Stepper};
 use clebsch_tests::oracle::bits::Bits;
 use std::cell::RefCell;
 
@@ -113,8 +113,8 @@ fn put_covector<S: Clebsch<Scalar: Scalar<Lane: Bits>>>(record: &Record, state: 
 fn ways_to_step<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone>(task: &Recorder, name: &str, start: &Start<S>) {
     let stepper = &start.stepper;
     task.quantity(name, "integrator", |record| {
-        let mut integrator = Integrator::new(stepper.clone(), start.state());
-        let advanced = integrator.advance(FEW);
+        let mut integrator = stepper.clone().integrator(start.state());
+        let advanced = integrator.advance(FEW as u64);
         put(record, &advanced.map(|()| *integrator.state()));
     });
     task.quantity(name, "other_step_size", |record| {

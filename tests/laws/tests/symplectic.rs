@@ -5,6 +5,7 @@
 
 #![allow(missing_docs)]
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Scalar};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::oracle::dual::Dual;
@@ -141,7 +142,7 @@ fn assert_symplectic<S, const R: usize, const C: usize, const K: usize>(
 ) where
     S: Clebsch<Scalar = Dual<K>, Configuration = SMatrix<Dual<K>, R, C>>,
 {
-    let constants = system.constants(Dual::constant(H)).expect("a regular system");
+    let constants = system.step_constants(Dual::constant(H)).expect("a regular system");
     let step = system.step_symmetric(&constants, Dual::constant(0.0), &variables(q, 0), &variables(p, K / 2));
     let (q, p) = step.expect("a solvable step");
     let d = jacobian(q.iter().chain(p.iter()));
@@ -266,7 +267,7 @@ fn steps_on_the_sphere_are_poisson_in_configuration_and_momentum() {
         let pendulum = Pendulum::<Dual<6>> { inertia: Dual::constant(0.8), gravity: Dual::constant(3.0) };
         let q = random.unit::<3>();
         let n = q.cross(&random.vector());
-        let constants = pendulum.constants(Dual::constant(H)).expect("a regular pendulum");
+        let constants = pendulum.step_constants(Dual::constant(H)).expect("a regular pendulum");
         let (at, momentum) = (variables::<6, 3, 1>(&q, 0), variables(&n, 3));
         let impulse = pendulum.impulse(&constants, Dual::constant(0.0), &at, &momentum);
         let (next, next_momentum, _) =

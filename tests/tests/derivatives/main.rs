@@ -11,6 +11,7 @@ mod kernels;
 mod program;
 
 use by_hand::{ByHand, slope};
+use clebsch::__private::{Scheme, Stepping};
 use clebsch::Clebsch;
 use clebsch_compiler::Graph;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
@@ -59,7 +60,7 @@ fn one_factor<S, const N: usize, const C: usize, const M: usize>(
             Configuration = SMatrix<f64, N, C>,
             Element = SMatrix<f64, N, N>,
             Momentum = SVector<f64, M>,
-            Impulse = SVector<f64, M>,
+            Scheme: Scheme<S, Left = SVector<f64, M>>,
         >,
 {
     let graph = Graph::new();
@@ -78,7 +79,7 @@ fn one_factor<S, const N: usize, const C: usize, const M: usize>(
             assert_three(&evaluate(formulas.momentum_map[0]), code.as_slice(), &hand.momentum_map::<M>(&q, &p), "J");
             let code = system.legendre(H, 0.0, &q, &f);
             assert_three(&evaluate(formulas.legendre[0]), code.as_slice(), &hand.legendre::<M>(&q, &f), "F⁻ℓd");
-            let code = system.impulse(&system.constants(H).expect("a regular system"), 0.0, &q, &nalgebra::zero());
+            let code = system.impulse(&system.step_constants(H).expect("a regular system"), 0.0, &q, &nalgebra::zero());
             let kick = formulas.substeps[0].start.as_ref().expect("a kick")[0];
             assert_three(&evaluate(kick), code.as_slice(), &hand.kick::<M>(&q), "kick");
             let (drift, kick) = (&formulas.legendre_next, &formulas.legendre_kick);
@@ -175,7 +176,7 @@ fn two_bodies() {
             |x: [Vector3<f64>; 2]| -bodies.gravitation * bodies.mass[0] * bodies.mass[1] / (x[1] - x[0]).norm();
         let kick = formulas.substeps[0].start.as_ref().expect("a kick");
         let formula: Vec<f64> = kick.iter().flat_map(|part| values.evaluate(*part).entries).collect();
-        let code = bodies.impulse(&bodies.constants(H).expect("regular bodies"), 0.0, &x, &nalgebra::zero());
+        let code = bodies.impulse(&bodies.step_constants(H).expect("regular bodies"), 0.0, &x, &nalgebra::zero());
         let moved = |i: usize, e: f64| {
             let mut x = x;
             x[i / 3][i % 3] += e;

@@ -97,7 +97,7 @@ fn element(graph: &Graph, group: Group, random: &mut Random) -> Matrix<f64> {
         .map(|(block, index)| {
             let name = format!("coordinates of a random element {index}");
             let shape = Shape::vector(block.algebra.dimension());
-            graph.symbol(&name, shape, Role::Auxiliary(usize::MAX - 2 - index), Property::General)
+            graph.symbol(&name, shape, Role::Direction(index), Property::General)
         })
         .collect();
     let element = group.chart(graph).element(group, &coordinates);

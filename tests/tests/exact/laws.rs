@@ -1,6 +1,7 @@
 //! What every step keeps, and what belongs together.
 
 use crate::systems::{eighth, fourth, sixth};
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Conserved, Conserves, Error, Stepper};
 use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::oracle::random::Random;
@@ -137,7 +138,7 @@ fn legendre_transforms_belong_to_the_step() {
     let h = 0.3;
     let stepper = system.stepper(h).expect("regular");
     let (r, pi) = start();
-    let constants = system.constants(h).expect("regular");
+    let constants = system.step_constants(h).expect("regular");
     let f = system.inverse_legendre(&constants, 0.0, &r, &pi).expect("solved");
     let state = stepper.step(&stepper.state(r, pi).expect("a state")).expect("a step");
     assert!((system.act(&f, &r) - state.configuration()).norm() < 1e-14);
@@ -145,7 +146,7 @@ fn legendre_transforms_belong_to_the_step() {
     assert!((system.legendre_next(h, 0.0, &r, &f) - state.momentum()).norm() < 1e-13);
     // and of a motion from the left
     let mirrored = crate::systems::second::MirroredTop { moments: MOMENTS, moment: Vector3::new(0.6, -0.3, 1.8) };
-    let constants = mirrored.constants(h).expect("regular");
+    let constants = mirrored.step_constants(h).expect("regular");
     let f = mirrored.inverse_legendre(&constants, 0.0, &r, &pi).expect("solved");
     assert!((mirrored.legendre(h, 0.0, &r, &f) - pi).norm() < 1e-13);
 }

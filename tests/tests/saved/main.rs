@@ -2,6 +2,7 @@
 
 #![allow(missing_docs)]
 
+use clebsch::__private::Scheme;
 use clebsch::{Clebsch, Error, F32x8, F64x4, SavedState, Scalar, State, Stepper};
 use clebsch_tests::fixtures::compensated_top::CompensatedTop;
 use clebsch_tests::fixtures::exact_body::ExactBody;
@@ -33,7 +34,7 @@ fn steps<S: Clebsch>(stepper: &Stepper<S>, start: State<S>) -> Result<State<S>, 
 /// Writes the state after some steps, reads it, and goes on with it and without.
 fn goes_on<S>(stepper: &Stepper<S>, start: State<S>) -> Result<(), Error>
 where
-    S: Clebsch<Time: Kept, Configuration: Kept, Held: Kept, Impulse: Kept, Scalar: Kept>,
+    S: Clebsch<Time: Kept, Configuration: Kept, Scheme: Scheme<S, Held: Kept, Left: Kept>, Scalar: Kept>,
 {
     let state = steps(stepper, start)?;
     let exact = steps(stepper, state)?;

@@ -177,7 +177,7 @@ impl Id {
             Id::PriceOfEnd => &["endpoint"],
             Id::Conserved(_) => &["conserved"],
             Id::StartKick(_) => &["start_kick"],
-            Id::RestKick(_) => &["rest_kick"],
+            Id::RestKick(_) => &["rest"],
             Id::StartGradient(_) => &["start_gradient"],
             Id::Equation(..) => &["Equation", "residual", "linearize"],
             Id::Jacobian(..) => &["linearize", "system"],

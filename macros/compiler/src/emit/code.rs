@@ -424,8 +424,13 @@ fn decimal(value: &Rational) -> Option<String> {
 
 /// The body of a kernel that returns its outputs nested as configuration or element, or its only output.
 pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, nesting: Option<Nesting>) -> TokenStream {
-    let locals = locals(scope, kernel);
-    let value = match nesting {
+    let (locals, value) = (locals(scope, kernel), value(scope, kernel, nesting));
+    quote!(#locals #value)
+}
+
+/// What a kernel returns, behind its shared terms.
+pub fn value(scope: &Scope<'_, '_>, kernel: &Kernel, nesting: Option<Nesting>) -> TokenStream {
+    match nesting {
         Some(nesting) => {
             let structure = match nesting {
                 Nesting::Configuration => &scope.model.configuration,
@@ -437,8 +442,7 @@ pub fn body(scope: &Scope<'_, '_>, kernel: &Kernel, nesting: Option<Nesting>) ->
             })
         }
         None => grid(scope, kernel.outputs[0].0, &kernel.outputs[0].1, false),
-    };
-    quote!(#locals #value)
+    }
 }
 
 /// The shared terms of a kernel.

@@ -1,7 +1,7 @@
 //! Steps of order 16: Hamilton's equations at all stages, found by sweeps over them.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{ToTokens, format_ident, quote};
+use quote::{format_ident, quote};
 
 use super::code::{self, Nesting};
 use super::{Emitter, docs};
@@ -9,24 +9,45 @@ use crate::derive::Id;
 use crate::lower::CollocationKernels;
 
 impl Emitter<'_, '_> {
-    /// The slope of (q, p), the covector of a momentum, and the steps in both representations.
-    pub(super) fn collocated(&self, kernels: &CollocationKernels) -> TokenStream {
-        let (slope, guess, change, lift) =
-            (self.slope(kernels), self.guess(kernels), self.change(), self.lifted(kernels));
-        let (euler_poincare, symmetric) = (self.collocated_euler_poincare(), self.collocated_symmetric());
-        quote!(#slope #lift #guess #change #euler_poincare #symmetric)
+    /// The implementation of `HamiltonEquations`: the slope of (q, p), the covector of a momentum, and a guess.
+    pub(super) fn hamilton_equations(&self, kernels: &CollocationKernels) -> TokenStream {
+        let numbers = self.numbers_of_pair();
+        let (dials, size) = (self.dials_of_sweeps(), self.size_of_step());
+        let (slope, covector, guess) = (self.slope(kernels), self.covector(kernels), self.guess(kernels));
+        let pair = self.pair();
+        self.implementation(quote!(HamiltonEquations<#numbers>), quote!(#dials #size #slope #covector #guess #pair))
+    }
+
+    /// Where sweeps end, and whether J is affine in q.
+    fn dials_of_sweeps(&self) -> TokenStream {
+        let tolerance = self.model.dials.tolerance.as_ref().map(|tolerance| {
+            let part = Literal::f64_unsuffixed(tolerance.value);
+            quote!(const TOLERANCE: ::core::primitive::f64 = #part;)
+        });
+        let most = self.model.dials.iterations.as_ref().map(|iterations| {
+            let most = Literal::u32_unsuffixed(iterations.value);
+            quote!(const SWEEPS: ::core::primitive::u32 = #most;)
+        });
+        let is_affine = self.program.formulas.collocation.as_ref().is_some_and(|collocation| collocation.is_affine);
+        let affine = is_affine.then(|| {
+            quote!(
+                const IS_AFFINE: ::core::primitive::bool = true;
+            )
+        });
+        quote!(#tolerance #most #affine)
     }
 
     /// (q′, p′), in the order of their entries.
     fn slope(&self, kernels: &CollocationKernels) -> TokenStream {
-        let (time, numbers) = (self.time_parameter(), self.pair_type());
+        let (scalar, numbers, constants) = (&self.paths.scalar, self.pair_type(), self.constants_of_step());
         let formulas = self.program.formulas.titled(Id::HamiltonEquations);
         let documentation = docs::formulas(
-            "Hamilton's equations: the slope (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.",
+            "Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.",
             formulas,
             Some(&kernels.slope),
         );
-        let (q, p) = (self.built("y", 0), self.built("y", self.entries().count()));
+        let private = &self.paths.private;
+        let numbers_of_pair = self.numbers_of_pair();
         let scope = self.scope_of_step();
         let locals = code::locals(&scope, &kernels.slope);
         let entries = kernels.slope.outputs.iter().flat_map(|(_, entries)| entries);
@@ -34,17 +55,19 @@ impl Emitter<'_, '_> {
         quote! {
             #documentation
             #[inline(always)]
-            fn slope(&self, #time y: &#numbers) -> #numbers {
-                let (q, p) = (#q, #p);
+            fn slope(&self, constants: &#constants, t: #scalar, y: &#numbers) -> #numbers {
+                let (q, p) = <Self as #private::HamiltonEquations<#numbers_of_pair>>::parted(y);
                 #locals
                 [#(#entries),*]
             }
         }
     }
 
-    fn lifted(&self, kernels: &CollocationKernels) -> TokenStream {
+    fn covector(&self, kernels: &CollocationKernels) -> TokenStream {
+        let constants = self.constants_of_step();
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
-        let signature = quote!(covector(&self, q: &#configuration, mu: &#momentum) -> #configuration);
+        let signature =
+            quote!(covector(&self, constants: &#constants, q: &#configuration, mu: &#momentum) -> #configuration);
         self.part(
             "A covector p at q with the momentum J(q, p) = μ.",
             &[],
@@ -56,154 +79,44 @@ impl Emitter<'_, '_> {
 
     /// Where the motion with the velocity of the start leads.
     fn guess(&self, kernels: &CollocationKernels) -> TokenStream {
-        let (configuration, momentum, scalar) = (self.configuration_type(), self.momentum_type(), &self.paths.scalar);
-        let (time, numbers, step) = (self.time_parameter(), self.pair_type(), &self.program.steps[0]);
-        let whole = self.part(
+        let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
+        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
+        let coordinates = self.coordinates_type();
+        let guess = self.part(
             "The chart coordinates x of the motion by the velocity ξ = Σ⁻¹(μ − A) for the time h, to first order in h.",
             &[],
-            quote!(whole_guess(&self, #time q: &#configuration, mu: &#momentum) -> #momentum),
+            quote!(guess(&self, constants: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #momentum),
             &kernels.guess,
             None,
         );
         let x = match self.program.formulas.weighted().len() {
             0 => quote!(*x * part),
             count => {
-                let (private, count) = (&self.paths.private, Literal::usize_unsuffixed(count));
+                let count = Literal::usize_unsuffixed(count);
                 quote!((*x * part, [<#scalar as #private::One>::one(); #count]))
             }
         };
-        let (advanced, entries) = (self.advanced_plainly(step), self.flat());
         quote! {
-            #whole
-            /// (q, p) after a part of the step, moved along by the velocity of its start: on the orbit of q.
+            #guess
             #[inline]
-            fn guess(&self, part: #scalar, q: &#configuration, p: &#configuration, x: &#momentum) -> #numbers {
-                let (q, x) = (*q, #x);
-                let d = self.increment(&x);
-                #advanced
-                let p = self.lift(&q, p, &d);
-                #entries
+            fn part(x: &#momentum, part: #scalar) -> #coordinates {
+                #x
             }
         }
     }
 
-    /// (q⁺ − q, p⁺ − p).
-    fn change(&self) -> TokenStream {
-        let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
-        let configuration = self.configuration_type();
-        let (start_of_pair, count) = (self.flat(), self.entries().count());
-        let (dq, dp) = (self.built("change", 0), self.built("change", count));
-        let tolerance =
-            Literal::f64_unsuffixed(self.model.dials.tolerance.as_ref().map_or(0.0, |tolerance| tolerance.value));
-        let most = match &self.model.dials.iterations {
-            Some(iterations) => Literal::u32_unsuffixed(iterations.value).into_token_stream(),
-            None => quote!(#private::SWEEPS),
-        };
-        let time = if self.is_timed() { quote!(t) } else { quote!(_) };
-        let (argument, start) = (
-            self.time_argument(),
-            match self.is_timed() {
-                true => quote!(t),
-                false => quote!(<#scalar as #private::Zero>::zero()),
-            },
-        );
-        let (parameter, momentum) = (self.time_parameter(), self.momentum_type());
+    /// (q, p) as an array of their entries, and back.
+    fn pair(&self) -> TokenStream {
+        let (configuration, numbers) = (self.configuration_type(), self.pair_type());
+        let (joined, q, p) = (self.flat(), self.built("y", 0), self.built("y", self.entries().count()));
         quote! {
-            /// (q⁺ − q, p⁺ − p), by collocation at eight nodes.
             #[inline]
-            fn change(
-                &self,
-                #parameter
-                q: &#configuration,
-                p: &#configuration,
-                mu: &#momentum,
-            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
-                let x = self.whole_guess(#argument q, mu);
-                let change = #private::collocate::<#scalar, _, 8, 4>(
-                    &#private::GAUSS_16,
-                    (#start, self.constants.step_size),
-                    &#start_of_pair,
-                    #tolerance,
-                    #most,
-                    |part| self.guess(part, q, p, &x),
-                    |#time, y| self.slope(#argument y),
-                )?;
-                ::core::result::Result::Ok((#dq, #dp))
+            fn joined(q: &#configuration, p: &#configuration) -> #numbers {
+                #joined
             }
-        }
-    }
-
-    /// M⁺ = M + J(q⁺, p⁺) − J(q, p), where J is linear in p and affine in q.
-    fn collocated_euler_poincare(&self) -> TokenStream {
-        let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
-        let (configuration, momentum, left) = (self.configuration_type(), self.momentum_type(), self.left_type());
-        let (time, argument) = (self.time_parameter(), self.time_argument());
-        let (rests, kept) = (self.rests_taken(&format_ident!("impulse")), self.with_rests(quote!(())));
-        let of_origin =
-            self.program.formulas.collocation.as_ref().filter(|collocation| collocation.is_affine).map(
-                |_| quote!(- #krate::Clebsch::momentum_map(self.system, &#private::Space::<#scalar>::origin(), &p)),
-            );
-        let completed = code::combined(self.model, &quote!(p), quote!(+), &quote!(missing), &self.paths);
-        let pushed = self.pushed_by(quote!(added));
-        let moved = match self.is_compensated() {
-            true => quote!(let (q, q_rest) = #private::accumulate::<#scalar, _>(&q, &q_rest, &dq);),
-            false => {
-                let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(dq), &self.paths);
-                quote!(let q = #sum;)
-            }
-        };
-        let on_spaces = self.kept_on_spaces();
-        let unused = (!self.is_compensated()).then(|| quote!(let _ = impulse;));
-        quote! {
-            /// (q, N) ↦ (q⁺, N⁺), where N⁺ − N = J(q⁺, p⁺) − J(q, p) is made of the changes of q and p at the middle of the step.
             #[inline]
-            fn euler_poincare(
-                &self,
-                #time
-                q: &#configuration,
-                mu: &#momentum,
-                impulse: &#left,
-            ) -> ::core::result::Result<(#configuration, #momentum, #left), #krate::Error> {
-                let (q, mu) = (*q, *mu);
-                #unused
-                #rests
-                let p = self.covector(&q, &mu);
-                // where rounding has moved q off its orbit, J(q, p) misses μ by as much: added up, N would drift like the square of the steps
-                let missing = self.covector(&q, &(mu - #krate::Clebsch::momentum_map(self.system, &q, &p)));
-                let p = #completed;
-                let (dq, dp) = self.change(#argument &q, &p, &mu)?;
-                let half = <#scalar as #private::Scalar>::from_ratio(1, 2);
-                let added = {
-                    let q = #private::Space::<#scalar>::zip_map(&q, &dq, |q, dq| q + half * dq);
-                    let p = #private::Space::<#scalar>::zip_map(&p, &dp, |p, dp| p + half * dp);
-                    #krate::Clebsch::momentum_map(self.system, &dq, &p) #of_origin + #krate::Clebsch::momentum_map(self.system, &q, &dp)
-                };
-                #moved
-                #on_spaces
-                #pushed
-                ::core::result::Result::Ok((q, mu, #kept))
-            }
-        }
-    }
-
-    fn collocated_symmetric(&self) -> TokenStream {
-        let (krate, configuration) = (&self.paths.krate, self.configuration_type());
-        let (time, argument) = (self.time_parameter(), self.time_argument());
-        let [q, p] = [("q", "dq"), ("p", "dp")].map(|(from, by)| {
-            let (from, by) = (format_ident!("{from}"), format_ident!("{by}"));
-            code::combined(self.model, &quote!(#from), quote!(+), &quote!(#by), &self.paths)
-        });
-        quote! {
-            /// (q, p) ↦ (q⁺, p⁺).
-            fn symmetric(
-                &self,
-                #time
-                q: &#configuration,
-                p: &#configuration,
-            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
-                let mu = #krate::Clebsch::momentum_map(self.system, q, p);
-                let (dq, dp) = self.change(#argument q, p, &mu)?;
-                ::core::result::Result::Ok((#q, #p))
+            fn parted(y: &#numbers) -> (#configuration, #configuration) {
+                (#q, #p)
             }
         }
     }
@@ -257,7 +170,12 @@ impl Emitter<'_, '_> {
 
     /// The type of all entries of q and p.
     fn pair_type(&self) -> TokenStream {
-        let (scalar, count) = (&self.paths.scalar, Literal::usize_unsuffixed(2 * self.entries().count()));
+        let (scalar, count) = (&self.paths.scalar, self.numbers_of_pair());
         quote!([#scalar; #count])
+    }
+
+    /// How many entries q and p have.
+    pub(super) fn numbers_of_pair(&self) -> Literal {
+        Literal::usize_unsuffixed(2 * self.entries().count())
     }
 }

@@ -206,12 +206,11 @@ impl Emitter<'_, '_> {
                 #inverse
             })
         };
-        let made = self.made_for_steps(&body);
         quote! {
             #documentation
             fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
                 #checks
-                #made
+                #body
             }
         }
     }

@@ -12,21 +12,20 @@ pub fn lines(lines: &[String]) -> TokenStream {
     quote!(#(#[doc = #lines])*)
 }
 
-/// A title, its formulas as a code block, their shape and source, and the cost of the kernel.
+/// A title, its formulas, and in one line their shape, the cost of the kernel and the source.
 pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) -> TokenStream {
-    let mut text = vec![title.to_string()];
-    if !formulas.is_empty() {
-        text.extend([String::new(), "```text".to_string()]);
-        text.extend(formulas.iter().map(Formula::equation));
-        text.push("```".to_string());
-        let shapes: Vec<String> = formulas[0].shapes().iter().map(|shape| shape.to_string()).collect();
-        text.extend([String::new(), format!("Shape: {}.", shapes.join(", "))]);
-        if let Some(source) = formulas[0].source {
-            text.extend([String::new(), format!("Source: {source}.")]);
-        }
-    }
-    if let Some(kernel) = kernel {
-        text.extend([String::new(), format!("Cost: {}.", kernel.cost())]);
-    }
+    let cost = kernel.map(|kernel| format!("Cost: {}.", kernel.cost()));
+    let Some(first) = formulas.first() else {
+        let line: Vec<String> = [Some(title.to_string()), cost].into_iter().flatten().collect();
+        return lines(&[line.join(" ")]);
+    };
+    let shapes: Vec<String> = first.shapes().iter().map(|shape| shape.to_string()).collect();
+    let shape = Some(format!("Shape: {}.", shapes.join(", ")));
+    let source = first.source.map(|source| format!("Source: {source}."));
+    let line: Vec<String> = [shape, cost, source].into_iter().flatten().collect();
+    let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
+    let mut text = vec![title.to_string(), String::new()];
+    text.extend(equations);
+    text.extend([String::new(), line.join(" ")]);
     lines(&text)
 }

@@ -20,7 +20,7 @@ impl<'g> Emitter<'_, 'g> {
                     // the runtime's, the same for every body
                     Solution::FreeRotation => TokenStream::new(),
                     Solution::Linear => self.linear_equation(index, number, solve),
-                    Solution::ClosedForm | Solution::Explicit => self.solved(index, number, solve),
+                    Solution::ClosedForm | Solution::Explicit => self.solved_equation(index, number, solve),
                 });
             }
         }
@@ -50,7 +50,7 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The type of an equation that is solved by a formula.
-    fn solved(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
+    fn solved_equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, krate) = (&self.paths.private, &self.paths.krate);
         let lifetime = &self.names.lifetime;
@@ -109,7 +109,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The scope of an equation's methods: `target` holds its momenta, and `x` its unknowns, or those that are given.
     fn scope_of_solve(&self, solve: &Solve) -> code::Scope<'_, 'g> {
-        let mut scope = self.scope_of_step();
+        let mut scope = self.scope_of_equation();
         scope.momentum = "target";
         scope.momenta = solve.momenta.clone();
         scope.coordinates = if solve.given.is_empty() { solve.components.clone() } else { solve.given.clone() };

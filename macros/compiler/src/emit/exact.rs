@@ -1,4 +1,4 @@
-//! Exact drifts: how free rotations are found, the steps of one free motion, and splittings.
+//! Exact drifts: how free rotations are found, what one motion keeps, and the kicks of splittings.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -6,35 +6,34 @@ use quote::{format_ident, quote};
 use super::Emitter;
 use super::code::Nesting;
 use crate::derive::{Id, Solution};
-use crate::lower::{Solve, SplittingKernels, StepKernels};
+use crate::lower::{Solve, SplittingKernels};
 
 impl Emitter<'_, '_> {
     /// The coordinates of a factor that moves freely with the momentum `target`; `kept` are the motions of many steps.
     pub(super) fn found_free_rotation(
         &self,
-        (suffix, number, solve): (&str, usize, &Solve),
-        solution: &Ident,
+        index: usize,
+        number: usize,
+        solve: &Solve,
         target: &TokenStream,
         kept: bool,
     ) -> TokenStream {
-        let (private, rotation) = (&self.paths.private, self.free_rotation(suffix, number));
-        let is_weighted = self.weight_of(solve).is_some();
+        let (private, rotation) = (&self.paths.private, self.free_rotation(self.program.suffix(index), number));
+        let solution = format_ident!("x{}", number + 1);
+        let weight = self.weight_of(solve);
         // spatial momenta move as those of the body that turns back
         let is_left = self.is_left(solve);
-        let target = if is_left { quote!(-#target) } else { target.clone() };
-        let found = match kept {
-            true => {
-                let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
-                let method = if is_weighted { quote!(turn_of) } else { quote!(gibbs_vector_of) };
-                quote!(#private::FreeRotation::#method(&self.constants.#rotation, &kept[#index], &#target)?)
-            }
-            false => {
-                let method = if is_weighted { quote!(turn) } else { quote!(gibbs_vector) };
-                quote!(#private::FreeRotation::#method(&self.constants.#rotation, &#target)?)
-            }
+        let target = if is_left { quote!(&-#target) } else { target.clone() };
+        let found = if kept {
+            let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
+            let method = if weight.is_some() { quote!(turn_of) } else { quote!(gibbs_vector_of) };
+            quote!(#private::FreeRotation::#method(&constants.#rotation, &kept[#index], #target)?)
+        } else {
+            let method = if weight.is_some() { quote!(turn) } else { quote!(gibbs_vector) };
+            quote!(#private::FreeRotation::#method(&constants.#rotation, #target)?)
         };
         let turned_back = is_left.then(|| quote!(let #solution = -#solution;));
-        match self.weight_of(solve) {
+        match weight {
             Some(number) => {
                 let weight = format_ident!("w{}", number + 1);
                 quote!(let (#weight, #solution) = #found; #turned_back)
@@ -48,18 +47,6 @@ impl Emitter<'_, '_> {
         let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
         let factor = self.program.formulas.symbols.blocks[block].factor;
         self.program.formulas.weighted().iter().position(|&other| other == factor)
-    }
-
-    /// The chart coordinates of all factors, with the weights of those that are given up to a factor.
-    pub(super) fn coordinates_type(&self) -> TokenStream {
-        let (momentum, scalar) = (self.momentum_type(), &self.paths.scalar);
-        match self.program.formulas.weighted().len() {
-            0 => momentum,
-            count => {
-                let count = Literal::usize_unsuffixed(count);
-                quote!((#momentum, [#scalar; #count]))
-            }
-        }
     }
 
     /// Whether the free motions of several steps are the same, so that what they keep is computed once.
@@ -78,154 +65,77 @@ impl Emitter<'_, '_> {
         if self.program.formulas.turns_whole() { format_ident!("FreeRotation4") } else { format_ident!("FreeRotation") }
     }
 
-    /// The type of what the free motions of a step keep.
-    pub(super) fn kept_type(&self) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let kind = if self.program.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };
+    /// The implementation of `FreeMotion`: what one motion keeps, and how a step follows it.
+    pub(super) fn free_motion(&self) -> TokenStream {
+        let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
+        let (momentum, kind) = (self.momentum_type(), self.kind_of_free_rotation());
+        let kept = if self.program.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };
         let count = Literal::usize_unsuffixed(self.free_rotations().count());
-        quote!([#private::#kind<#scalar>; #count])
-    }
-
-    /// What the free motions from a momentum keep, and several steps of them.
-    pub(super) fn kept_steps(&self) -> TokenStream {
-        if !self.keeps_motions() {
-            return TokenStream::new();
-        }
-        let (private, krate, kept, kind) =
-            (&self.paths.private, &self.paths.krate, self.kept_type(), self.kind_of_free_rotation());
-        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let motions = self.free_rotations().map(|(name, solve)| {
             let target = self.part_of("mu", &solve.momenta);
-            let target = if self.is_left(solve) { quote!(-#target) } else { target };
-            quote!(#private::#kind::motion(&self.constants.#name, &#target))
+            let target = if self.is_left(solve) { quote!(&-#target) } else { target };
+            quote!(#private::#kind::motion(&constants.#name, #target))
         });
-        let step = &self.program.steps[0];
-        let (found, advanced, kept_on_spaces) = (self.found_by_kept(step), self.advanced(step), self.kept_on_spaces());
-        let updated = step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d))));
-        let (left, rests) = (self.left_type(), self.rests_taken(&format_ident!("kept")));
-        let state = self.state_of_drifts(&quote!(q), &quote!(mu));
-        let (start, kept_on) = (self.state_of_drifts(&quote!(*q), &quote!(*mu)), self.with_rests(quote!(*kept)));
-        quote! {
-            /// What the free motions with this momentum keep.
-            fn kept_motions(&self, mu: &#momentum) -> #kept {
-                [#(#motions),*]
-            }
-            /// (q, N) after several steps of one motion.
-            fn euler_poincare_steps(
-                &self,
-                steps: ::core::primitive::usize,
-                q: &#configuration,
-                mu: &#momentum,
-                kept: &#left,
-            ) -> ::core::result::Result<(#configuration, #momentum, #left), #krate::Error> {
-                #rests
-                let mut state = #start;
-                for _ in 0..steps {
-                    let #state = state;
-                    #found
-                    #advanced
-                    #updated
-                    #kept_on_spaces
-                    state = #state;
+        let followed = self.followed();
+        self.implementation(
+            quote!(FreeMotion),
+            quote! {
+                type Kept = [#private::#kept<#scalar>; #count];
+
+                /// What the free motions with this momentum keep.
+                fn kept(&self, constants: &#constants, mu: &#momentum) -> Self::Kept {
+                    [#(#motions),*]
                 }
-                let #state = state;
-                ::core::result::Result::Ok((q, mu, #kept_on))
-            }
-        }
-    }
 
-    /// How a step of a motion that is known finds F − I.
-    pub(super) fn found_by_kept(&self, step: &StepKernels) -> TokenStream {
-        if self.program.formulas.turns_whole() {
-            return quote!(let (d, mu) = self.turn_kept(kept, &mu)?;);
-        }
-        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
-        quote!(let x = self.solve_kept(kept, &mu)?; #increment)
-    }
-
-    /// The turn of a step, where F − I and the next momentum are found at once.
-    pub(super) fn turns(&self) -> TokenStream {
-        let Some((name, solve)) = self.free_rotations().next() else { return TokenStream::new() };
-        let (private, krate, kept) = (&self.paths.private, &self.paths.krate, self.kept_type());
-        let (element, momentum) = (self.element_type(), self.momentum_type());
-        // spatial momenta move as those of the body that turns back
-        let turned = match self.is_left(solve) {
-            true => quote! {
-                let (d, mu) = #private::FreeRotation4::turn(&self.constants.#name, &kept[0], &-*mu)?;
-                ::core::result::Result::Ok((d.transpose(), -mu))
+                /// What moves q along them.
+                #[inline]
+                fn follow(
+                    &self,
+                    constants: &#constants,
+                    kept: &Self::Kept,
+                    mu: &#momentum,
+                ) -> #private::Result<(<Self as #private::Parts>::Motion, #momentum), #private::Error> {
+                    #followed
+                }
             },
-            false => quote!(#private::FreeRotation4::turn(&self.constants.#name, &kept[0], mu)),
-        };
-        quote! {
-            /// F − I of the free motion with the momentum μ, and the momentum after it.
-            #[inline]
-            fn turn_kept(&self, kept: &#kept, mu: &#momentum) -> ::core::result::Result<(#element, #momentum), #krate::Error> {
-                #turned
-            }
-        }
+        )
     }
 
-    /// The drift and the kicks of a splitting: exact, so that the part a of the step with the momentum μ is the step with a μ.
-    pub(super) fn splitting(&self, splitting: &SplittingKernels) -> TokenStream {
-        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
-        let (configuration, momentum, time) = (self.configuration_type(), self.momentum_type(), self.time_parameter());
-        let step = &self.program.steps[0];
-        let increment = step.makes_increments().then(|| quote!(let d = self.increment(&x);));
-        let (advanced, updated) =
-            (self.advanced(step), step.update.as_ref().map(|_| self.updated(quote!(self.update(&mu, &d)))));
-        let (state, advanced_plainly) = (self.state_of_drifts(&quote!(q), &quote!(mu)), self.advanced_plainly(step));
-        let kept_on_spaces = self.kept_on_spaces();
-        let rests = self.rests_type();
-        let state_type = match self.is_compensated() {
-            true => quote!((#configuration, #momentum, #rests)),
-            false => quote!((#configuration, #momentum)),
-        };
-        let weights = quote!(#time q: &#configuration, weight: #scalar, gradient: #scalar);
+    /// F − I and the next momentum at once, or the chart coordinates of all factors.
+    fn followed(&self) -> TokenStream {
+        let private = &self.paths.private;
+        if !self.program.formulas.turns_whole() {
+            let (solutions, result) = self.solved(0, &self.program.steps[0], true);
+            return quote!(#solutions #private::Ok((#private::Parts::motion(self, &#result), *mu)));
+        }
+        let Some((name, solve)) = self.free_rotations().next() else { return TokenStream::new() };
+        // spatial momenta move as those of the body that turns back
+        if self.is_left(solve) {
+            return quote! {
+                let (d, mu) = #private::FreeRotation4::turn(&constants.#name, &kept[0], &-*mu)?;
+                #private::Ok((d.transpose(), -mu))
+            };
+        }
+        quote!(#private::FreeRotation4::turn(&constants.#name, &kept[0], mu))
+    }
+
+    /// The implementation of `SplitKicks`.
+    pub(super) fn split_kicks(&self, splitting: &SplittingKernels) -> TokenStream {
+        let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
+        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
+        let arguments =
+            quote!(&self, constants: &#constants, t: #scalar, q: &#configuration, weight: #scalar, gradient: #scalar);
         let formulas = &self.program.formulas;
-        let kick = formulas.titled(Id::SplittingKick);
-        let kick = self.part("A kick.", kick, quote!(kick(&self, #weights) -> #momentum), &splitting.kick, None);
+        let formula = formulas.titled(Id::SplittingKick);
+        let size = self.size_of_step();
+        let kick = self.part("A kick.", formula, quote!(kick(#arguments) -> #momentum), &splitting.kick, None);
         let kick_gradient = self.part(
             "The same for the covector.",
             formulas.titled(Id::SplittingGradient),
-            quote!(kick_gradient(&self, #weights) -> #configuration),
+            quote!(kick_gradient(#arguments) -> #configuration),
             &splitting.gradient,
             Some(Nesting::Configuration),
         );
-        quote! {
-            #kick
-            #kick_gradient
-            /// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
-            #[inline]
-            fn drift(
-                &self,
-                part: #scalar,
-                #state: #state_type,
-            ) -> ::core::result::Result<#state_type, #krate::Error> {
-                let x = self.solve(&(mu * part))?;
-                #increment
-                #advanced
-                #updated
-                #kept_on_spaces
-                ::core::result::Result::Ok(#state)
-            }
-            /// (q, p) ↦ (q⁺, p⁺) by the same.
-            fn drift_symmetric(
-                &self,
-                part: #scalar,
-                (q, p): (#configuration, #configuration),
-            ) -> ::core::result::Result<(#configuration, #configuration), #krate::Error> {
-                let mu = #krate::Clebsch::momentum_map(self.system, &q, &p);
-                let x = self.solve(&(mu * part))?;
-                let d = self.increment(&x);
-                #advanced_plainly
-                let p = self.lift(&q, &p, &d);
-                ::core::result::Result::Ok((q, p))
-            }
-        }
-    }
-
-    /// What drifts move: q and N, and what rounding has taken off where sums keep it.
-    pub(super) fn state_of_drifts(&self, q: &TokenStream, mu: &TokenStream) -> TokenStream {
-        if self.is_compensated() { quote!((#q, #mu, (q_rest, mu_rest))) } else { quote!((#q, #mu)) }
+        self.implementation(quote!(SplitKicks), quote!(#size #kick #kick_gradient))
     }
 }

@@ -3,22 +3,20 @@
 mod call;
 mod code;
 mod collocation;
-mod composition;
 mod constants;
 mod control;
 mod docs;
 mod equation;
 mod exact;
-mod great_circle;
 mod jacobian;
 mod matrices;
 mod names;
 mod opaque;
+mod parts;
 mod path;
 mod power;
-mod step;
+mod scheme;
 mod stub;
-mod summation;
 mod system;
 mod variation;
 
@@ -152,10 +150,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let constants = self.constants_type();
         let system = self.system();
         let conserves = self.conserves();
-        let step = self.step_type();
+        let parts = self.parts();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
-        quote!(#groups #power #constants #system #conserves #variational #sensitive #controlled #check #step #equations #velocity)
+        quote!(#groups #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -191,8 +189,13 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.scope(quote!(self), None)
     }
 
-    /// The scope of a method of a step or an equation.
+    /// The scope of a part of a step.
     fn scope_of_step(&self) -> Scope<'_, 'g> {
+        self.scope(quote!(self), Some(quote!(constants)))
+    }
+
+    /// The scope of a method of an equation.
+    fn scope_of_equation(&self) -> Scope<'_, 'g> {
         self.scope(quote!(self.system), Some(quote!(self.constants)))
     }
 
@@ -231,22 +234,6 @@ impl<'a, 'g> Emitter<'a, 'g> {
         if self.is_timed() { quote!(t: #scalar,) } else { quote!() }
     }
 
-    /// The time as it is handed on.
-    fn time_argument(&self) -> TokenStream {
-        if self.is_timed() { quote!(t,) } else { quote!() }
-    }
-
-    /// The input as an argument of a part of a step, where forces take one.
-    fn input_parameter(&self) -> TokenStream {
-        let input = self.input_type();
-        if self.model.inputs.is_empty() { quote!() } else { quote!(u: &#input,) }
-    }
-
-    /// The input as it is handed on.
-    fn input_argument(&self) -> TokenStream {
-        if self.model.inputs.is_empty() { quote!() } else { quote!(u,) }
-    }
-
     fn input_type(&self) -> TokenStream {
         nested_type(&self.model.input, &|leaf| self.paths.leaf(self.model.inputs[leaf].shape, false))
     }
@@ -274,16 +261,6 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.paths.matrix(self.dimension(), 1)
     }
 
-    /// What a state holds of its momentum: w of a point in (q, w), the two vectors of its plane where nothing pushes it.
-    fn held_type(&self) -> TokenStream {
-        let configuration = self.configuration_type();
-        match self.follows_great_circles() {
-            true if self.is_free_on_great_circles() => quote!((#configuration, #configuration)),
-            true => configuration,
-            false => self.momentum_type(),
-        }
-    }
-
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
         let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts - 1]);
@@ -303,13 +280,9 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.program.turns_in_plane()
     }
 
-    fn impulse_type(&self) -> TokenStream {
-        match self.shares_impulse() {
-            // of a point in (q, w) it is the gradient
-            true => self.held_type(),
-            false if self.keeps_motions() => self.kept_type(),
-            false => quote!(()),
-        }
+    /// Whether sums are compensated.
+    fn is_compensated(&self) -> bool {
+        self.program.formulas.is_compensated()
     }
 
     /// Whether steps are made in (q, w) and nothing pushes.

@@ -13,8 +13,6 @@ pub struct Names {
     taken: BTreeSet<String>,
     /// The struct of the constants.
     pub constants: Ident,
-    /// The struct whose methods are the parts of a step.
-    pub step: Ident,
     /// The struct of the equation of the velocity of a momentum.
     pub velocity: Ident,
     /// The lifetime of its references.
@@ -38,7 +36,6 @@ impl Names {
         let lifetime = format!("'{}", free("clebsch", &taken));
         Names {
             constants: free("Constants", &taken),
-            step: free("Step", &taken),
             velocity: free("Velocity", &taken),
             lifetime: Lifetime::new(&lifetime, proc_macro2::Span::call_site()),
             taken,

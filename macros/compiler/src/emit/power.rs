@@ -117,39 +117,16 @@ impl<'g> Emitter<'_, 'g> {
         let (ident, name, length) = (&power.item.ident, power.item.ident.to_string(), &power.length);
         let (point, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
         let is_second = self.model.order == Order::Second && !power.terms.is_empty();
-        let impulse = if is_second { quote!([#momentum; #length]) } else { quote!(()) };
         let is_timed = self.is_timed();
         let time = if is_timed { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
         let derivation = super::derivation(self.program);
         let checks = self.checks_of_terms(power);
-        let kick = is_second.then(|| quote!(#private::Power::power_kick(self, t, q, constants.part(-0.5))));
-        let stepped = |steps: TokenStream| match (power.terms.is_empty(), is_second) {
-            (true, _) => {
-                quote!(#private::Power::power_drift(self, constants, t, #steps, q, mu).map(|(q, mu)| (q, mu, ())))
-            }
-            (false, true) => {
-                quote!(#private::Power::power_steps_of_second_order(self, constants, t, #steps, q, mu, impulse))
-            }
-            (false, false) => {
-                quote!(#private::Power::power_steps_of_first_order(self, constants, t, #steps, q, mu))
-            }
+        let scheme = match (power.terms.is_empty(), is_second) {
+            (true, _) => quote!(FreeSites),
+            (false, true) => quote!(SitesOfSecondOrder),
+            (false, false) => quote!(SitesOfFirstOrder),
         };
-        let step = stepped(quote!(1));
-        let several = self.several_steps("Several steps, in place.", &stepped(quote!(steps)));
-        let step_into = (!power.terms.is_empty()).then(|| {
-            let (kick, part, left) = match is_second {
-                true => (quote!(::core::option::Option::Some(impulse)), quote!(-0.5), quote!(left)),
-                false => (
-                    quote!(::core::option::Option::None),
-                    quote!(-1.0),
-                    quote!(&mut [#private::Space::<#scalar>::origin(); #length]),
-                ),
-            };
-            self.step_into(&quote! {
-                #private::Power::power_step_into(self, constants, t, (q, mu, #kick), #part, (next, held), #left)
-            })
-        });
         let (start, end) = match (power.terms.is_empty(), is_second) {
             (true, _) => (quote!(0.0), quote!(0.0)),
             (false, true) => (quote!(-0.5), quote!(-0.5)),
@@ -163,11 +140,10 @@ impl<'g> Emitter<'_, 'g> {
                 type Element = [#element; #length];
                 type Momentum = [#momentum; #length];
                 type MomentumMatrix = [#element; #length];
-                type Held = [#momentum; #length];
-                type Impulse = #impulse;
                 type Input = ();
                 type Time = #time;
-                type Constants = #private::PowerConstants<#scalar, <<Self as #private::Power<#length>>::Site as #krate::Clebsch>::Constants>;
+                type Constants = #private::SiteConstants<Self, #length>;
+                type Scheme = #private::#scheme<#length>;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
@@ -198,65 +174,9 @@ impl<'g> Emitter<'_, 'g> {
                 fn legendre_next(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum {
                     #private::Power::power_legendre_next(self, h, t, q, f, #end)
                 }
-                /// The group elements that are connected to the identity and have this momentum.
-                fn inverse_legendre(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    mu: &Self::Momentum,
-                ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                    #private::Power::power_inverse_legendre(self, constants, t, q, mu, #start)
-                }
-                /// What a state holds of its momentum.
-                #[inline]
-                fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
-                    *mu
-                }
-                /// The momentum of which a state holds this.
-                #[inline]
-                fn momentum_held(q: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
-                    *held
-                }
-                /// The kick that the end of a step and the start of the next share.
-                fn impulse(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    mu: &Self::Momentum,
-                ) -> Self::Impulse {
-                    let _ = (constants, t, q, mu);
-                    #kick
-                }
                 /// By how much the momentum of a state is ahead of the momentum at its configuration.
                 fn stagger(&self, h: #scalar, t: #scalar, q: &Self::Configuration) -> Self::Momentum {
                     #private::Power::power_stagger(self, h, t, q, #start, #end)
-                }
-                /// One step of the discrete Euler–Poincaré representation.
-                #[inline]
-                fn step(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    mu: &Self::Held,
-                    impulse: &Self::Impulse,
-                    u: &Self::Input,
-                ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
-                    #step
-                }
-                #step_into
-                #several
-                /// One step of the discrete symmetric representation.
-                fn step_symmetric(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    p: &Self::Configuration,
-                ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                    #private::Power::power_step_symmetric(self, constants, t, q, p, #start, #end)
                 }
                 /// The potential energy, a sum over sites.
                 fn potential(&self, t: #scalar, q: &Self::Configuration) -> #scalar {

@@ -18,8 +18,7 @@ impl Emitter<'_, '_> {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (impulse, input, held) = (self.left_type(), self.input_type(), self.held_type());
-        let private = &self.paths.private;
+        let (input, private) = (self.input_type(), &self.paths.private);
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
         let free_motion = self.program.formulas.is_exact.then(|| {
@@ -27,10 +26,9 @@ impl Emitter<'_, '_> {
                 const IS_FREE_MOTION: ::core::primitive::bool = true;
             )
         });
-        let constants_type = self.constants_of_steps();
+        let (constants_type, scheme) = (self.constants_of_step(), self.scheme());
         let derivation = super::derivation(self.program);
-        let (constants, formulas, dynamics, checks) =
-            (self.constants(), self.formulas(), self.dynamics(), self.space_checks());
+        let (constants, formulas, checks) = (self.constants(), self.formulas(), self.space_checks());
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Clebsch for #ident<#arguments> #predicates {
@@ -39,11 +37,10 @@ impl Emitter<'_, '_> {
                 type Element = #element;
                 type Momentum = #momentum;
                 type MomentumMatrix = #element;
-                type Held = #held;
-                type Impulse = #impulse;
                 type Input = #input;
                 type Time = #time;
                 type Constants = #constants_type;
+                type Scheme = #scheme;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
@@ -52,7 +49,6 @@ impl Emitter<'_, '_> {
 
                 #constants
                 #formulas
-                #dynamics
                 #checks
             }
         }
@@ -285,14 +281,11 @@ impl Emitter<'_, '_> {
                 let inertia = self.inertia(&scope);
                 quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
             }
-            false => {
-                let whole = self.whole();
-                match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
-                    (true, _) => quote!(#private::kinetic_energy_uniform(&#whole.inertia_inverse, #mu)),
-                    (false, true) => quote!(#whole.inertia_inverse.energy(#mu)),
-                    (false, false) => quote!(#private::kinetic_energy(&#whole.inertia_inverse, #mu)),
-                }
-            }
+            false => match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
+                (true, _) => quote!(#private::kinetic_energy_uniform(&constants.inertia_inverse, #mu)),
+                (false, true) => quote!(constants.inertia_inverse.energy(#mu)),
+                (false, false) => quote!(#private::kinetic_energy(&constants.inertia_inverse, #mu)),
+            },
         };
         quote!(#shift #energy)
     }
@@ -332,95 +325,6 @@ impl Emitter<'_, '_> {
                     #locals
                     (#value, #gradient, #hessian)
                 }
-            }
-        }
-    }
-
-    /// Steps, handed to the type `Step`.
-    fn dynamics(&self) -> TokenStream {
-        let private = &self.paths.private;
-        let (krate, step, scalar) = (&self.paths.krate, &self.names.step, &self.paths.scalar);
-        let time = self.time_argument();
-        let (taken, several, taken_symmetric) = (self.step_taken(), self.steps_taken(), self.symmetric_step_taken());
-        let (inline, into) = (self.inline_of_steps(), self.step_into_taken());
-        let kick = if self.program.formulas.parts == 2 { quote!(start_kick_first) } else { quote!(start_kick) };
-        let [whole, first] = self.whole_and_first();
-        let impulse = match self.shares_impulse() {
-            true if self.follows_great_circles() => quote!(#step::start_gradient(&#step { system: self, #first }, q)),
-            true => quote!(#step::#kick(&#step { system: self, #first }, #time q)),
-            false if self.keeps_motions() => quote!(#step::kept_motions(&#step { system: self, #first }, mu)),
-            false => quote!(()),
-        };
-        let (impulse, impulse_after) = (self.without_rests(impulse), self.impulse_after());
-        let (title, inline_of_impulse) = match self.keeps_motions() {
-            true => ("What the free motion with this momentum keeps.", quote!()),
-            false => ("The kick that the end of a step and the start of the next share.", quote!(#[inline])),
-        };
-        let title = docs::lines(&[title.to_string()]);
-        let (holds, of_held) = match self.follows_great_circles() {
-            true if self.is_free_on_great_circles() => {
-                (quote!((*q, #private::tangent(q, mu))), quote!(#private::momentum_of_tangent(&held.0, &held.1)))
-            }
-            true => (quote!(#private::tangent(q, mu)), quote!(#private::momentum_of_tangent(q, held))),
-            false => (quote!(*mu), quote!(*held)),
-        };
-        quote! {
-            /// The group element that is connected to the identity and has this momentum.
-            fn inverse_legendre(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                q: &Self::Configuration,
-                mu: &Self::Momentum,
-            ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                #step::inverse_legendre(&#step { system: self, #whole }, #time q, mu)
-            }
-            /// What a state holds of its momentum.
-            #[inline]
-            fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Self::Held {
-                #holds
-            }
-            /// The momentum of which a state holds this.
-            #[inline]
-            fn momentum_held(q: &Self::Configuration, held: &Self::Held) -> Self::Momentum {
-                #of_held
-            }
-            #title
-            #inline_of_impulse
-            fn impulse(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                q: &Self::Configuration,
-                mu: &Self::Momentum,
-            ) -> Self::Impulse {
-                #impulse
-            }
-            #impulse_after
-            /// One step of the discrete Euler–Poincaré representation.
-            #inline
-            fn step(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                q: &Self::Configuration,
-                mu: &Self::Held,
-                impulse: &Self::Impulse,
-                u: &Self::Input,
-            ) -> ::core::result::Result<(Self::Configuration, Self::Held, Self::Impulse), #krate::Error> {
-                #taken
-            }
-            #into
-            #several
-            /// One step of the discrete symmetric representation.
-            fn step_symmetric(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                q: &Self::Configuration,
-                p: &Self::Configuration,
-            ) -> ::core::result::Result<(Self::Configuration, Self::Configuration), #krate::Error> {
-                #taken_symmetric
             }
         }
     }
@@ -467,35 +371,44 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// `orbit_defect`, `isotropy_defect` and `project_momentum`.
+    /// `orbit_defect`, `isotropy_defect` and `project_momentum`, where they are not those of vectors and free actions.
     fn space_checks(&self) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let (scope, orbit_defect) = (self.scope_of_system(), self.orbit_defect());
-        let (defect, projection) = match &self.program.generator {
-            None => (quote!(<#scalar as #private::Zero>::zero()), quote!(*mu)),
-            Some(kernel) if self.program.form.keeps_matrices() => {
-                let projection = code::body(&scope, kernel, None);
-                (
-                    quote!(#private::distance_of_projection(mu, |mu| { #projection })),
-                    quote!(#private::projection(mu, |mu| { #projection })),
-                )
-            }
-            Some(kernel) => {
-                let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
-                let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
-                let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
-                let rows = quote!(&[#(#rows),*]);
-                (
-                    quote!(#locals #private::annihilator_defect(#rows, mu)),
-                    quote!(#locals #private::annihilator_projection(#rows, mu)),
-                )
-            }
-        };
-        quote! {
+        let (orbit, isotropy) = (self.check_of_orbit(), self.checks_of_isotropy());
+        quote!(#orbit #isotropy)
+    }
+
+    fn check_of_orbit(&self) -> Option<TokenStream> {
+        let scalar = &self.paths.scalar;
+        let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != Space::Vectors);
+        let defect = is_promised.then(|| self.orbit_defect())?;
+        Some(quote! {
             /// By how much q violates what the declaration promises.
             fn orbit_defect(&self, q: &Self::Configuration) -> #scalar {
-                #orbit_defect
+                #defect
             }
+        })
+    }
+
+    fn checks_of_isotropy(&self) -> Option<TokenStream> {
+        let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
+        let kernel = self.program.generator.as_ref()?;
+        let (defect, projection) = if self.program.form.keeps_matrices() {
+            let projection = code::body(&scope, kernel, None);
+            (
+                quote!(#private::distance_of_projection(mu, |mu| { #projection })),
+                quote!(#private::projection(mu, |mu| { #projection })),
+            )
+        } else {
+            let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
+            let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
+            let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
+            let rows = quote!(&[#(#rows),*]);
+            (
+                quote!(#locals #private::annihilator_defect(#rows, mu)),
+                quote!(#locals #private::annihilator_projection(#rows, mu)),
+            )
+        };
+        Some(quote! {
             /// The size of the component of μ that no motion of q can have.
             fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
                 #defect
@@ -504,6 +417,6 @@ impl Emitter<'_, '_> {
             fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
                 #projection
             }
-        }
+        })
     }
 }

@@ -10,16 +10,14 @@ use crate::derive::Id;
 use crate::lower::{EdgeKernels, Kernel, VariationKernels};
 
 impl Emitter<'_, '_> {
-    /// The implementation of `Variational`, where it is asked for.
+    /// The implementations of `Variational` and of `VariedSubstep` for each edge, where they are asked for.
     pub(super) fn variational(&self) -> TokenStream {
         let Some(variations) = &self.program.variations else { return TokenStream::new() };
         let krate = &self.paths.krate;
         let Generics { parameters, arguments, predicates } = &self.generics;
-        let ident = &self.model.item.ident;
+        let (ident, scalar) = (&self.model.item.ident, &self.paths.scalar);
         let dimension = Literal::usize_unsuffixed(self.dimension());
-        let edges = Literal::usize_unsuffixed(variations.edges.len() * self.program.formulas.stages().unwrap_or(1));
-        let (motions, edge, drift) = (self.motions(variations), self.edge(), self.drift());
-        let scalar = &self.paths.scalar;
+        let motions = self.motions(variations);
         let end = self.endpoint_expanded().map(|body| {
             quote! {
                 /// The price of the end with its derivatives.
@@ -28,17 +26,29 @@ impl Emitter<'_, '_> {
                 }
             }
         });
+        let slopes = if self.is_sensitive() {
+            let slopes = self.slopes_type();
+            quote!((#slopes, #slopes))
+        } else {
+            quote!(())
+        };
+        let varied = self.implementation(quote!(Varied<#dimension>), quote!(type Slopes = #slopes;));
+        let edges = variations.edges.iter().enumerate().map(|(index, edge)| self.edge(index, edge));
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Variational<#dimension> for #ident<#arguments> #predicates {
-                const EDGES: ::core::primitive::usize = #edges;
-
                 #motions
-                #drift
-                #edge
                 #end
             }
+            #varied
+            #(#edges)*
         }
+    }
+
+    /// Whether derivatives with respect to what is fixed during a step are asked for.
+    fn is_sensitive(&self) -> bool {
+        let mut asked = self.program.variations.iter().flat_map(|variations| &variations.edges);
+        asked.any(|edge| edge.slopes.is_some())
     }
 
     /// Retraction, composition, advance, and the geometry of the orbit.
@@ -109,10 +119,19 @@ impl Emitter<'_, '_> {
     /// The move by an increment. Where sums keep their rests, the kernel has what is added.
     fn advance_of_motions(&self) -> TokenStream {
         let kernel = &self.program.steps[0].advance;
+        let private = &self.paths.private;
         let formulas = self.program.formulas.titled(Id::Advance);
         let documentation = docs::formulas("The configuration that F = I + D moves q to.", formulas, Some(kernel));
-        let moved = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
-        let moved = if self.is_compensated() { self.moved_to(quote!({ #moved })) } else { moved };
+        let moves_by_increments = self.program.steps[0].displace.is_none();
+        let moved = if self.is_compensated() {
+            let added = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
+            let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
+            quote!(let added = { #added }; #sum)
+        } else if moves_by_increments {
+            quote!(#private::Parts::advance(self, q, d))
+        } else {
+            code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration))
+        };
         quote! {
             #documentation
             #[inline]
@@ -162,125 +181,34 @@ impl Emitter<'_, '_> {
         quote!(let x = #reference #private::vector([#(#entries),*]);)
     }
 
-    /// The implicit solve of an edge.
-    fn drift(&self) -> TokenStream {
-        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
-        let (time, input) = (self.time_argument(), self.input_argument());
-        let stage = self.stage_of_edge();
-        let call = self.on_edge(&|suffix| {
-            let drift = format_ident!("drift{suffix}");
-            quote!(step.#drift(#time q, mu, #input))
-        });
-        quote! {
-            /// The increment of the group element of an edge with the momentum μ.
-            #[inline]
-            fn drift(
-                &self,
-                constants: &Self::Constants,
-                edge: ::core::primitive::usize,
-                t: #scalar,
-                q: &Self::Configuration,
-                mu: &Self::Momentum,
-                u: &Self::Input,
-            ) -> ::core::result::Result<Self::Element, #krate::Error> {
-                #stage
-                let step = #step { system: self, constants };
-                #call
-            }
-        }
-    }
-
-    /// A call for the edge that is asked for.
-    fn on_edge(&self, call: &dyn Fn(&'static str) -> TokenStream) -> TokenStream {
-        let first = call(self.program.suffix(0));
-        if self.program.formulas.parts == 1 {
-            return first;
-        }
-        let second = call(self.program.suffix(1));
-        quote!(if edge == 0 { #first } else { #second })
-    }
-
-    /// The edges, handed to the type `Step`.
-    fn edge(&self) -> TokenStream {
-        let edge = self.handed("edge", "Edge", "An edge with its second derivatives.");
-        let momenta = self.handed("momenta", "Momenta", "An edge with its first derivatives.");
-        let carried =
-            self.handed("carried", "Carried", "The derivatives of an edge along motions that leave F as it is.");
-        quote!(#edge #momenta #carried)
-    }
-
-    /// A method that the type `Step` has for each edge.
-    fn handed(&self, name: &str, answer: &str, documentation: &str) -> TokenStream {
-        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
-        let (time, input) = (self.time_argument(), self.input_argument());
-        let dimension = Literal::usize_unsuffixed(self.dimension());
-        let (method, answer) = (format_ident!("{name}"), format_ident!("{answer}"));
-        let documentation = format!(" {documentation}");
-        let stage = self.stage_of_edge();
-        let call = self.on_edge(&|suffix| {
-            let method = format_ident!("{name}{suffix}");
-            quote!(step.#method(#time q, d, next, #input))
-        });
-        quote! {
-            #[doc = #documentation]
-            #[inline]
-            fn #method(
-                &self,
-                constants: &Self::Constants,
-                edge: ::core::primitive::usize,
-                t: #scalar,
-                q: &Self::Configuration,
-                d: &Self::Element,
-                next: &Self::Configuration,
-                u: &Self::Input,
-            ) -> #krate::#answer<#scalar, #dimension> {
-                #stage
-                let step = #step { system: self, constants };
-                #call
-            }
-        }
-    }
-
     /// The implementation of `Sensitive`, where it is asked for.
     pub(super) fn sensitive(&self) -> TokenStream {
-        let asked = self.program.variations.iter().flat_map(|variations| &variations.edges);
-        if !asked.into_iter().any(|edge| edge.slopes.is_some()) {
+        if !self.is_sensitive() {
             return TokenStream::new();
         }
-        let (krate, scalar, step) = (&self.paths.krate, &self.paths.scalar, &self.names.step);
+        let (krate, private) = (&self.paths.krate, &self.paths.private);
         let Generics { parameters, arguments, predicates } = &self.generics;
         let ident = &self.model.item.ident;
-        let dimension = Literal::usize_unsuffixed(self.dimension());
-        let names = self.program.formulas.quantities.iter().map(|quantity| quantity.name.as_str());
-        let count = Literal::usize_unsuffixed(self.program.formulas.quantities.len());
-        let (slopes, time, input) = (self.slopes_type(), self.time_argument(), self.input_argument());
-        let stage = self.stage_of_edge();
-        let call = self.on_edge(&|suffix| {
-            let edge = format_ident!("edge_slopes{suffix}");
-            quote!(step.#edge(#time q, d, next, #input))
+        let quantities = &self.program.formulas.quantities;
+        let (dimension, count) =
+            (Literal::usize_unsuffixed(self.dimension()), Literal::usize_unsuffixed(quantities.len()));
+        let names = quantities.iter().map(|quantity| quantity.name.as_str());
+        // a composed step asks which columns are those of its size and of its time
+        let column = |constant: &str, name: &str| {
+            let (constant, column) =
+                (format_ident!("{constant}"), quantities.iter().position(|quantity| quantity.name == name)?);
+            let column = Literal::usize_unsuffixed(column);
+            Some(quote!(const #constant: #private::Option<::core::primitive::usize> = #private::Some(#column);))
+        };
+        let columns = self.program.formulas.stages().map(|_| {
+            let (size, time) = (column("STEP_SIZE", "h"), column("TIME", "t"));
+            quote!(#size #time)
         });
-        let slopes_of_step = self.slopes_of_step(call);
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Sensitive<#dimension, #count> for #ident<#arguments> #predicates {
                 const QUANTITIES: [&'static ::core::primitive::str; #count] = [#(#names),*];
-
-                /// How the momenta of an edge depend on parameters, step size and time.
-                #[inline]
-                fn edge_slopes(
-                    &self,
-                    constants: &Self::Constants,
-                    edge: ::core::primitive::usize,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    d: &Self::Element,
-                    next: &Self::Configuration,
-                    u: &Self::Input,
-                ) -> (#slopes, #slopes) {
-                    #stage
-                    let step = #step { system: self, constants };
-                    #slopes_of_step
-                }
+                #columns
             }
         }
     }
@@ -300,156 +228,142 @@ impl Emitter<'_, '_> {
         quote!(#private::SMatrix<#scalar, #rows, #columns>)
     }
 
-    /// The methods of `Step` that belong to edges.
-    pub(super) fn edges(&self) -> TokenStream {
-        let Some(variations) = &self.program.variations else { return TokenStream::new() };
-        let edges = variations.edges.iter().enumerate().map(|(index, edge)| {
-            let (drift, momenta, edge_with_slopes) =
-                (self.drift_of(index), self.momenta_of(index, edge), self.edge_of(index, edge));
-            quote!(#drift #momenta #edge_with_slopes)
-        });
-        quote!(#(#edges)*)
+    /// The implementation of `VariedSubstep` for one edge.
+    fn edge(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
+        let (number, dimension) = (Literal::usize_unsuffixed(index), Literal::usize_unsuffixed(self.dimension()));
+        let (momenta, edge) = (self.momenta_of(kernels), self.edge_of(kernels));
+        let (carried, slopes) = (self.carried_of(kernels), self.slopes_of(kernels));
+        self.implementation(quote!(VariedSubstep<#number, #dimension>), quote!(#momenta #edge #carried #slopes))
     }
 
-    fn drift_of(&self, index: usize) -> TokenStream {
-        let (krate, suffix, step) = (&self.paths.krate, self.program.suffix(index), &self.program.steps[index]);
-        let (solve, drift) = (format_ident!("solve{suffix}"), format_ident!("drift{suffix}"));
-        let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
-        let (time, place) = (self.time_parameter(), self.place_arguments(step));
-        let (kicked, pushed, input) =
-            (self.kicked_plainly(index, step), self.start_force(index, step), self.input_parameter());
-        let pushed = pushed.map(|force| quote!(let mu = mu + #force;));
-        quote! {
-            /// The increment of the group element whose momentum is μ at q.
-            #[inline]
-            fn #drift(&self, #time q: &#configuration, mu: &#momentum, #input) -> ::core::result::Result<#element, #krate::Error> {
-                let (q, mu) = (*q, *mu);
-                #kicked
-                #pushed
-                let x = self.#solve(#place &mu)?;
-                ::core::result::Result::Ok(self.increment(&x))
-            }
-        }
-    }
-
-    fn momenta_of(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
-        let (krate, scalar, kernel) = (&self.paths.krate, &self.paths.scalar, &kernels.momenta);
-        let (configuration, element, time) = (self.configuration_type(), self.element_type(), self.time_parameter());
-        let (input, dimension) = (self.input_parameter(), Literal::usize_unsuffixed(self.dimension()));
-        let scope = self.scope_of_step();
-        let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
-        let [before, after] =
-            [1, 2].map(|index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false));
-        let documentation = docs::formulas("ℓd with both Legendre transforms.", &[], Some(kernel));
-        let name = format_ident!("momenta{}", self.program.suffix(index));
+    /// A method of `VariedSubstep`.
+    fn at_edge(
+        &self,
+        title: &str,
+        (name, output): (&str, TokenStream),
+        kernel: Option<&Kernel>,
+        body: TokenStream,
+    ) -> TokenStream {
+        let (scalar, constants, name) = (&self.paths.scalar, self.constants_of_step(), format_ident!("{name}"));
+        let (configuration, element, input) = (self.configuration_type(), self.element_type(), self.input_type());
+        let documentation = kernel.map(|kernel| docs::formulas(title, &[], Some(kernel)));
         quote! {
             #documentation
             #[inline]
-            fn #name(&self, #time q: &#configuration, d: &#element, next: &#configuration, #input) -> #krate::Momenta<#scalar, #dimension> {
-                #locals
-                #krate::Momenta { lagrangian: #lagrangian, before: #before, after: #after }
+            fn #name(
+                &self,
+                constants: &#constants,
+                t: #scalar,
+                q: &#configuration,
+                d: &#element,
+                next: &#configuration,
+                u: &#input,
+            ) -> #output {
+                #body
             }
         }
     }
 
-    fn edge_of(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
-        let (krate, scalar, suffix) = (&self.paths.krate, &self.paths.scalar, self.program.suffix(index));
-        let (configuration, element, time) = (self.configuration_type(), self.element_type(), self.time_parameter());
-        let input = self.input_parameter();
-        let place = quote!(#time q: &#configuration, d: &#element, next: &#configuration, #input);
+    /// The type of what an edge gives.
+    fn of_edge(&self, name: &str) -> TokenStream {
+        let (krate, scalar, name) = (&self.paths.krate, &self.paths.scalar, format_ident!("{name}"));
         let dimension = Literal::usize_unsuffixed(self.dimension());
-        let scope = self.scope_of_step();
-        let along = |role| matches!(role, Role::Algebra(_));
-        let keeps_matrices = self.program.form.keeps_matrices();
-        let grid = |kernel: &Kernel, index: usize| match keeps_matrices {
-            true => matrices::matrix_of(&scope, kernel, index, "x", along).1,
-            false => {
-                let (shape, entries) = &kernel.outputs[index];
-                code::matrix(&scope, *shape, entries)
-            }
-        };
-        // what derivatives along motions are made of stands with them
-        let locals = |kernel: &Kernel| match keeps_matrices {
-            true => {
-                let depends = kernel.depends_on(along);
-                code::locals_where(&scope, kernel, |k| !depends[k])
-            }
-            false => code::locals(&scope, kernel),
-        };
-        let kernel = &kernels.edge;
-        let (terms, lagrangian) = (locals(kernel), scope.code(&kernel.outputs[0].1[0], false));
+        quote!(#krate::#name<#scalar, #dimension>)
+    }
+
+    fn momenta_of(&self, kernels: &EdgeKernels) -> TokenStream {
+        let (krate, kernel, scope) = (&self.paths.krate, &kernels.momenta, self.scope_of_step());
+        let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
         let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
         let (before, after) = (vector(1), vector(2));
-        let (by_start, by_end, after_by_end) = (grid(kernel, 3), grid(kernel, 4), grid(kernel, 5));
-        let documentation = docs::formulas(
-            "ℓd with both Legendre transforms and their derivatives along the motions of both ends.",
-            &[],
-            Some(kernel),
-        );
+        let body = quote!(#locals #krate::Momenta { lagrangian: #lagrangian, before: #before, after: #after });
+        let title = "ℓd with both Legendre transforms.";
+        self.at_edge(title, ("momenta", self.of_edge("Momenta")), Some(kernel), body)
+    }
+
+    /// A matrix of an edge.
+    fn matrix_of_edge(&self, kernel: &Kernel, index: usize) -> TokenStream {
+        let scope = self.scope_of_step();
+        if self.program.form.keeps_matrices() {
+            return matrices::matrix_of(&scope, kernel, index, "x", along_motion).1;
+        }
+        let (shape, entries) = &kernel.outputs[index];
+        code::matrix(&scope, *shape, entries)
+    }
+
+    /// The shared terms of an edge; what derivatives along motions are made of stands with them.
+    fn locals_of_edge(&self, kernel: &Kernel) -> TokenStream {
+        let scope = self.scope_of_step();
+        if !self.program.form.keeps_matrices() {
+            return code::locals(&scope, kernel);
+        }
+        let depends = kernel.depends_on(along_motion);
+        code::locals_where(&scope, kernel, |k| !depends[k])
+    }
+
+    fn edge_of(&self, kernels: &EdgeKernels) -> TokenStream {
+        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), &kernels.edge);
+        let (terms, lagrangian) = (self.locals_of_edge(kernel), scope.code(&kernel.outputs[0].1[0], false));
+        let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
+        let (before, after) = (vector(1), vector(2));
+        let [by_start, by_end, after_by_end] = [3, 4, 5].map(|index| self.matrix_of_edge(kernel, index));
         let after_by_start = match kernel.outputs.len() {
-            7 => grid(kernel, 6),
+            7 => self.matrix_of_edge(kernel, 6),
             _ => quote!(-before_by_end.transpose()),
         };
-        let carried = {
-            let kernel = &kernels.carried;
-            let documentation = docs::formulas(
-                "F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.",
-                &[],
-                Some(kernel),
-            );
-            let (name, locals) = (format_ident!("carried{suffix}"), locals(kernel));
-            let momentum = code::grid(&scope, kernel.outputs[0].0, &kernel.outputs[0].1, false);
-            let [adjoint, before, after, before_by_end, after_by_end] =
-                [1, 2, 3, 4, 5].map(|index| grid(kernel, index));
-            quote! {
-                #documentation
-                #[inline]
-                fn #name(&self, #place) -> #krate::Carried<#scalar, #dimension> {
-                    #locals
-                    #krate::Carried {
-                        momentum: #momentum,
-                        adjoint: #adjoint,
-                        before: #before,
-                        after: #after,
-                        before_by_end: #before_by_end,
-                        after_by_end: #after_by_end,
-                    }
-                }
+        let body = quote! {
+            #terms
+            let before_by_end = #by_end;
+            #krate::Edge {
+                lagrangian: #lagrangian,
+                before: #before,
+                after: #after,
+                before_by_start: #by_start,
+                before_by_end,
+                after_by_start: #after_by_start,
+                after_by_end: #after_by_end,
             }
         };
-        let edge = format_ident!("edge{suffix}");
-        let slopes = kernels.slopes.as_ref().map(|kernel| {
-            let documentation =
-                docs::formulas("∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.", &[], Some(kernel));
-            let (name, slopes) = (format_ident!("edge_slopes{suffix}"), self.slopes_type());
-            let matrix = |index: usize| code::matrix(&scope, kernel.outputs[index].0, &kernel.outputs[index].1);
-            let (locals, before, after) = (code::locals(&scope, kernel), matrix(0), matrix(1));
-            quote! {
-                #documentation
-                fn #name(&self, #place) -> (#slopes, #slopes) {
-                    #locals
-                    (#before, #after)
-                }
-            }
-        });
-        quote! {
-            #documentation
-            #[inline]
-            fn #edge(&self, #place) -> #krate::Edge<#scalar, #dimension> {
-                #terms
-                let before_by_end = #by_end;
-                #krate::Edge {
-                    lagrangian: #lagrangian,
-                    before: #before,
-                    after: #after,
-                    before_by_start: #by_start,
-                    before_by_end,
-                    after_by_start: #after_by_start,
-                    after_by_end: #after_by_end,
-                }
-            }
-            #carried
-            #slopes
-        }
+        let title = "ℓd with both Legendre transforms and their derivatives along the motions of both ends.";
+        self.at_edge(title, ("edge", self.of_edge("Edge")), Some(kernel), body)
     }
+
+    fn carried_of(&self, kernels: &EdgeKernels) -> TokenStream {
+        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), &kernels.carried);
+        let locals = self.locals_of_edge(kernel);
+        let momentum = code::grid(&scope, kernel.outputs[0].0, &kernel.outputs[0].1, false);
+        let [adjoint, before, after, before_by_end, after_by_end] =
+            [1, 2, 3, 4, 5].map(|index| self.matrix_of_edge(kernel, index));
+        let body = quote! {
+            #locals
+            #krate::Carried {
+                momentum: #momentum,
+                adjoint: #adjoint,
+                before: #before,
+                after: #after,
+                before_by_end: #before_by_end,
+                after_by_end: #after_by_end,
+            }
+        };
+        let title = "F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.";
+        self.at_edge(title, ("carried", self.of_edge("Carried")), Some(kernel), body)
+    }
+
+    fn slopes_of(&self, kernels: &EdgeKernels) -> TokenStream {
+        let scope = self.scope_of_step();
+        let Some(kernel) = &kernels.slopes else {
+            return self.at_edge("", ("slopes", quote!(())), None, quote!());
+        };
+        let matrix = |index: usize| code::matrix(&scope, kernel.outputs[index].0, &kernel.outputs[index].1);
+        let (locals, before, after) = (code::locals(&scope, kernel), matrix(0), matrix(1));
+        let (dimension, private) = (Literal::usize_unsuffixed(self.dimension()), &self.paths.private);
+        let output = quote!(<Self as #private::Varied<#dimension>>::Slopes);
+        let title = "∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.";
+        self.at_edge(title, ("slopes", output), Some(kernel), quote!(#locals (#before, #after)))
+    }
+}
+
+/// Whether something is the direction of a motion.
+fn along_motion(role: Role) -> bool {
+    matches!(role, Role::Algebra(_))
 }

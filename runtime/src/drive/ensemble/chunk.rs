@@ -1,5 +1,6 @@
 //! The bodies that share the lanes of one state.
 
+use crate::scheme::Held;
 use crate::{Body, Clebsch, Error, Mask, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
 use num_traits::Zero;
@@ -45,13 +46,13 @@ impl<S: Clebsch> Chunk<S> {
     /// One step of each body; `step` have been made.
     #[inline(always)]
     pub fn step(&mut self, stepper: &Stepper<S>, step: u64) {
-        // the impulse has been made by this stepper
-        if let Ok(next) = stepper.attempt_with(&self.state, &self.state.impulse, &S::Input::origin()) {
+        // what the last step has left has been made by this stepper
+        if let Ok(next) = stepper.attempt_with(&self.state, &self.state.left, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
             let finite = (next.configuration.sum() + next.held.sum() + next.time.now()).finite();
             if finite.bits() & self.live == self.live {
-                let State { time, configuration, held, impulse, h: _ } = next;
-                self.state = State { time, configuration, held, impulse, h: self.state.h };
+                let State { time, configuration, held, left, h: _ } = next;
+                self.state = State { time, configuration, held, left, h: self.state.h };
                 return;
             }
         }
@@ -123,6 +124,6 @@ fn refused<S: Clebsch>(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Option<(usiz
 }
 
 /// Momenta that are no numbers.
-fn undefined<S: Clebsch>() -> S::Held {
-    S::Held::filled(S::Scalar::zero() / S::Scalar::zero())
+fn undefined<S: Clebsch>() -> Held<S> {
+    Held::<S>::filled(S::Scalar::zero() / S::Scalar::zero())
 }

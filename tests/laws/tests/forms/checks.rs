@@ -1,5 +1,6 @@
 //! What holds of the two forms of code of a declaration.
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Conserved, Conserves, Space, State, Variational};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
@@ -30,7 +31,8 @@ where
     };
     for _ in 0..5 {
         let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
-        let (before, after) = (unrolled.constants(H).expect("constants"), matrices.constants(H).expect("constants"));
+        let (before, after) =
+            (unrolled.step_constants(H).expect("constants"), matrices.step_constants(H).expect("constants"));
         let some = random.vector::<M>();
         let moved = unrolled.project_momentum(&rest, &some) * 4.0;
         let turn = unrolled.inverse_legendre(&before, 0.3, &rest, &moved).expect("a motion");
@@ -131,7 +133,8 @@ where
 {
     let mut random = Random::new(seed);
     let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
-    let (before, after) = (unrolled.constants(H).expect("constants"), matrices.constants(H).expect("constants"));
+    let (before, after) =
+        (unrolled.step_constants(H).expect("constants"), matrices.step_constants(H).expect("constants"));
     let near = |distance: f64, what: &str| {
         assert!(distance < 1e-11, "{what}: {distance:.1e} apart for {}", U::NAME);
     };

@@ -1,5 +1,6 @@
 //! Systems that have one form alone, for they are too large to be written out: their steps keep what theory says that they keep.
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Conserves, Error, F64x4, Space};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{SMatrix, SVector};
@@ -66,7 +67,7 @@ where
         > + Clone,
 {
     let (q, mu) = (SMatrix::identity(), Random::new(3).vector::<M>() * size);
-    let constants = system.constants(H).expect("constants");
+    let constants = system.step_constants(H).expect("constants");
     let f = system.inverse_legendre(&constants, 0.0, &q, &mu).expect("a motion");
     assert!((system.legendre(H, 0.0, &q, &f) - mu).amax() < 1e-12, "F⁻ℓd inverted");
     let stepper = system.stepper(H).expect("a regular system");

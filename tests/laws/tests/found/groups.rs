@@ -1,5 +1,6 @@
 //! Section 2.4: other groups, built in and declared.
 
+use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::fluid_ellipsoid::FluidEllipsoid;
 use clebsch_tests::fixtures::heisenberg_geodesic::HeisenbergGeodesic;
@@ -141,7 +142,7 @@ fn lorentz_frame() {
     let gradient = q.transpose() * system.field * system.spin.transpose() * (-H / 2.0);
     let expected = SVector::<f64, 6>::from_fn(|i, _| gradient.dot(&basis(i)));
     assert_near(
-        &system.impulse(&system.constants(H).expect("a frame"), 0.0, &q, &nalgebra::zero()),
+        &system.impulse(&system.step_constants(H).expect("a frame"), 0.0, &q, &nalgebra::zero()),
         &expected,
         NEAR,
         "the kick",

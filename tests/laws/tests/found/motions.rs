@@ -1,5 +1,6 @@
 //! Section 2.3: SO(n), SE(3), products.
 
+use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::centred_body::CentredBody;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
@@ -70,7 +71,7 @@ fn spatial_body() {
     assert_near(&free.legendre(H, 0.0, &q, &motion(&w, &b)), &expected, NEAR, "h M_ω, h M_v");
     // gravity pulls at the centre of mass: (c × f, f), f = −m g Γ, over half a step
     let force = -(q.fixed_view::<3, 3>(0, 0).transpose() * Vector3::z()) * (mass * 9.81 * H / 2.0);
-    let kick = body.impulse(&body.constants(H).expect("a body"), 0.0, &q, &nalgebra::zero());
+    let kick = body.impulse(&body.step_constants(H).expect("a body"), 0.0, &q, &nalgebra::zero());
     assert_near(&kick, &both(center.cross(&force), force), NEAR, "the weight, at the centre of mass");
     assert_conserved(body.clone(), q, random.vector(), FALLING);
     assert_reversible(&body, q, random.vector());
@@ -111,7 +112,7 @@ fn underwater_vehicle() {
     let vehicle = UnderwaterVehicle { inertia: random.inertia(), weight: 1.3, center: random.vector() * 0.3 };
     let q = motion(&random.attitude(), &random.vector());
     let up = q.fixed_view::<3, 3>(0, 0).transpose() * Vector3::z();
-    let kick = vehicle.impulse(&vehicle.constants(H).expect("a vehicle"), 0.0, &q, &nalgebra::zero());
+    let kick = vehicle.impulse(&vehicle.step_constants(H).expect("a vehicle"), 0.0, &q, &nalgebra::zero());
     assert_near(&kick, &both(up.cross(&vehicle.center) * (1.3 * H / 2.0), Vector3::zeros()), NEAR, "weight Γ × center");
     let mu = random.vector();
     assert_conserved(
@@ -137,7 +138,7 @@ fn two_bodies() {
     let x = [random.vector::<3>(), random.vector::<3>() + Vector3::x() * 3.0];
     let between = x[1] - x[0];
     let pull = between * (1.1 * 3.0 * 0.5 / between.norm().powi(3) * H / 2.0);
-    let kick = bodies.impulse(&bodies.constants(H).expect("bodies"), 0.0, &x, &nalgebra::zero());
+    let kick = bodies.impulse(&bodies.step_constants(H).expect("bodies"), 0.0, &x, &nalgebra::zero());
     assert_near(&kick, &both(pull, -pull), NEAR, "−h/2 ∇V");
     let mu = random.vector::<6>() * 0.3;
     let names = [1, 2, 3].map(|k| format!("along e{k} of all factors, spatial"));

@@ -1,5 +1,6 @@
 //! Section 2.6: a potential that no expression holds.
 
+use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::harmonics::Harmonics;
 use clebsch_tests::oracle::near::assert_near;
@@ -41,7 +42,7 @@ fn opaque_potential() {
         (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3
     };
     assert_near(&gradient, &Vector3::new(slope(0), slope(1), slope(2)), 1e-10, "value and gradient belong together");
-    let kick = harmonics.impulse(&harmonics.constants(H).expect("a satellite"), 0.0, &x, &nalgebra::zero());
+    let kick = harmonics.impulse(&harmonics.step_constants(H).expect("a satellite"), 0.0, &x, &nalgebra::zero());
     assert_near(&kick, &(-gradient * (H / 2.0)), NEAR, "−h/2 ∇V");
     let (one, other) = (harmonics.stepper(H).expect("a satellite"), polynomial.stepper(H).expect("a satellite"));
     let (mut a, mut b) = (one.state(x, p).expect("a state"), other.state(x, p).expect("a state"));

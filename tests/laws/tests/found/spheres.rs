@@ -1,5 +1,6 @@
 //! Section 2.2: spheres, acted on from the left, in closed form.
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::neumann::Neumann;
 use clebsch_tests::fixtures::paper_pendulum::PaperPendulum;
@@ -29,7 +30,7 @@ fn spherical_pendulums() {
     let mu = mu - q * q.dot(&mu);
     let kick = -q.cross(&Vector3::z()) * (0.7 * 9.81 * 1.3 * H / 2.0);
     assert_near(
-        &pendulum.impulse(&pendulum.constants(H).expect("a pendulum"), 0.0, &q, &nalgebra::zero()),
+        &pendulum.impulse(&pendulum.step_constants(H).expect("a pendulum"), 0.0, &q, &nalgebra::zero()),
         &kick,
         NEAR,
         "−h/2 q × ∇V",
@@ -91,7 +92,7 @@ fn neumann() {
     let mu: Vector6<f64> = components(&((w * q.transpose() - q * w.transpose()) / 2.0));
     let gradient: Vector4<f64> = problem.stiffness * q;
     let kick = (gradient * q.transpose() - q * gradient.transpose()) * (-H / 2.0);
-    let impulse = problem.impulse(&problem.constants(H).expect("a sphere"), 0.0, &q, &nalgebra::zero());
+    let impulse = problem.impulse(&problem.step_constants(H).expect("a sphere"), 0.0, &q, &nalgebra::zero());
     // half of h, and M = ½ Σ m_i E_i
     assert_near(&skew::<4, 6>(&impulse), &kick, NEAR, "components −h/2 (x_i g_j − x_j g_i)");
     assert_reversible(&problem, q, mu);
@@ -114,7 +115,7 @@ fn two_pendulums() {
     let [up, down] = [(q.0, q.1, 1.0), (q.1, q.0, 0.6)].map(|(q, other, mass)| {
         -q.cross(&(Vector3::z() * (5.0 * mass) + system.coupling.component_mul(&other))) * (H / 2.0)
     });
-    let kick = system.impulse(&system.constants(H).expect("pendulums"), 0.0, &q, &nalgebra::zero());
+    let kick = system.impulse(&system.step_constants(H).expect("pendulums"), 0.0, &q, &nalgebra::zero());
     assert_near(&kick.fixed_rows::<3>(0).into_owned(), &up, NEAR, "−h/2 p × ∂V/∂p");
     assert_near(&kick.fixed_rows::<3>(3).into_owned(), &down, NEAR, "−h/2 q × ∂V/∂q");
     let momenta = [q.0.cross(&random.vector()), q.1.cross(&random.vector())];

@@ -1,5 +1,6 @@
 //! What holds of the two ways to compile a declaration.
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Power, SiteStorage, Space};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
@@ -46,8 +47,8 @@ pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
     let mut y = b.state(q, joined(&mu)).expect("a state");
     let p: [Q; 4] = q.map(|q| q.zip_map(&q, |x, _| 0.3 * x + 0.1));
     near(far(&power.momentum_map(&q, &p), &joined::<L>(&unrolled.momentum_map(&q, &p))), "J");
-    let f = power.inverse_legendre(&power.constants(H).expect("constants"), 0.3, &q, &mu).expect("a solution");
-    let g = unrolled.inverse_legendre(&unrolled.constants(H).expect("constants"), 0.3, &q, &joined(&mu));
+    let f = power.inverse_legendre(&power.step_constants(H).expect("constants"), 0.3, &q, &mu).expect("a solution");
+    let g = unrolled.inverse_legendre(&unrolled.step_constants(H).expect("constants"), 0.3, &q, &joined(&mu));
     near(far(&f, g.as_ref().expect("a solution")), "F");
     near(far(&power.act(&f, &q), &unrolled.act(&f, &q)), "the action");
     near(far(&power.coadjoint(&f, &mu), &unrolled.coadjoint(&f, &joined(&mu))), "Ad*");

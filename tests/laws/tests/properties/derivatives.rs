@@ -6,6 +6,7 @@
 use crate::arbitrary::{attitude, cases, matrix, rotation, vector};
 use crate::bodies::{H, particles, tops};
 use clebsch::__private as private;
+use clebsch::__private::Stepping;
 use clebsch::{Carried, Clebsch, Momenta, Sensitive, Sensitivity, Space, State, Tangent, Variation, Variational};
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;
@@ -146,7 +147,7 @@ proptest! {
     /// Increments: τ(η) and τ(−η) undo each other, two after the other are composed, and the drift is the inverse of F⁻ℓd.
     #[test]
     fn increments_are_those_of_the_group(top in tops(), r in attitude(), mu in vector::<3>(1.0), eta in vector::<3>(1.0), zeta in vector::<3>(1.0)) {
-        let constants = top.constants(H)?;
+        let constants = top.step_constants(H)?;
         let [ahead, back] = top.retractions(&eta);
         let of = |d: &Matrix3<f64>| private::from_increment(d);
         prop_assert_eq!(top.retraction(&eta), ahead);
@@ -168,7 +169,7 @@ proptest! {
     /// An edge: dℓd = F⁺ℓd·η′ − F⁻ℓd·η, and the derivatives of both momenta along motions of the start, of the end, and of both with F as it is.
     #[test]
     fn edges_are_differentiated_twice(top in tops(), r in attitude(), f in rotation(0.3), eta in vector::<3>(1.0)) {
-        let constants = top.constants(H)?;
+        let constants = top.step_constants(H)?;
         let d = f - Matrix3::identity();
         let at = |start: f64, end: f64| -> Momenta<f64, 3> {
             let q = r * exponential(&(eta * start));
@@ -206,7 +207,7 @@ proptest! {
         for quantity in 0..5 {
             let of = |s: f64| {
                 let (top, h) = changed(&top, quantity, s);
-                top.momenta(&top.constants(h).expect("regular"), 0, 0.0, &r, &d, &(r * f), &())
+                top.momenta(&top.step_constants(h).expect("regular"), 0, 0.0, &r, &d, &(r * f), &())
             };
             // along h they are of the size of inertia/h²
             let near = if quantity == 4 { near / H } else { near };
@@ -233,7 +234,7 @@ proptest! {
         top in tops(), (r, f) in (attitude(), rotation(0.3)), (before, after) in (matrix::<3, 2>(1.0), matrix::<3, 2>(1.0)), costate in vector::<6>(1.0),
         (w, delta, u) in (matrix::<8, 8>(1.0), vector::<6>(1.0), vector::<2>(1.0)), (by_motion, by_input) in (vector::<3>(1.0), vector::<2>(1.0)),
     ) {
-        let constants = top.constants(H)?;
+        let constants = top.step_constants(H)?;
         let edge = top.carried(&constants, 0, 0.0, &r, &(f - Matrix3::identity()), &(r * f), &());
         let link = Link::new(&edge, &before, &after, &costate).expect("regular");
         // κ makes α·η′ + β·F⁺ℓd + κ·F⁻ℓd stationary

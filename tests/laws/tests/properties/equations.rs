@@ -6,7 +6,10 @@ use clebsch::Error;
 use clebsch::implicit::{self, Equation, LinearEquation};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use private::{Composed, Orientation, VelocityEquation};
+use private::{
+    GradientFour, GradientSix, Kicks, OfOrderEight, OfOrderFour, OfOrderSix, Orientation, PlainFour, PlainSix, Sizes,
+    Stages, VelocityEquation,
+};
 use proptest::prelude::*;
 
 /// Σ ξ + c |ξ|² ξ = μ: monotone, so that each μ has one solution, which is connected to 0. At most `MOST` iterations.
@@ -153,18 +156,19 @@ fn assert_order(flow: &Flow, omega: f64, h: f64, order: i32) {
     assert!((slope - f64::from(order + 1)).abs() < 0.4, "{slope} for {order} + 1");
 }
 
-/// A composed step of leapfrogs, by `compose_symmetric`, and by `compose` with no impulse.
+/// A composed step of leapfrogs. What is left for the next step is scaled by the ratio of their sizes: the last is as long as the first.
 fn composed<const K: usize>(sizes: &[f64; K], omega: f64, h: f64, start: (f64, f64)) -> (f64, f64) {
-    let all = Composed::new(h, sizes, |h: f64| Ok(h)).expect("constants");
-    let symmetric =
-        private::compose_symmetric(&all, 0.0, start, |h, _, state| Ok(leapfrog(omega, *h, state))).expect("steps");
-    let step = |h: &f64, _, (q, p, ()): (f64, f64, ())| {
+    let all = Stages::new(h, sizes, |h: f64| Ok(h)).expect("constants");
+    let step = |h: &f64, _, (q, p, length): (f64, f64, f64)| {
+        assert!((length - h).abs() < 1e-15 * h.abs(), "{length} is not {h}");
         let (q, p) = leapfrog(omega, *h, (q, p));
-        Ok((q, p, ()))
+        Ok((q, p, length))
     };
-    let (q, p, ()) = private::compose(&all, 0.0, (start.0, start.1, ()), step).expect("steps");
-    assert_eq!((q, p), symmetric);
-    symmetric
+    let first = h * sizes[0];
+    let scaled = |(q, p, length): (f64, f64, f64), ratio| (q, p, length * ratio);
+    let (q, p, length) = private::compose(&all, 0.0, (start.0, start.1, first), step, scaled).expect("steps");
+    assert!((length - first).abs() < 1e-14 * first.abs());
+    (q, p)
 }
 
 /// So many steps of this size at once.
@@ -179,7 +183,7 @@ macro_rules! splitting {
             let kick = |_: f64, b: f64, g: f64, (q, p): (f64, f64)| {
                 (q, p - b * h * square * q + 2.0 * g * h.powi(3) * square * square * q)
             };
-            private::split(&private::$kicks, (0.0, h, steps), start, drift, kick).expect("drifts do not fail")
+            private::split(&$kicks::KICKS, (0.0, h, steps), start, drift, kick).expect("drifts do not fail")
         }
     };
 }
@@ -286,22 +290,22 @@ proptest! {
             assert_order(composed, omega, h, order);
             assert!(apart(composed(-h, composed(h, start)), start) < 1e-13);
         };
-        check(&|h, state| composed(&private::SIZES_OF_5, omega, h, state), 0.4 * part / omega, 4);
-        check(&|h, state| composed(&private::SIZES_OF_9, omega, h, state), 0.6 * part / omega, 6);
-        check(&|h, state| composed(&private::SIZES_OF_17, omega, h, state), 0.8 * part / omega, 8);
+        check(&|h, state| composed(&OfOrderFour::SIZES, omega, h, state), 0.4 * part / omega, 4);
+        check(&|h, state| composed(&OfOrderSix::SIZES, omega, h, state), 0.6 * part / omega, 6);
+        check(&|h, state| composed(&OfOrderEight::SIZES, omega, h, state), 0.8 * part / omega, 8);
     }
 
     /// A composed step is its stages one after the other, each from where and when the last ended.
     #[test]
     fn compositions_are_their_stages(omega in 0.5_f64..1.5, h in 0.01_f64..0.5, t in -1.0_f64..1.0) {
-        let all = Composed::new(h, &private::SIZES_OF_9, |h: f64| Ok(h))?;
+        let all = Stages::new(h, &OfOrderSix::SIZES, |h: f64| Ok(h))?;
         prop_assert_eq!(all.whole, h);
         let times = std::cell::RefCell::new(vec![]);
         let step = |h: &f64, t: f64, state| {
             times.borrow_mut().push(t);
             Ok(leapfrog(omega, *h, state))
         };
-        let whole = private::compose_symmetric(&all, t, (1.0, 0.5), step)?;
+        let whole = private::compose(&all, t, (1.0, 0.5), step, |state, _| state)?;
         let mut state = (1.0, 0.5);
         for number in 0..9 {
             let stage = all.stage(number);
@@ -322,9 +326,9 @@ proptest! {
             assert!(apart(stepped(h, steps, start), one_by_one) < 1e-13);
             assert!(apart(stepped(-h, 1, stepped(h, 1, start)), start) < 1e-13);
         };
-        check(&splitting!(GRADIENT_4, omega), 0.8 * part / omega, 4);
-        check(&splitting!(PLAIN_4, omega), 0.6 * part / omega, 4);
-        check(&splitting!(GRADIENT_6, omega), 0.8 * part / omega, 6);
-        check(&splitting!(PLAIN_6, omega), 0.8 * part / omega, 6);
+        check(&splitting!(GradientFour, omega), 0.8 * part / omega, 4);
+        check(&splitting!(PlainFour, omega), 0.6 * part / omega, 4);
+        check(&splitting!(GradientSix, omega), 0.8 * part / omega, 6);
+        check(&splitting!(PlainSix, omega), 0.8 * part / omega, 6);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{particles, tops};
+use clebsch::__private::Stepping;
 use clebsch::{Boundary, Clebsch, Error, Extremal, Guess, Variational, Way};
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;
@@ -17,7 +18,7 @@ const NEAR: f64 = 1e-10;
 /// should be.
 fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, WatchedTop, 3>) -> Result<(), Error> {
     let stepper = boundary.stepper();
-    let constants = stepper.system().constants(H)?;
+    let constants = stepper.system().step_constants(H)?;
     let states: Vec<_> = extremal.states().collect();
     assert_eq!((states.len(), extremal.nodes().len()), (STEPS + 1, STEPS));
     let mut action = 0.0;

@@ -1,6 +1,7 @@
 //! Powers: each site is a system of its own, tied to the others by kicks alone.
 
 use crate::arbitrary::{cases, unit, vector};
+use clebsch::__private::Stepping;
 use clebsch::__private::{PowerConstants, wrapped};
 use clebsch::{Clebsch, Power, SiteStorage};
 use nalgebra::Vector3;
@@ -65,7 +66,7 @@ proptest! {
         let off: Spins = std::array::from_fn(|i| q[i] * (1.0 + 0.01 * i as f64));
         for i in 0..N {
             let site = ring.site(i);
-            let own = site.constants(H)?;
+            let own = site.step_constants(H)?;
             prop_assert_eq!(site.act(&f[i], &q[i]), image[i]);
             prop_assert_eq!(site.momentum_map(&q[i], &p[i]), momenta[i]);
             prop_assert_eq!(site.coadjoint(&f[i], &mu[i]), coadjoint[i]);
@@ -129,7 +130,7 @@ proptest! {
     fn steps_are_kicks_and_moves(ring in rings(), (q, mu) in spins(), t in -3.0_f64..3.0) {
         let constants: PowerConstants<_, _> = ring.power_constants(H)?;
         prop_assert_eq!(constants.part(-0.5), -0.5 * H);
-        prop_assert_eq!(<Ring<N> as Power<N>>::constants_of_sites(&ring.constants(H)?).part(1.0), H);
+        prop_assert_eq!(<Ring<N> as Power<N>>::constants_of_sites(&ring.step_constants(H)?).part(1.0), H);
         let start = ring.power_kick(t, &q, constants.part(-0.5));
         let (next, momenta, kick) = ring.power_steps_of_second_order(&constants, t, 1, &q, &mu, &start)?;
         let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);

@@ -1,8 +1,9 @@
 //! Operations on whole matrices, and points on spheres in (q, w): what code of large systems is made of.
 
 use crate::arbitrary::{cases, matrix, vector};
+use clebsch::__private::Stepping;
 use clebsch::__private::{
-    InertiaInverse, Jacobian, Orientation, Sylvester, determinant, distance_of_projection, embedded, in_place,
+    InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, determinant, distance_of_projection, embedded,
     invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
     orientation_of_uniform, projection, push, shifted, skew, skew_components, skew_outer, skew_times, tangent,
     turn_freely, turn_great_circle, turned_in_plane,
@@ -238,11 +239,11 @@ proptest! {
         integrator.advance(3)?;
         prop_assert_eq!((integrator.state(), integrator.steps()), (&later, count as u64 + 3));
         // where it is slow it steps, from where it is too fast it does not
-        let constants = integrator.stepper().system().constants(0.05)?;
+        let constants = integrator.stepper().system().step_constants(0.05)?;
         let (mut x, mut held, mut gradient) = (q, w, w);
-        let place = (&q, &Neumann::held(&q, &mu), &integrator.stepper().system().impulse(&constants, 0.0, &q, &mu));
-        point.step_into(&constants, 0.0, place, &(), (&mut x, &mut held, &mut gradient))?;
-        prop_assert_eq!(&in_place((q, *place.1, *place.2), |into| point.step_into(&constants, 0.0, place, &(), into))?, &(x, held, gradient));
+        let place = (&q, &Neumann::held(&q, &mu), integrator.stepper().system().impulse(&constants, 0.0, &q, &mu));
+        <Neumann as Clebsch>::Scheme::step_into(&point, &constants, 0.0, (place.0, place.1, &place.2), &(), (&mut x, &mut held, &mut gradient))?;
+        prop_assert_eq!(&point.step(&constants, 0.0, place.0, place.1, &place.2, &())?, &(x, held, gradient));
         let stepped = stepper.step(&start)?;
         prop_assert_eq!(&x, stepped.configuration());
         let fast = stepper.state(q, mu * (40.0 / mu.norm()))?;

@@ -4,6 +4,7 @@
 
 mod systems;
 
+use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Scalar, Sensitive, Sensitivity, Space, Tangent, Variation, Variational};
 use clebsch_tests::oracle::dual::Dual;
 use clebsch_tests::oracle::near::{assert_near, distance};
@@ -124,7 +125,7 @@ where
     let eta = SVector::from_fn(|i, _| variable(i, 0.0));
     let q = system.advance(&(case.lift)(&case.q), &system.retraction(&eta));
     let mu = SVector::from_fn(|i, _| variable(M + i, case.mu[i]));
-    let constants = system.constants(h).expect("a regular system");
+    let constants = system.step_constants(h).expect("a regular system");
     let impulse = system.impulse(&constants, t, &q, &mu);
     let held = D::held(&q, &mu);
     let (q, held, _) = system.step(&constants, t, &q, &held, &impulse, &input).expect("a solvable step");

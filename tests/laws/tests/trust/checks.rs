@@ -1,5 +1,6 @@
 //! What has to hold for every system of the table.
 
+use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::motion::order;
@@ -125,7 +126,7 @@ pub fn representations_agree<S: OnItself>(system: &S, problem: &Precise, random:
 
 /// DᵀΩD = Ω for the step on T*Q in the ambient space of matrices, D by differences of sixth order.
 pub fn is_symplectic<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
-    let constants = system.constants(H).expect("a regular system");
+    let constants = system.step_constants(H).expect("a regular system");
     let (q, _) = start::<S>(problem, random);
     let n = q.numbers().len();
     let mut at: Vec<f64> = q.numbers();

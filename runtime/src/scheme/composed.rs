@@ -9,47 +9,187 @@
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
 //! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
 
-use crate::{Error, Scalar};
+use super::{Parted, Scheme};
+use crate::{Clebsch, Error, Scalar};
+use core::marker::PhantomData;
 use nalgebra::SMatrix;
 
-/// γ_1, γ_2, γ_3 of order 4: 1/(4 − ∛4) and what is left for the middle.
-pub const SIZES_OF_5: [f64; 3] = [0.414_490_771_794_375_7, 0.414_490_771_794_375_7, -0.657_963_087_177_503];
+/// γ_1, …, γ_K: the others are these backwards.
+pub trait Sizes<const K: usize> {
+    /// γ_1, …, γ_K
+    const SIZES: [f64; K];
+}
 
-/// γ_1, …, γ_5 of order 6.
-pub const SIZES_OF_9: [f64; 5] = [
-    0.392_161_444_007_314_1,
-    0.332_599_136_789_359_43,
-    -0.706_246_172_557_639_3,
-    0.082_213_596_293_550_8,
-    0.798_543_990_934_83,
-];
+/// Five steps.
+#[derive(Clone, Copy, Debug)]
+pub struct OfOrderFour;
 
-/// γ_1, …, γ_9 of order 8.
-pub const SIZES_OF_17: [f64; 9] = [
-    0.130_202_483_088_890_07,
-    0.561_162_981_775_108_4,
-    -0.389_474_962_644_847_27,
-    0.158_841_906_555_155_6,
-    -0.395_903_894_133_237_57,
-    0.184_539_640_978_315_7,
-    0.258_374_387_686_322_04,
-    0.295_011_723_609_310_3,
-    -0.605_508_533_830_034_6,
-];
+/// Nine steps.
+#[derive(Clone, Copy, Debug)]
+pub struct OfOrderSix;
+
+/// Seventeen steps.
+#[derive(Clone, Copy, Debug)]
+pub struct OfOrderEight;
+
+impl Sizes<3> for OfOrderFour {
+    /// 1/(4 − ∛4), and what is left for the middle.
+    const SIZES: [f64; 3] = [0.414_490_771_794_375_7, 0.414_490_771_794_375_7, -0.657_963_087_177_503];
+}
+
+impl Sizes<5> for OfOrderSix {
+    const SIZES: [f64; 5] = [
+        0.392_161_444_007_314_1,
+        0.332_599_136_789_359_43,
+        -0.706_246_172_557_639_3,
+        0.082_213_596_293_550_8,
+        0.798_543_990_934_83,
+    ];
+}
+
+impl Sizes<9> for OfOrderEight {
+    const SIZES: [f64; 9] = [
+        0.130_202_483_088_890_07,
+        0.561_162_981_775_108_4,
+        -0.389_474_962_644_847_27,
+        0.158_841_906_555_155_6,
+        -0.395_903_894_133_237_57,
+        0.184_539_640_978_315_7,
+        0.258_374_387_686_322_04,
+        0.295_011_723_609_310_3,
+        -0.605_508_533_830_034_6,
+    ];
+}
+
+/// Steps of the scheme I with the K sizes Z, and the same backwards.
+#[derive(Clone, Copy, Debug)]
+pub struct Composed<I, Z, const K: usize>(PhantomData<(I, Z)>);
+
+impl<S: Clebsch, I: Scheme<S>, Z: Sizes<K>, const K: usize> Scheme<S> for Composed<I, Z, K> {
+    type Held = I::Held;
+    type Left = I::Left;
+    type Constants = Stages<S::Scalar, I::Constants, K>;
+
+    fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error> {
+        Stages::new(h, &Z::SIZES, |h| I::constants(system, h))
+    }
+
+    #[inline(always)]
+    fn whole(constants: &Self::Constants) -> &S::Constants {
+        I::whole(&constants.whole)
+    }
+
+    #[inline(always)]
+    fn held(q: &S::Configuration, mu: &S::Momentum) -> Self::Held {
+        I::held(q, mu)
+    }
+
+    #[inline(always)]
+    fn momentum(q: &S::Configuration, held: &Self::Held) -> S::Momentum {
+        I::momentum(q, held)
+    }
+
+    #[inline]
+    fn left(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Self::Left {
+        I::left(system, constants.first(), t, q, mu)
+    }
+
+    #[inline]
+    fn left_after(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+        left: &Self::Left,
+    ) -> Self::Left {
+        I::left_after(system, constants.first(), t, q, mu, left)
+    }
+
+    #[inline]
+    fn step(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        (q, held, left): (&S::Configuration, &Self::Held, &Self::Left),
+        u: &S::Input,
+    ) -> Result<Parted<S, Self>, Error> {
+        let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self>| {
+            I::step(system, stage, t, (&q, &held, &left), u)
+        };
+        let scaled = |(q, held, left): Parted<S, Self>, ratio| (q, held, I::scaled(left, ratio));
+        compose(constants, t, (*q, *held, *left), step, scaled)
+    }
+
+    #[inline]
+    fn step_symmetric(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        p: &S::Configuration,
+    ) -> Result<(S::Configuration, S::Configuration), Error> {
+        let step = |stage: &I::Constants, t, (q, p): (S::Configuration, S::Configuration)| {
+            I::step_symmetric(system, stage, t, &q, &p)
+        };
+        compose(constants, t, (*q, *p), step, |state, _| state)
+    }
+
+    #[inline]
+    fn inverse_legendre(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Element, Error> {
+        I::inverse_legendre(system, &constants.whole, t, q, mu)
+    }
+}
+
+/// The state after a composed step from the time `t`. `scaled` is what a state holds for a step that is so many times as long.
+///
+/// # Errors
+/// Those of a step.
+#[inline(always)]
+pub fn compose<T: Scalar, C: Clone, X, const K: usize>(
+    stages: &Stages<T, C, K>,
+    t: T,
+    start: X,
+    step: impl Fn(&C, T, X) -> Result<X, Error>,
+    scaled: impl Fn(X, T) -> X,
+) -> Result<X, Error> {
+    let (mut state, mut t) = (start, t);
+    let mut number = 0;
+    while let Some((constants, size)) = stages.at(number) {
+        state = step(constants, t, state)?;
+        number += 1;
+        // the last step is of the size of the first of the next composed one
+        let next = stages.at(number).map_or(size, |(_, next)| next);
+        state = scaled(state, next / size);
+        t += size;
+    }
+    Ok(state)
+}
 
 /// The constants of a composed step: of a step of the whole size, and of those that it is made of.
 #[derive(Clone, Debug)]
-pub struct Composed<T, C, const K: usize> {
+pub struct Stages<T, C, const K: usize> {
     /// Those of a step of size h.
     pub whole: C,
     /// Those of the steps of sizes γ_1 h, …, γ_K h.
-    pub stages: [C; K],
+    stages: [C; K],
     /// γ_1 h, …, γ_K h
     sizes: [T; K],
     h: T,
 }
-
-impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
+impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
     /// The constants for the step size `h`, those of each size made by `make`.
     ///
     /// # Errors
@@ -62,6 +202,12 @@ impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
             *stage = make(size)?;
         }
         Ok(Self { whole, stages, sizes, h })
+    }
+
+    /// Those of the first step that is made.
+    #[inline]
+    fn first(&self) -> &C {
+        self.stages.first().unwrap_or(&self.whole)
     }
 
     /// The constants and the size of the step number `number`; `None` after the last.
@@ -85,7 +231,7 @@ pub struct Stage<'a, T, C> {
     whole: T,
 }
 
-impl<T: Scalar, C: Clone, const K: usize> Composed<T, C, K> {
+impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
     /// The step number `number` < 2K − 1.
     #[inline]
     pub fn stage(&self, number: usize) -> Stage<'_, T, C> {
@@ -117,86 +263,15 @@ impl<T: Scalar, C> Stage<'_, T, C> {
     }
 }
 
-/// What a kick leaves for the next step, as the kick is linear in the step size.
-pub trait Impulse<T> {
-    /// The impulse of a step that is `ratio` times as long.
-    fn scaled(self, ratio: T) -> Self;
-}
-
-impl<T> Impulse<T> for () {
-    #[inline]
-    fn scaled(self, _: T) {}
-}
-
-impl<T: Scalar, const M: usize> Impulse<T> for SMatrix<T, M, 1> {
-    #[inline]
-    fn scaled(self, ratio: T) -> Self {
-        self * ratio
-    }
-}
-
-/// An impulse, and beside it what no step size changes.
-impl<T, I: Impulse<T>, R> Impulse<T> for (I, R) {
-    #[inline]
-    fn scaled(self, ratio: T) -> Self {
-        (self.0.scaled(ratio), self.1)
-    }
-}
-
-/// (q, N, impulse) after a composed step from the time `t`.
-///
-/// # Errors
-/// Those of a step.
-#[inline]
-pub fn compose<T: Scalar, C: Clone, Q, N, I: Impulse<T>, const K: usize>(
-    composed: &Composed<T, C, K>,
-    t: T,
-    start: (Q, N, I),
-    step: impl Fn(&C, T, (Q, N, I)) -> Result<(Q, N, I), Error>,
-) -> Result<(Q, N, I), Error> {
-    let (mut state, mut t) = (start, t);
-    let mut number = 0;
-    while let Some((constants, size)) = composed.at(number) {
-        let (q, n, impulse) = step(constants, t, state)?;
-        number += 1;
-        // the last step is of the size of the first of the next composed one
-        let next = composed.at(number).map_or(size, |(_, next)| next);
-        state = (q, n, impulse.scaled(next / size));
-        t += size;
-    }
-    Ok(state)
-}
-
-/// (q, p) after a composed step from the time `t`.
-///
-/// # Errors
-/// Those of a step.
-#[inline]
-pub fn compose_symmetric<T: Scalar, C: Clone, Q, const K: usize>(
-    composed: &Composed<T, C, K>,
-    t: T,
-    start: (Q, Q),
-    step: impl Fn(&C, T, (Q, Q)) -> Result<(Q, Q), Error>,
-) -> Result<(Q, Q), Error> {
-    let (mut state, mut t) = (start, t);
-    let mut number = 0;
-    while let Some((constants, size)) = composed.at(number) {
-        state = step(constants, t, state)?;
-        number += 1;
-        t += size;
-    }
-    Ok(state)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Composed, Impulse, SIZES_OF_5, SIZES_OF_9, SIZES_OF_17};
-    use nalgebra::{SMatrix, Vector3};
+    use super::{OfOrderEight, OfOrderFour, OfOrderSix, Sizes, Stages};
+    use nalgebra::SMatrix;
     use proptest::prelude::*;
     use std::vec::Vec;
 
     fn all<const K: usize>(sizes: &[f64; K]) -> Vec<f64> {
-        let composed = Composed::new(1.0, sizes, |h: f64| Ok(h)).expect("constants");
+        let composed = Stages::new(1.0, sizes, |h: f64| Ok(h)).expect("constants");
         let steps: Vec<_> = (0..).map_while(|number| composed.at(number)).collect();
         assert_eq!(steps.len(), 2 * K - 1);
         assert!(steps.iter().all(|(constants, size)| **constants == *size));
@@ -205,7 +280,7 @@ mod tests {
 
     #[test]
     fn stages_start_where_the_one_before_ends() {
-        let composed = Composed::new(0.3, &SIZES_OF_17, |h: f64| Ok(h)).expect("constants");
+        let composed = Stages::new(0.3, &OfOrderEight::SIZES, |h: f64| Ok(h)).expect("constants");
         let mut time = 0.0_f64;
         for number in 0..17 {
             let stage = composed.stage(number);
@@ -223,7 +298,7 @@ mod tests {
     /// Σ γ = 1 and Σ γ³ = 0 for order 4, Σ γ⁵ = 0 too for 6, Σ γ⁷ = 0 too for 8; the conditions that mix them show in the measured orders.
     #[test]
     fn the_odd_powers_of_the_sizes_cancel() {
-        let [four, six, eight] = [all(&SIZES_OF_5), all(&SIZES_OF_9), all(&SIZES_OF_17)];
+        let [four, six, eight] = [all(&OfOrderFour::SIZES), all(&OfOrderSix::SIZES), all(&OfOrderEight::SIZES)];
         for (sizes, highest) in [(four, 3), (six, 5), (eight, 7)] {
             assert!((sum_of_powers(&sizes, 1) - 1.0).abs() < 1e-15);
             assert!(sizes.iter().eq(sizes.iter().rev()), "the same forwards and backwards");
@@ -236,23 +311,15 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// A kick is linear in the size of its step, and what is beside it has none.
-        #[test]
-        fn impulses_scale_with_their_steps(kick in prop::array::uniform3(-1.0_f64..1.0), ratio in -2.0_f64..2.0, rest in -1.0_f64..1.0) {
-            let kick = Vector3::from(kick);
-            prop_assert_eq!((kick, rest).scaled(ratio), (kick * ratio, rest));
-            prop_assert_eq!(((), rest).scaled(ratio), ((), rest));
-        }
-
         /// By the chain rule: f = a s + b τ of the size s and the time τ of a stage, which start where h and t are.
         #[test]
         fn slopes_are_those_along_the_whole_step(a in -1.0_f64..1.0, b in -1.0_f64..1.0, h in 0.1_f64..1.0, number in 0_usize..9) {
             let at = |h: f64, t: f64| {
-                let composed = Composed::new(h, &SIZES_OF_9, |h: f64| Ok(h)).expect("constants");
+                let composed = Stages::new(h, &OfOrderSix::SIZES, |h: f64| Ok(h)).expect("constants");
                 let stage = composed.stage(number);
                 a * *stage.constants + b * (t + stage.start)
             };
-            let composed = Composed::new(h, &SIZES_OF_9, |h: f64| Ok(h)).expect("constants");
+            let composed = Stages::new(h, &OfOrderSix::SIZES, |h: f64| Ok(h)).expect("constants");
             // columns: h, something else, t
             let found = composed.stage(number).slopes(SMatrix::<f64, 1, 3>::new(a, 7.0, b), Some(0), Some(2));
             // f is linear in h, so that any difference is a derivative

@@ -1,0 +1,530 @@
+//! The parts of a step: one method for each, as the schemes of the runtime call them.
+
+use clebsch_symbolic::Group;
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::code::Nesting;
+use super::{Emitter, code, docs};
+use crate::derive::{Formula, Id, Solution};
+use crate::lower::{Kernel, Solve, StepKernels};
+use crate::model::Space;
+
+/// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
+const SHORT_STEP: usize = 192;
+
+/// What moves q and N.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Motion {
+    /// D = F − I.
+    Increment,
+    /// The chart coordinates x.
+    Coordinates,
+    /// q moves by x, N by D.
+    Both,
+}
+
+impl Emitter<'_, '_> {
+    /// The implementations of `Parts`, of `Substep` for each substep, and of what the scheme calls beside them.
+    pub(super) fn parts(&self) -> TokenStream {
+        let shared = self.shared_parts();
+        let substeps = self.program.steps.iter().enumerate().map(|(index, step)| self.substep(index, step));
+        let of_scheme = self.parts_of_scheme();
+        quote!(#shared #(#substeps)* #of_scheme)
+    }
+
+    /// An implementation of a hidden trait of the runtime.
+    pub(super) fn implementation(&self, of: TokenStream, items: TokenStream) -> TokenStream {
+        let super::Generics { parameters, arguments, predicates } = &self.generics;
+        let (ident, private) = (&self.model.item.ident, &self.paths.private);
+        quote! {
+            impl<#parameters> #private::#of for #ident<#arguments> #predicates {
+                #items
+            }
+        }
+    }
+
+    /// A part that is one kernel.
+    pub(super) fn part(
+        &self,
+        title: &str,
+        formulas: &[Formula<'_>],
+        signature: TokenStream,
+        kernel: &Kernel,
+        nesting: Option<Nesting>,
+    ) -> TokenStream {
+        let documentation = docs::formulas(title, formulas, Some(kernel));
+        let body = code::body(&self.scope_of_step(), kernel, nesting);
+        quote! {
+            #documentation
+            #[inline]
+            fn #signature {
+                #body
+            }
+        }
+    }
+
+    /// A part that other declarations do not have.
+    fn optional(
+        &self,
+        title: &str,
+        formulas: &[Formula<'_>],
+        (name, arguments): (&str, TokenStream),
+        kernel: &Kernel,
+        nesting: Option<Nesting>,
+    ) -> TokenStream {
+        let (private, constants, name) = (&self.paths.private, self.constants_of_step(), format_ident!("{name}"));
+        let result = if nesting.is_some() { self.configuration_type() } else { self.momentum_type() };
+        let documentation = docs::formulas(title, formulas, Some(kernel));
+        let scope = self.scope_of_step();
+        let (locals, value) = (code::locals(&scope, kernel), code::value(&scope, kernel, nesting));
+        quote! {
+            #documentation
+            #[inline]
+            fn #name(&self, constants: &#constants, #arguments) -> #private::Option<#result> {
+                #locals
+                #private::Some(#value)
+            }
+        }
+    }
+
+    /// The struct of the constants, with its arguments.
+    pub(super) fn constants_of_step(&self) -> TokenStream {
+        let (name, (_, arguments)) = (&self.names.constants, self.constants_generics());
+        quote!(#name #arguments)
+    }
+
+    fn motion(&self) -> Motion {
+        let steps = &self.program.steps;
+        let updates = steps.iter().take(self.program.formulas.parts).any(|step| step.update.is_some());
+        match (&steps[0].displace, updates) {
+            (None, _) => Motion::Increment,
+            (Some(_), false) => Motion::Coordinates,
+            (Some(_), true) => Motion::Both,
+        }
+    }
+
+    /// The chart coordinates of all factors, with the weights of those that are given up to a factor; F − I where a motion gives that at once.
+    pub(super) fn coordinates_type(&self) -> TokenStream {
+        if self.program.formulas.turns_whole() {
+            return self.element_type();
+        }
+        let (momentum, scalar) = (self.momentum_type(), &self.paths.scalar);
+        match self.program.formulas.weighted().len() {
+            0 => momentum,
+            count => {
+                let count = Literal::usize_unsuffixed(count);
+                quote!((#momentum, [#scalar; #count]))
+            }
+        }
+    }
+
+    fn motion_type(&self) -> TokenStream {
+        let (coordinates, element) = (self.coordinates_type(), self.element_type());
+        match self.motion() {
+            Motion::Increment => element,
+            Motion::Coordinates => coordinates,
+            Motion::Both => quote!((#coordinates, #element)),
+        }
+    }
+
+    /// Whether the steps of a single substep are so short that they are inlined wherever they are called.
+    fn is_short(&self) -> bool {
+        let is_single = self.program.formulas.parts == 1
+            && self.program.formulas.stages().is_none()
+            && self.program.collocation.is_none();
+        is_single && self.program.steps.first().is_some_and(|step| step.cost_of_moves().total() <= SHORT_STEP)
+    }
+
+    /// Increment, advance and lift, which all substeps share.
+    fn shared_parts(&self) -> TokenStream {
+        let private = &self.paths.private;
+        let sums = if self.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
+        let (coordinates, motion_type) = (self.coordinates_type(), self.motion_type());
+        let is_short = self.is_short().then(|| {
+            quote!(
+                const IS_SHORT: ::core::primitive::bool = true;
+            )
+        });
+        let has_covectors = self.model.has_covectors();
+        let no_covectors = (!has_covectors).then(|| {
+            quote!(
+                const HAS_COVECTORS: ::core::primitive::bool = false;
+            )
+        });
+        let (increment, element, motion) = (self.increment(), self.element_of_increment(), self.motion_of_step());
+        // points on large spheres are turned in (q, w)
+        let advance = self.advance();
+        let lift = has_covectors.then(|| self.lift());
+        let on_space = self.on_space();
+        self.implementation(
+            quote!(Parts),
+            quote! {
+                type Sums = #private::#sums;
+                type Coordinates = #coordinates;
+                type Motion = #motion_type;
+                #is_short
+                #no_covectors
+
+                #increment
+                #element
+                #motion
+                #advance
+                #lift
+                #on_space
+            },
+        )
+    }
+
+    fn increment(&self) -> TokenStream {
+        let (element, coordinates) = (self.element_type(), self.coordinates_type());
+        if self.program.formulas.turns_whole() {
+            return quote! {
+                #[inline]
+                fn increment(&self, d: &#element) -> #element {
+                    *d
+                }
+            };
+        }
+        let pattern = if self.program.formulas.weighted().is_empty() { quote!(x) } else { quote!((x, w)) };
+        self.part(
+            "D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
+            self.program.formulas.titled(Id::Increment),
+            quote!(increment(&self, #pattern: &#coordinates) -> #element),
+            &self.program.steps[0].increment,
+            Some(Nesting::Element),
+        )
+    }
+
+    /// F = I + D for each factor.
+    fn element_of_increment(&self) -> TokenStream {
+        let (private, element) = (&self.paths.private, self.element_type());
+        let sum = code::nested(&self.model.element, &mut |k| {
+            let access = code::accessor(&self.model.factors[k].accessor);
+            match self.model.factors[k].group {
+                Group::Translation(_) if access.is_empty() => quote!(*d),
+                Group::Translation(_) => quote!(d #access),
+                Group::UnitQuaternions => quote!(#private::quaternion_from_increment(&d #access)),
+                _ => quote!(#private::from_increment(&d #access)),
+            }
+        });
+        quote! {
+            #[inline]
+            fn element(d: &#element) -> #element {
+                #sum
+            }
+        }
+    }
+
+    fn motion_of_step(&self) -> TokenStream {
+        let (private, coordinates, motion) = (&self.paths.private, self.coordinates_type(), self.motion_type());
+        let body = match self.motion() {
+            Motion::Increment => quote!(#private::Parts::increment(self, x)),
+            Motion::Coordinates => quote!(*x),
+            Motion::Both => quote!((*x, #private::Parts::increment(self, x))),
+        };
+        quote! {
+            #[inline]
+            fn motion(&self, x: &#coordinates) -> #motion {
+                #body
+            }
+        }
+    }
+
+    fn advance(&self) -> TokenStream {
+        let (configuration, motion) = (self.configuration_type(), self.motion_type());
+        let step = &self.program.steps[0];
+        let id = if step.displace.is_some() { Id::Displacement } else { Id::Advance };
+        let formulas = self.program.formulas.titled(id);
+        let (title, pattern, kernel) = match (&step.displace, self.motion()) {
+            (Some(displace), kind) => (
+                if self.is_compensated() {
+                    "q⁺ − q = α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix."
+                } else {
+                    "q⁺ = q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix."
+                },
+                if kind == Motion::Both { quote!((x, _)) } else { quote!(x) },
+                displace,
+            ),
+            (None, _) => (
+                if self.is_compensated() {
+                    "Φ_F(q) − q of F = I + D, in which q has cancelled."
+                } else {
+                    "The configuration that F = I + D moves q to."
+                },
+                quote!(d),
+                &step.advance,
+            ),
+        };
+        let signature = quote!(advance(&self, q: &#configuration, #pattern: &#motion) -> #configuration);
+        self.part(title, formulas, signature, kernel, Some(Nesting::Configuration))
+    }
+
+    fn lift(&self) -> TokenStream {
+        let (configuration, element) = (self.configuration_type(), self.element_type());
+        self.part(
+            "The covector p carried along by F = I + D, at q⁺.",
+            self.program.formulas.titled(Id::Lift),
+            quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
+            &self.program.cotangent_lift,
+            Some(Nesting::Configuration),
+        )
+    }
+
+    /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions.
+    fn on_space(&self) -> Option<TokenStream> {
+        let private = &self.paths.private;
+        let mended = |function: &str, access: &TokenStream| {
+            let with_rest = format_ident!("{function}_with_rest");
+            let function = format_ident!("{function}");
+            if self.is_compensated() {
+                quote!((q #access, rest #access) = #private::#with_rest(q #access, rest #access);)
+            } else {
+                quote!(q #access = #private::#function(q #access);)
+            }
+        };
+        let leaves = self.model.configurations.iter().filter_map(|leaf| {
+            let access = code::accessor(&leaf.accessor);
+            match leaf.space {
+                Space::Group(Group::UnitQuaternions) => Some(mended("of_length_one", &quote!(#access.coords))),
+                Space::Group(group) if group.is_orthogonal() => Some(mended("orthogonal", &access)),
+                Space::Unit => Some(mended("of_length_one", &access)),
+                Space::Vectors | Space::Group(_) => None,
+            }
+        });
+        let leaves: Vec<TokenStream> = leaves.collect();
+        if leaves.is_empty() || self.follows_great_circles() {
+            return None;
+        }
+        let configuration = self.configuration_type();
+        let (pattern, rest) =
+            if self.is_compensated() { (quote!(mut rest), configuration.clone()) } else { (quote!(rest), quote!(())) };
+        Some(quote! {
+            #[inline]
+            fn on_space(mut q: #configuration, #pattern: #rest) -> (#configuration, #rest) {
+                #(#leaves)*
+                (q, rest)
+            }
+        })
+    }
+
+    /// The parts of one substep: kicks, forces, solve, update.
+    fn substep(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let number = Literal::usize_unsuffixed(index);
+        let kicks = self.kicks(index, step);
+        let forces = self.forces_of_step(step);
+        let gradients = self.model.has_covectors().then(|| self.gradients(index, step));
+        let (solve, update) = (self.solve(index, step), self.update(index, step));
+        self.implementation(quote!(Substep<#number>), quote!(#kicks #forces #gradients #solve #update))
+    }
+
+    /// Whether a step ends with a kick of its own.
+    fn ends_with_kick(&self) -> bool {
+        self.program.splitting.is_none() && self.program.collocation.is_none() && !self.follows_great_circles()
+    }
+
+    fn kicks(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let (private, formulas) = (&self.paths.private, &self.program.formulas);
+        let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
+        let at = || quote!(t: #scalar, q: &#configuration);
+        let kick = |name: &str, title: &str, kernel: &Kernel, id: Id| {
+            self.optional(title, formulas.titled(id), (name, at()), kernel, None)
+        };
+        let start = step.start.as_ref();
+        let start =
+            start.map(|kernel| kick("start_kick", "The kick at the start of a step.", kernel, Id::StartKick(index)));
+        let is_last = index + 1 == self.program.formulas.parts;
+        // where time matters, the kick at the end of a step is the one that knows its time
+        let same = match step.end {
+            Some(_) if step.end_is_start => Some(Literal::usize_unsuffixed(index)),
+            Some(_) if is_last && self.shares_impulse() && !self.is_timed() => Some(Literal::usize_unsuffixed(0)),
+            _ => None,
+        };
+        let end = step.end.as_ref().filter(|_| self.ends_with_kick()).map(|kernel| match same {
+            Some(first) => {
+                let (constants, momentum, at) = (self.constants_of_step(), self.momentum_type(), at());
+                let title = "The kick at the end of a step is that at the start of the next.";
+                let documentation = docs::formulas(title, formulas.titled(Id::EndKick(index)), None);
+                quote! {
+                    #documentation
+                    #[inline]
+                    fn end_kick(&self, constants: &#constants, #at) -> #private::Option<#momentum> {
+                        #private::Substep::<#first>::start_kick(self, constants, t, q)
+                    }
+                }
+            }
+            None => kick("end_kick", "The kick at the end of a step.", kernel, Id::EndKick(index)),
+        });
+        let rest = step.rest.as_ref().filter(|_| self.model.has_covectors() || self.is_compensated()).map(|kernel| {
+            kick("rest", "What the cost gives at F = I, with the other sign.", kernel, Id::RestKick(index))
+        });
+        quote!(#start #end #rest)
+    }
+
+    fn forces_of_step(&self, step: &StepKernels) -> TokenStream {
+        let (scalar, configuration, input) = (&self.paths.scalar, self.configuration_type(), self.input_type());
+        let coordinates = self.coordinates_type();
+        let force = |name: &str, title: &str, kernel: &Option<Kernel>, at: TokenStream| {
+            let formulas = self.program.formulas.titled(Id::Force);
+            let arguments = quote!(t: #scalar, q: &#configuration, #at u: &#input);
+            kernel.as_ref().map(|kernel| self.optional(title, formulas, (name, arguments), kernel, None))
+        };
+        let along = || quote!(x: &#coordinates,);
+        let start =
+            force("start_force", "The impulse of the force at the start of a step.", &step.start_force, quote!());
+        let title = "The part of the impulse at the start of a step that depends on the velocity.";
+        let moving = force("moving_force", title, &step.start_moving, along());
+        let end = force("end_force", "The impulse of the force at the end of a step.", &step.end_force, along());
+        quote!(#start #moving #end)
+    }
+
+    fn gradients(&self, index: usize, step: &StepKernels) -> TokenStream {
+        if self.program.splitting.is_some() || self.program.collocation.is_some() {
+            return TokenStream::new();
+        }
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let (configuration, element) = (self.configuration_type(), self.element_type());
+        let gradient = |name: &str, title: &str, (kernel, id): (&Kernel, Id), at: TokenStream| {
+            let arguments = quote!(t: #scalar, q: &#configuration, #at);
+            let formulas = self.program.formulas.titled(id);
+            self.optional(title, formulas, (name, arguments), kernel, Some(Nesting::Configuration))
+        };
+        let start = step.start_gradient.as_ref().map(|kernel| {
+            let title = "∂U₀(q), the kick of the covector at the start of a step.";
+            gradient("start_gradient", title, (kernel, Id::StartGradient(index)), quote!())
+        });
+        let same = step.end_is_start && step.start_gradient.is_some();
+        let end = step.end_gradient.as_ref().map(|kernel| {
+            if !same {
+                let title = "∂U₁(q), the kick of the covector at the end of a step.";
+                return gradient("end_gradient", title, (kernel, Id::EndGradient(index)), quote!());
+            }
+            let (number, constants) = (Literal::usize_unsuffixed(index), self.constants_of_step());
+            let formulas = self.program.formulas.titled(Id::EndGradient(index));
+            let documentation = docs::formulas("∂U₁(q) = ∂U₀(q).", formulas, None);
+            quote! {
+                #documentation
+                #[inline]
+                fn end_gradient(&self, constants: &#constants, t: #scalar, q: &#configuration) -> #private::Option<#configuration> {
+                    #private::Substep::<#number>::start_gradient(self, constants, t, q)
+                }
+            }
+        });
+        let coupled = step.coupled_gradient.as_ref().map(|kernel| {
+            let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
+            gradient("coupled_gradient", title, (kernel, Id::CoupledGradient(index)), quote!(d: &#element))
+        });
+        quote!(#start #end #coupled)
+    }
+
+    /// The momentum after the move.
+    fn update(&self, index: usize, step: &StepKernels) -> Option<TokenStream> {
+        let kernel = step.update.as_ref()?;
+        let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
+        let (momentum, motion) = (self.momentum_type(), self.motion_type());
+        let d = if self.motion() == Motion::Both { quote!((_, d)) } else { quote!(d) };
+        let title = if self.is_compensated() {
+            "What the move, F = I + D, adds to the momentum: M⁺ − μ, in which μ has cancelled."
+        } else {
+            "The momentum after the move, F = I + D."
+        };
+        let arguments = quote!(t: #scalar, q: &#configuration, mu: &#momentum, #d: &#motion);
+        let formulas = self.program.formulas.titled(Id::MomentumAfter(index));
+        Some(self.optional(title, formulas, ("update", arguments), kernel, None))
+    }
+
+    /// The chart coordinates of the group element whose momentum is μ.
+    fn solve(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
+        let (configuration, momentum, input) = (self.configuration_type(), self.momentum_type(), self.input_type());
+        let coordinates = self.coordinates_type();
+        let (title, body) = if self.program.formulas.turns_whole() {
+            let kept = quote!(#private::FreeMotion::kept(self, constants, mu));
+            let followed = quote!(#private::FreeMotion::follow(self, constants, &#kept, mu).map(|(d, _)| d));
+            (" F − I of the group element whose momentum is μ.", followed)
+        } else {
+            let (solutions, result) = self.solved(index, step, false);
+            (
+                " The chart coordinates x of the group element whose momentum is μ.",
+                quote!(#solutions #private::Ok(#result)),
+            )
+        };
+        quote! {
+            #[doc = #title]
+            #[inline]
+            fn solve(
+                &self,
+                constants: &#constants,
+                t: #scalar,
+                q: &#configuration,
+                mu: &#momentum,
+                u: &#input,
+            ) -> #private::Result<#coordinates, #private::Error> {
+                #body
+            }
+        }
+    }
+
+    /// The solutions of a step, equation by equation, and the coordinates that they make; with `kept` those of motions that are known.
+    pub(super) fn solved(&self, index: usize, step: &StepKernels, kept: bool) -> (TokenStream, TokenStream) {
+        let private = &self.paths.private;
+        let entry = |component: &usize| {
+            let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
+            let found = step.solves.iter().enumerate().find_map(|(number, solve)| Some((number, position(solve)?)));
+            // by construction: every component belongs to one equation
+            let (number, position) = found.unwrap_or((0, 0));
+            let (solution, position) = (format_ident!("x{}", number + 1), Literal::usize_unsuffixed(position));
+            quote!(#solution[#position])
+        };
+        let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
+            let (name, solution) =
+                (self.names.equation(self.program.suffix(index), number), format_ident!("x{}", number + 1));
+            let target = self.part_of("mu", &solve.momenta);
+            let place = self.place_of_equation(solve);
+            let equation = quote!(#name { system: self, constants, #place });
+            let given = solve.given.iter().map(entry);
+            let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
+            let found = match solve.solution {
+                Solution::FreeRotation => return self.found_free_rotation(index, number, solve, &target, kept),
+                Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)?),
+                Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
+                Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)?),
+                Solution::Newton if solve.residual.is_some() => {
+                    quote!(#private::solve_fixed_point(&#equation, #target)?)
+                }
+                Solution::Newton => quote!(#private::solve(&#equation, #target)?),
+            };
+            quote!(let #solution = #found;)
+        });
+        let solutions = quote!(#(#solutions)*);
+        let components: Vec<usize> = (0..self.dimension()).collect();
+        let entries = components.iter().map(entry);
+        let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
+        let weights = (1..=self.program.formulas.weighted().len()).map(|number| format_ident!("w{number}"));
+        let result = if self.program.formulas.weighted().is_empty() { x } else { quote!((#x, [#(#weights),*])) };
+        (solutions, result)
+    }
+
+    /// The fields of an equation that tell where it is.
+    fn place_of_equation(&self, solve: &Solve) -> TokenStream {
+        if !solve.moves {
+            return TokenStream::new();
+        }
+        let time = self.is_timed().then(|| quote!(t,));
+        let input = solve.reads_input.then(|| quote!(u,));
+        quote!(#time q, #input)
+    }
+
+    /// Some components of a flat vector, by reference; all of them are the vector itself.
+    pub(super) fn part_of(&self, vector: &str, components: &[usize]) -> TokenStream {
+        let (private, vector) = (&self.paths.private, format_ident!("{vector}"));
+        if components.iter().copied().eq(0..self.dimension()) {
+            return quote!(#vector);
+        }
+        let entries = components.iter().map(|&component| {
+            let component = Literal::usize_unsuffixed(component);
+            quote!(#vector[#component])
+        });
+        quote!(&#private::vector([#(#entries),*]))
+    }
+}

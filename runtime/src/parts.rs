@@ -1,0 +1,340 @@
+//! The parts of a step, as they are derived for one declaration.
+//!
+//! A *scheme* is the order in which these parts are called. It is the same for every declaration and stands in [`scheme`](crate::scheme); the derive
+//! macro writes parts alone.
+
+use crate::summation::Sums;
+use crate::{Carried, Clebsch, Edge, Error, Momenta, Space};
+
+/// What all substeps of a step share: how q moves, and what the step is made of.
+pub trait Parts: Clebsch + Sized {
+    /// How a step adds to q and N.
+    type Sums: Sums;
+    /// x, the coordinates of the group element that a solve finds.
+    type Coordinates;
+    /// What moves q and N: the increment D = F − I, the coordinates x where those are enough, or both.
+    type Motion;
+
+    /// Whether a step has so few operations that it is inlined wherever it is called: a call hands states through memory.
+    const IS_SHORT: bool = false;
+
+    /// Whether there are covectors to step, (q, p): not where forces act in 𝔤*, nor where momenta are stepped alone.
+    const HAS_COVECTORS: bool = true;
+
+    /// D = F − I of the group element with the coordinates x (for translations F itself), without cancellation.
+    fn increment(&self, x: &Self::Coordinates) -> Self::Element;
+
+    /// F = I + D.
+    fn element(d: &Self::Element) -> Self::Element;
+
+    /// What of x and D the move takes.
+    fn motion(&self, x: &Self::Coordinates) -> Self::Motion;
+
+    /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
+    fn advance(&self, q: &Self::Configuration, motion: &Self::Motion) -> Self::Configuration;
+
+    /// (TΦ_F)^{-*} p at q⁺, the covector carried along by F = I + D.
+    #[inline(always)]
+    fn lift(&self, q: &Self::Configuration, p: &Self::Configuration, d: &Self::Element) -> Self::Configuration {
+        let _ = (q, d);
+        *p
+    }
+
+    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. It is the last thing that a step does: nothing waits
+    /// for it.
+    #[inline(always)]
+    fn on_space(q: Self::Configuration, rest: RestOf<Self>) -> (Self::Configuration, RestOf<Self>) {
+        (q, rest)
+    }
+}
+
+/// What rounding has taken off q, where sums are compensated.
+pub type RestOf<S> = <<S as Parts>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
+
+/// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted, `inverse_legendre`.
+///
+/// Every time is that at which the whole step starts. A part that a declaration does not have is `None` and costs nothing.
+pub trait Substep<const K: usize>: Parts {
+    /// J(q, ∂U₀), the kick at the start, with −r(q, I) where sums are not compensated.
+    #[inline(always)]
+    fn start_kick(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q);
+        None
+    }
+
+    /// J(q⁺, ∂U₁), the kick at the end.
+    #[inline(always)]
+    fn end_kick(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q);
+        None
+    }
+
+    /// −r(q, I): what a coupled cost, or one with a term that is linear in the velocity, gives at F = I.
+    #[inline(always)]
+    fn rest(&self, constants: &Self::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
+        let _ = (constants, t, q);
+        None
+    }
+
+    /// The impulse of the force at the start.
+    #[inline(always)]
+    fn start_force(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q, u);
+        None
+    }
+
+    /// The part of that impulse that depends on the velocity.
+    #[inline(always)]
+    fn moving_force(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        x: &Self::Coordinates,
+        u: &Self::Input,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q, x, u);
+        None
+    }
+
+    /// The impulse of the force at the end, at q⁺.
+    #[inline(always)]
+    fn end_force(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        x: &Self::Coordinates,
+        u: &Self::Input,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q, x, u);
+        None
+    }
+
+    /// ∂U₀(q), the kick of the covector at the start.
+    #[inline(always)]
+    fn start_gradient(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+    ) -> Option<Self::Configuration> {
+        let _ = (constants, t, q);
+        None
+    }
+
+    /// ∂U₁(q⁺), the kick of the covector at the end.
+    #[inline(always)]
+    fn end_gradient(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+    ) -> Option<Self::Configuration> {
+        let _ = (constants, t, q);
+        None
+    }
+
+    /// ∂_q K(q, F), F = I + D, of a cost that couples.
+    #[inline(always)]
+    fn coupled_gradient(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+    ) -> Option<Self::Configuration> {
+        let _ = (constants, t, q, d);
+        None
+    }
+
+    /// The coordinates x of the group element with the momentum μ at q: the momentum equation.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::Unsolvable`] or [`Error::NotConverged`].
+    fn solve(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+        u: &Self::Input,
+    ) -> Result<Self::Coordinates, Error>;
+
+    /// M⁺ of the momentum M that has moved, from M or from the q before the move; with compensated sums M⁺ − M. `None` where M does not change.
+    #[inline(always)]
+    fn update(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+        motion: &Self::Motion,
+    ) -> Option<Self::Momentum> {
+        let _ = (constants, t, q, mu, motion);
+        None
+    }
+}
+
+/// Free motions that are exact: a step follows one, and what one keeps is made once for all steps of it.
+pub trait FreeMotion: Parts {
+    /// What the motion with a momentum keeps.
+    type Kept: Space<Self::Scalar>;
+
+    /// What the motion with this momentum keeps.
+    fn kept(&self, constants: &Self::Constants, mu: &Self::Momentum) -> Self::Kept;
+
+    /// What moves q along this motion, and M after it where the motion gives both at once.
+    ///
+    /// # Errors
+    /// As [`Substep::solve`].
+    fn follow(
+        &self,
+        constants: &Self::Constants,
+        kept: &Self::Kept,
+        mu: &Self::Momentum,
+    ) -> Result<(Self::Motion, Self::Momentum), Error>;
+}
+
+/// Drifts that are exact, with kicks between them.
+pub trait SplitKicks: Parts {
+    /// The size h of a step.
+    fn step_size(constants: &Self::Constants) -> Self::Scalar;
+
+    /// J(q, ∂U) of U = −h b V + h³ g G·Σ⁻¹G with the weights b and g.
+    fn kick(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        weight: Self::Scalar,
+        gradient: Self::Scalar,
+    ) -> Self::Momentum;
+
+    /// ∂U
+    fn kick_gradient(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        weight: Self::Scalar,
+        gradient: Self::Scalar,
+    ) -> Self::Configuration;
+}
+
+/// Hamilton's equations of (q, p), N numbers of which the first half are those of q.
+pub trait HamiltonEquations<const N: usize>: Parts {
+    /// Sweeps end where they change q and p by less than this part of them; 0 where only rounding ends them.
+    const TOLERANCE: f64 = 0.0;
+    /// The most sweeps of one step.
+    const SWEEPS: u32 = crate::collocation::SWEEPS;
+    /// Whether the action moves the origin, so that J is affine in q.
+    const IS_AFFINE: bool = false;
+
+    /// The size h of a step.
+    fn step_size(constants: &Self::Constants) -> Self::Scalar;
+
+    /// (q′, p′) at y = (q, p), all entries of q and then those of p.
+    fn slope(&self, constants: &Self::Constants, t: Self::Scalar, y: &[Self::Scalar; N]) -> [Self::Scalar; N];
+
+    /// A covector p at q with the momentum J(q, p) = μ.
+    fn covector(
+        &self,
+        constants: &Self::Constants,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Self::Configuration;
+
+    /// The coordinates x of the motion by the velocity of the start for the time h, to first order in h.
+    fn guess(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Self::Momentum;
+
+    /// A part of these coordinates.
+    fn part(x: &Self::Momentum, part: Self::Scalar) -> Self::Coordinates;
+
+    /// The entries of q and then those of p.
+    fn joined(q: &Self::Configuration, p: &Self::Configuration) -> [Self::Scalar; N];
+
+    /// q and p of their entries.
+    fn parted(y: &[Self::Scalar; N]) -> (Self::Configuration, Self::Configuration);
+}
+
+/// Steps along great circles.
+pub trait GreatCircles: Substep<0> {
+    /// h/κ, κ the inertia.
+    fn turn(constants: &Self::Constants) -> Self::Scalar;
+}
+
+/// A step that has been differentiated.
+pub trait Varied<const M: usize>: Parts {
+    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to what is fixed during a step; `()` where they are not asked for.
+    type Slopes;
+}
+
+/// Substep K, differentiated: the discrete Lagrangian of an edge from q to `next` = Φ_F(q), F = I + D, with its derivatives along M directions.
+pub trait VariedSubstep<const K: usize, const M: usize>: Substep<K> + Varied<M> {
+    /// ℓd with both Legendre transforms.
+    fn momenta(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Momenta<Self::Scalar, M>;
+
+    /// The same with their derivatives along the motions of both ends.
+    fn edge(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Edge<Self::Scalar, M>;
+
+    /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
+    fn carried(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Carried<Self::Scalar, M>;
+
+    /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
+    fn slopes(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        d: &Self::Element,
+        next: &Self::Configuration,
+        u: &Self::Input,
+    ) -> Self::Slopes;
+}

@@ -1,0 +1,132 @@
+//! One exact motion, step after step.
+
+use super::substep::{LeftOf, Moving, inverse_legendre, symmetric};
+use super::{Parted, Scheme};
+use crate::parts::{FreeMotion, Substep};
+use crate::summation::Sums;
+use crate::{Error, Space};
+
+/// (q, N) ↦ (q⁺, N⁺) along a free motion. What the motion keeps is made once, and travels along with the state.
+#[derive(Clone, Copy, Debug)]
+pub struct AlongFreeMotion;
+
+impl<S: Substep<0> + FreeMotion> Scheme<S> for AlongFreeMotion {
+    type Held = S::Momentum;
+    type Left = LeftOf<S, S::Kept>;
+    type Constants = S::Constants;
+
+    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
+        system.constants(h)
+    }
+
+    #[inline(always)]
+    fn whole(constants: &S::Constants) -> &S::Constants {
+        constants
+    }
+
+    #[inline(always)]
+    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
+        *mu
+    }
+
+    #[inline(always)]
+    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
+        *held
+    }
+
+    fn left(system: &S, constants: &S::Constants, _: S::Scalar, _: &S::Configuration, mu: &S::Momentum) -> Self::Left {
+        S::Sums::joined(system.kept(constants, mu), (Space::origin(), Space::origin()))
+    }
+
+    fn left_after(
+        system: &S,
+        constants: &S::Constants,
+        _: S::Scalar,
+        _: &S::Configuration,
+        mu: &S::Momentum,
+        left: &Self::Left,
+    ) -> Self::Left {
+        let (_, rests) = S::Sums::parted::<S::Scalar, S::Kept, S::Configuration, S::Momentum>(left);
+        S::Sums::joined(system.kept(constants, mu), rests)
+    }
+
+    #[inline(always)]
+    fn step(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        state: (&S::Configuration, &S::Momentum, &Self::Left),
+        _: &S::Input,
+    ) -> Result<Parted<S, Self>, Error> {
+        if S::IS_SHORT { steps(system, constants, t, 1, state) } else { called(system, constants, t, 1, state) }
+    }
+
+    fn steps(
+        system: &S,
+        constants: &S::Constants,
+        (t, _): (S::Scalar, S::Scalar),
+        count: usize,
+        state: (&S::Configuration, &S::Momentum, &Self::Left),
+        _: &S::Input,
+    ) -> Result<Parted<S, Self>, Error> {
+        steps(system, constants, t, count, state)
+    }
+
+    #[inline]
+    fn step_symmetric(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        p: &S::Configuration,
+    ) -> Result<(S::Configuration, S::Configuration), Error> {
+        if S::HAS_COVECTORS { symmetric::<S, 0>(system, constants, t, (*q, *p)) } else { Err(Error::NoCovector) }
+    }
+
+    #[inline]
+    fn inverse_legendre(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Element, Error> {
+        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+    }
+}
+
+/// (q, N) after several steps of one motion.
+///
+/// # Errors
+/// Those of [`FreeMotion::follow`].
+#[inline(always)]
+fn steps<S: Substep<0> + FreeMotion>(
+    system: &S,
+    constants: &S::Constants,
+    t: S::Scalar,
+    count: usize,
+    (q, mu, left): (&S::Configuration, &S::Momentum, &LeftOf<S, S::Kept>),
+) -> Result<Parted<S, AlongFreeMotion>, Error> {
+    let (mut state, kept) = Moving::<S>::start::<S::Kept>(q, mu, left);
+    for _ in 0..count {
+        let motion;
+        (motion, state.mu) = system.follow(constants, &kept, &state.mu)?;
+        let from = state.q;
+        state.advance(system, &motion);
+        state.update(system.update(constants, t, &from, &state.mu, &motion));
+        state.on_space();
+    }
+    Ok(state.finish(kept))
+}
+
+/// A long step, which the compiler may call.
+#[inline]
+fn called<S: Substep<0> + FreeMotion>(
+    system: &S,
+    constants: &S::Constants,
+    t: S::Scalar,
+    count: usize,
+    state: (&S::Configuration, &S::Momentum, &LeftOf<S, S::Kept>),
+) -> Result<Parted<S, AlongFreeMotion>, Error> {
+    steps(system, constants, t, count, state)
+}

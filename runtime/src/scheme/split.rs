@@ -1,0 +1,380 @@
+//! Steps of order 4 and 6 where the drift, the motion without the potential, is exact: drifts and kicks in turn.
+//!
+//! ```text
+//! Ψ_h = D(a_1 h) K_1 D(a_2 h) K_2 … K_s D(a_1 h),    the same forwards and backwards
+//! ```
+//! D is the exact flow of the kinetic energy T = ½ μ·Σ⁻¹μ and K_i the flow of b_i h V − g_i h³ {V, {V, T}}, with the force gradient
+//! {V, {V, T}} = G·Σ⁻¹G, G = J(q, ∂V): a function of q too, so that each K_i is a kick. Every part keeps the group, the symplectic form and the
+//! momenta of the symmetries, and so does the step.
+//!
+//! Kinetic energy is quadratic: the exact drift of the time a h and the momentum μ is that of the time h and the momentum a μ.
+//!
+//! Source: kicks with force gradients are those of S. A. Chin, *Symplectic integrators from composite operator factorizations*, Phys. Lett. A
+//! 226 (1997). The nodes here are those of quadrature to high order in V, so that the error for a weak potential is small: order (8, 4) in (V, V²)
+//! with four kicks and order 4, the nodes of Gauss and Legendre, and (8, 6, 6) with five and order 6. Without gradients they are those of S. Blanes and
+//! P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142 (2002).
+
+use super::substep::{LeftOf, Moving, inverse_legendre, moved};
+use super::{Parted, Scheme};
+use crate::parts::{SplitKicks, Substep};
+use crate::summation::Sums;
+use crate::{Clock, Error, Scalar, Space, Time};
+use core::marker::PhantomData;
+use num_traits::Zero;
+
+/// A kick with the drift before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kick {
+    /// a_i, the drift before the kick as a part of the step.
+    pub drift: f64,
+    /// b_i, the weight of V.
+    pub weight: f64,
+    /// g_i, the weight of the force gradient.
+    pub gradient: f64,
+}
+
+const fn kick(drift: f64, weight: f64, gradient: f64) -> Kick {
+    Kick { drift, weight, gradient }
+}
+
+/// The kicks of a splitting, K of them.
+pub trait Kicks<const K: usize> {
+    /// The kicks, each with the drift before it.
+    const KICKS: [Kick; K];
+}
+
+/// Order 4, four kicks.
+#[derive(Clone, Copy, Debug)]
+pub struct GradientFour;
+
+impl Kicks<4> for GradientFour {
+    const KICKS: [Kick; 4] = [
+        kick(0.069_431_844_202_973_71, 0.173_927_422_568_726_92, 0.000_238_038_871_179_946_26),
+        kick(0.260_577_634_004_598_16, 0.326_072_577_431_273_05, 0.001_460_348_652_924_354_3),
+        kick(0.339_981_043_584_856_26, 0.326_072_577_431_273_05, 0.001_460_348_652_924_354_3),
+        kick(0.260_577_634_004_598_16, 0.173_927_422_568_726_92, 0.000_238_038_871_179_946_26),
+    ];
+}
+
+/// Order 6, five kicks; the second and the fourth lie outside the step and are weak.
+#[derive(Clone, Copy, Debug)]
+pub struct GradientSix;
+
+impl Kicks<5> for GradientSix {
+    const KICKS: [Kick; 5] = [
+        kick(0.132_793_133_546_899_34, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
+        kick(-0.290_604_120_144_448_3, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
+        kick(0.657_810_986_597_549, 0.403_638_176_479_173_16, 0.001_637_619_689_152_927),
+        kick(0.657_810_986_597_549, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
+        kick(-0.290_604_120_144_448_3, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
+    ];
+}
+
+/// Order 4 without force gradients, six kicks.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainFour;
+
+impl Kicks<6> for PlainFour {
+    const KICKS: [Kick; 6] = [
+        kick(0.079_203_696_431_195_7, 0.209_515_106_613_362, 0.0),
+        kick(0.353_172_906_049_774, -0.143_851_773_179_818, 0.0),
+        kick(-0.042_065_080_357_719_5, 0.434_336_666_566_456, 0.0),
+        kick(0.219_376_955_753_499_6, 0.434_336_666_566_456, 0.0),
+        kick(-0.042_065_080_357_719_5, -0.143_851_773_179_818, 0.0),
+        kick(0.353_172_906_049_774, 0.209_515_106_613_362, 0.0),
+    ];
+}
+
+/// Order 6 without force gradients, ten kicks.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainSix;
+
+impl Kicks<10> for PlainSix {
+    const KICKS: [Kick; 10] = [
+        kick(0.050_262_764_400_392_2, 0.148_816_447_901_042, 0.0),
+        kick(0.413_514_300_428_344, -0.132_385_865_767_784, 0.0),
+        kick(0.045_079_889_794_397_7, 0.067_307_604_692_185, 0.0),
+        kick(-0.188_054_853_819_569, 0.432_666_402_578_175, 0.0),
+        kick(0.541_960_678_450_78, -0.016_404_589_403_618, 0.0),
+        kick(-0.725_525_558_508_689_8, -0.016_404_589_403_618, 0.0),
+        kick(0.541_960_678_450_78, 0.432_666_402_578_175, 0.0),
+        kick(-0.188_054_853_819_569, 0.067_307_604_692_185, 0.0),
+        kick(0.045_079_889_794_397_7, -0.132_385_865_767_784, 0.0),
+        kick(0.413_514_300_428_344, 0.148_816_447_901_042, 0.0),
+    ];
+}
+
+/// Exact drifts with the K kicks Z between them.
+#[derive(Clone, Copy, Debug)]
+pub struct Split<Z, const K: usize>(PhantomData<Z>);
+
+impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Split<Z, K> {
+    type Held = S::Momentum;
+    type Left = LeftOf<S, ()>;
+    type Constants = S::Constants;
+
+    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
+        system.constants(h)
+    }
+
+    #[inline(always)]
+    fn whole(constants: &S::Constants) -> &S::Constants {
+        constants
+    }
+
+    #[inline(always)]
+    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
+        *mu
+    }
+
+    #[inline(always)]
+    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
+        *held
+    }
+
+    #[inline]
+    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
+        S::Sums::joined((), (Space::origin(), Space::origin()))
+    }
+
+    #[inline]
+    fn left_after(
+        _: &S,
+        _: &S::Constants,
+        _: S::Scalar,
+        _: &S::Configuration,
+        _: &S::Momentum,
+        left: &Self::Left,
+    ) -> Self::Left {
+        *left
+    }
+
+    #[inline]
+    fn step(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        state: (&S::Configuration, &S::Momentum, &Self::Left),
+        u: &S::Input,
+    ) -> Result<Parted<S, Self>, Error> {
+        Self::steps(system, constants, (t, S::step_size(constants)), 1, state, u)
+    }
+
+    fn steps(
+        system: &S,
+        constants: &S::Constants,
+        (t, _): (S::Scalar, S::Scalar),
+        steps: usize,
+        (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
+        _: &S::Input,
+    ) -> Result<Parted<S, Self>, Error> {
+        let (start, ()) = Moving::<S>::start::<()>(q, mu, left);
+        let drifted = |part, state| drift(system, constants, part, state);
+        let kicked = |t, weight, gradient, mut state: Moving<S>| {
+            state.push(Some(system.kick(constants, t, &state.q, weight, gradient)));
+            state
+        };
+        let end = split(&Z::KICKS, (t, S::step_size(constants), steps), start, drifted, kicked)?;
+        Ok(end.finish(()))
+    }
+
+    fn step_symmetric(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        p: &S::Configuration,
+    ) -> Result<(S::Configuration, S::Configuration), Error> {
+        if !S::HAS_COVECTORS {
+            return Err(Error::NoCovector);
+        }
+        let kicked = |t, weight, gradient, (q, p): (S::Configuration, S::Configuration)| {
+            let kick = system.kick_gradient(constants, t, &q, weight, gradient);
+            (q, p.zip_map(&kick, |a, b| a + b))
+        };
+        let drifted = |part, (q, p)| drift_symmetric(system, constants, part, q, p);
+        split(&Z::KICKS, (t, S::step_size(constants), 1), (*q, *p), drifted, kicked)
+    }
+
+    #[inline]
+    fn inverse_legendre(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Element, Error> {
+        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+    }
+}
+
+/// The coordinates of the drift of a part of the step: it is the whole drift with this part of the momentum.
+///
+/// # Errors
+/// Those of the solve.
+#[inline(always)]
+fn solve_part<S: Substep<0>>(
+    system: &S,
+    constants: &S::Constants,
+    part: S::Scalar,
+    q: &S::Configuration,
+    mu: &S::Momentum,
+) -> Result<S::Coordinates, Error> {
+    let mu = mu.zip_map(mu, |mu, _| mu * part);
+    system.solve(constants, Zero::zero(), q, &mu, &S::Input::origin())
+}
+
+/// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
+///
+/// # Errors
+/// Those of the solve.
+#[inline]
+fn drift<S: Substep<0>>(
+    system: &S,
+    constants: &S::Constants,
+    part: S::Scalar,
+    mut state: Moving<S>,
+) -> Result<Moving<S>, Error> {
+    let x = solve_part(system, constants, part, &state.q, &state.mu)?;
+    let motion = system.motion(&x);
+    let from = state.q;
+    state.advance(system, &motion);
+    state.update(system.update(constants, Zero::zero(), &from, &state.mu, &motion));
+    state.on_space();
+    Ok(state)
+}
+
+/// (q, p) ↦ (q⁺, p⁺) by the same.
+///
+/// # Errors
+/// Those of the solve.
+#[inline]
+fn drift_symmetric<S: Substep<0>>(
+    system: &S,
+    constants: &S::Constants,
+    part: S::Scalar,
+    q: S::Configuration,
+    p: S::Configuration,
+) -> Result<(S::Configuration, S::Configuration), Error> {
+    let x = solve_part(system, constants, part, &q, &system.momentum_map(&q, &p))?;
+    let d = system.increment(&x);
+    let q = moved(system, &q, &x);
+    let p = system.lift(&q, &p, &d);
+    Ok((q, p))
+}
+
+/// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one.
+///
+/// `drift` takes a part of the step and the state, `kick` a time, b_i, g_i and the state.
+///
+/// # Errors
+/// Those of a drift.
+#[inline]
+pub fn split<T: Scalar, S, const K: usize>(
+    kicks: &[Kick; K],
+    (t, h, steps): (T, T, usize),
+    start: S,
+    drift: impl Fn(T, S) -> Result<S, Error>,
+    kick: impl Fn(T, T, T, S) -> S,
+) -> Result<S, Error> {
+    let Some(first) = kicks.first().filter(|_| steps > 0) else { return Ok(start) };
+    // the same forwards and backwards: the last drift is as long as the first
+    let end = T::from_f64(first.drift);
+    let (mut state, mut begun, mut left) = (start, Clock::at(t), steps);
+    let (mut parts, mut size, mut passed) = (kicks.iter(), end, end);
+    // drift and kick are called in one place each, so that both stand in the loop and no state goes through memory
+    loop {
+        state = drift(size, state)?;
+        let Some(part) = parts.next().filter(|_| left > 0) else { return Ok(state) };
+        let (weight, gradient) = (T::from_f64(part.weight), T::from_f64(part.gradient));
+        state = kick(begun.now() + passed * h, weight, gradient, state);
+        match parts.as_slice().first() {
+            Some(next) => {
+                size = T::from_f64(next.drift);
+                passed += size;
+            }
+            None => {
+                left -= 1;
+                (begun, parts) = (begun.after_step(h), kicks.iter());
+                (size, passed) = (if left == 0 { end } else { end + end }, end);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GradientFour, GradientSix, Kick, Kicks, PlainFour, PlainSix, split};
+
+    /// The kicks, with their times from the middle of the step.
+    fn nodes(kicks: &[Kick]) -> impl Iterator<Item = (f64, Kick)> + '_ {
+        kicks.iter().scan(-0.5, |time, kick| {
+            *time += kick.drift;
+            Some((*time, *kick))
+        })
+    }
+
+    fn check(kicks: &[Kick], quadrature: i32) {
+        let length: f64 = kicks.iter().map(|kick| kick.drift).sum::<f64>() + kicks[0].drift;
+        assert!((length - 1.0).abs() < 2e-15, "{length}");
+        let reversed = kicks.iter().rev();
+        assert!(kicks.iter().zip(reversed.clone()).all(|(a, b)| a.weight == b.weight && a.gradient == b.gradient));
+        assert!(kicks[1..].iter().zip(reversed).all(|(a, b)| (a.drift - b.drift).abs() < 1e-15));
+        // ∫ τ^k from −½ to ½
+        for power in (0..quadrature).step_by(2) {
+            let sum: f64 = nodes(kicks).map(|(time, kick)| kick.weight * time.powi(power)).sum();
+            let exact = 0.5_f64.powi(power) / f64::from(power + 1);
+            assert!((sum - exact).abs() < 1e-15, "{power}: {sum} for {exact}");
+        }
+    }
+
+    /// To first order in V a step is a quadrature of the kicks along the drift: of degree 8 here, and of the order without gradients.
+    #[test]
+    fn kicks_are_a_quadrature() {
+        check(&GradientFour::KICKS, 8);
+        check(&GradientSix::KICKS, 8);
+        check(&PlainFour::KICKS, 4);
+        check(&PlainSix::KICKS, 6);
+    }
+
+    /// ½ Σ_{i>j} b_i b_j (c_i − c_j) + Σ g_i = ½ ∫∫ (t − s) = 1/12: to second order in V, the first condition that gradients help with.
+    #[test]
+    fn gradients_make_up_for_the_order_of_kicks() {
+        for kicks in [&GradientFour::KICKS[..], &GradientSix::KICKS[..], &PlainFour::KICKS[..], &PlainSix::KICKS[..]] {
+            let all: std::vec::Vec<_> = nodes(kicks).collect();
+            let pairs = all.iter().enumerate().flat_map(|(i, one)| all[..i].iter().map(move |other| (one, other)));
+            let double: f64 = pairs.map(|(one, other)| one.1.weight * other.1.weight * (one.0 - other.0)).sum();
+            let sum = 0.5 * double + kicks.iter().map(|kick| kick.gradient).sum::<f64>();
+            assert!((sum - 1.0 / 12.0).abs() < 1e-14, "{sum}");
+        }
+    }
+
+    /// p² / 2 + q² / 2 by each, whose exact flow is a turn: the orders.
+    #[test]
+    fn an_oscillator_shows_the_orders() {
+        fn error<const K: usize>(kicks: &[Kick; K], steps: i32) -> f64 {
+            let h = 1.0 / f64::from(steps);
+            let drift = |part: f64, (q, p): (f64, f64)| Ok((q + part * h * p, p));
+            // {V, {V, T}} = q²
+            let kick = |_: f64, b: f64, g: f64, (q, p): (f64, f64)| (q, p - b * h * q + 2.0 * g * h.powi(3) * q);
+            let mut state = (1.0, 0.0);
+            let mut at_once = split(kicks, (0.0, h, steps as usize), state, drift, kick).expect("drifts do not fail");
+            for _ in 0..steps {
+                state = split(kicks, (0.0, h, 1), state, drift, kick).expect("drifts do not fail");
+            }
+            at_once = (at_once.0 - state.0, at_once.1 - state.1);
+            assert!(at_once.0.abs() + at_once.1.abs() < 1e-14, "drifts that are merged are the same");
+            (state.0 - 1.0_f64.cos()).hypot(state.1 + 1.0_f64.sin())
+        }
+        let slope = |coarse: f64, fine: f64| (coarse / fine).log2();
+        let orders = [
+            (slope(error(&GradientFour::KICKS, 2), error(&GradientFour::KICKS, 4)), 4.0),
+            (slope(error(&GradientSix::KICKS, 1), error(&GradientSix::KICKS, 2)), 6.0),
+            (slope(error(&PlainFour::KICKS, 4), error(&PlainFour::KICKS, 8)), 4.0),
+            (slope(error(&PlainSix::KICKS, 2), error(&PlainSix::KICKS, 4)), 6.0),
+        ];
+        for (slope, order) in orders {
+            assert!((slope - order).abs() < 0.3, "{slope} for {order}");
+        }
+    }
+}
