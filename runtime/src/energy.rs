@@ -19,7 +19,8 @@ pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu:
 
 /// ½ |μ|²/κ of the inertia κI, given 1/κ.
 pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVector<T, M>) -> T {
-    mu.dot(mu) * *inverse * T::from_ratio(1, 2)
+    // |μ|² may overflow where the energy does not
+    mu.dot(&(mu * *inverse)) * T::from_ratio(1, 2)
 }
 
 /// ½ μ·Σ⁻¹μ of an inertia that depends on the configuration; +∞ where Σ is singular, for there μ determines no velocity.

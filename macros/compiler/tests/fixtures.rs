@@ -174,3 +174,19 @@ fn no_constant_is_the_negative_of_another() {
     }
     assert!(seen > 300, "{seen} constants");
 }
+
+/// `k7` is the name of what has no short one.
+#[test]
+fn constants_are_named_by_their_formulas() {
+    let is_numbered = |name: &str| name.strip_prefix('k').is_some_and(|rest| rest.parse::<usize>().is_ok());
+    let mut numbered = Vec::new();
+    for file in fixtures("accept") {
+        let graph = Graph::new();
+        let program = compile(&graph, item(&file)).unwrap_or_else(|errors| panic!("{}: {errors}", file.display()));
+        let names = &program.constant_names;
+        let distinct: std::collections::BTreeSet<&String> = names.iter().collect();
+        assert_eq!(distinct.len(), names.len(), "{}: {names:?}", file.display());
+        numbered.extend(names.iter().filter(|name| is_numbered(name)).map(|name| (file.clone(), name.clone())));
+    }
+    assert!(numbered.len() <= 20, "{numbered:?}");
+}

@@ -263,7 +263,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         coadjoint: action::coadjoint(&model, &symbols),
         cotangent_lift: action::cotangent_lift(&model, &symbols),
         uniform_inertia: energy::uniform(&symbols, energy.kinetic, inertia)
-            .filter(|kappa| !equation::is_moving(&model, *kappa)),
+            .filter(|_| !equation::is_moving(&model, inertia)),
         inertia,
         model,
         symbols,

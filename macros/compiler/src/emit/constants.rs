@@ -44,7 +44,7 @@ impl Emitter<'_, '_> {
 
     /// Whether Σ is kept as the number κ of κI.
     pub(super) fn has_uniform_inertia(&self) -> bool {
-        self.program.form.keeps_matrices() && self.program.formulas.uniform_inertia.is_some()
+        self.program.formulas.uniform_inertia.is_some()
     }
 
     /// Σ as an expression, or κ of κI.
@@ -104,6 +104,11 @@ impl Emitter<'_, '_> {
 
     /// The part of `inertia` that belongs to a free rotation.
     pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
+        if self.has_uniform_inertia() {
+            let dimension = solve.components.len();
+            let matrix = self.paths.matrix(dimension, dimension);
+            return quote!(<#matrix>::from_diagonal_element(inertia));
+        }
         if self.dimension() == solve.components.len() {
             return quote!(inertia);
         }

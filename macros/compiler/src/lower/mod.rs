@@ -66,7 +66,7 @@ pub struct Program<'g> {
     pub stagger: Option<Kernel>,
     /// V(q).
     pub potential: Kernel,
-    /// Σ; where matrices are kept Σξ as a function of ξ, or κ of an inertia κI.
+    /// κ of an inertia κI, else Σ, or Σξ as a function of ξ where matrices are kept.
     pub inertia: Kernel,
     /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy: what its print in coordinates is made of, where it is written out.
     pub energy_coefficients: Option<Kernel>,
@@ -306,13 +306,11 @@ fn momentum_components<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
     factors.map(|(factor, matrix)| factor.group.components(*matrix)).collect()
 }
 
-/// Σ; where matrices are kept Σξ or κ.
+/// κ of an inertia κI, else Σ; where matrices are kept Σξ.
 fn inertia(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    if !scalars.keeps_matrices {
-        return plain(scalars, &[formulas.inertia]);
-    }
     match formulas.uniform_inertia {
         Some(kappa) => plain(scalars, &[kappa]),
+        None if !scalars.keeps_matrices => plain(scalars, &[formulas.inertia]),
         None => {
             let slopes = formulas.symbols.algebra.iter().map(|xi| formulas.energy.kinetic.gradient(*xi).expand());
             stack(scalars, &slopes.collect::<Vec<_>>())

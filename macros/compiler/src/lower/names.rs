@@ -1,62 +1,293 @@
-//! Names of shared values, made from what they are where that is short.
+//! Names of constants, made from what they are: `half_h_weight_center_2`, `two_per_h_of_mass_matrix_11_plus_22`.
+//!
+//! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
+//! field names the field once.
 
-use clebsch_symbolic::{Rational, Role, integer};
+use clebsch_symbolic::{Analytic, One, Rational, Role, Zero, integer, work};
 
-use super::{Hoisted, Node, Scalar, Scalars};
+use super::{Callee, Hoisted, Input, Node, Scalar, Scalars};
 
-const LONGEST_NAME: usize = 24;
+const LONGEST_NAME: usize = 48;
 
-/// A distinct identifier for each constant.
+/// A distinct identifier for each constant, `k7` where the name would be too long.
 pub fn constants(scalars: &Scalars, hoisted: &Hoisted) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for (index, (scalar, _)) in hoisted.kept().enumerate() {
-        let name = describe(scalars, scalar).filter(|name| name.len() <= LONGEST_NAME && !names.contains(name));
-        names.push(name.unwrap_or_else(|| format!("k{index}")));
+    for (index, (scalar, is_negative)) in hoisted.kept().enumerate() {
+        let name = Names { scalars }.value(scalar, is_negative).filter(|name| is_short(name));
+        let name = name.unwrap_or_else(|| format!("k{index}"));
+        names.push(distinct(name, &names));
     }
     names
 }
 
-/// A short description: `h`, `half_h_weight`, `weight_center_0`, `per_mass`.
-fn describe(scalars: &Scalars, scalar: Scalar) -> Option<String> {
-    match scalars.node(scalar) {
-        Node::Input(input) if input.role == Role::StepSize => Some("h".into()),
-        Node::Input(input) => {
-            let plain = input.name.chars().all(|c| c.is_ascii_alphanumeric() || "_[].".contains(c));
-            let base: String = input.name.replace(['[', '.'], "_").replace(']', "");
-            let index = match (input.is_vector, input.row, input.column) {
-                (true, row, _) => format!("{row}"),
-                (false, row, column) => format!("{row}{column}"),
+fn is_short(name: &str) -> bool {
+    name.len() <= LONGEST_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// A name that no other constant has, nor what stands beside them.
+fn distinct(name: String, names: &[String]) -> String {
+    let is_taken = |name: &String| {
+        let is_beside = ["orientation", "free_rotation"].iter().any(|other| name.starts_with(other));
+        is_beside || ["step_size", "inertia_inverse"].contains(&name.as_str()) || names.contains(name)
+    };
+    let suffixed = ('b'..='z').map(|letter| format!("{name}_{letter}"));
+    let numbered = (names.len()..).map(|number| format!("k{number}"));
+    // by construction: of so many names one is free
+    [name.clone()].into_iter().chain(suffixed).chain(numbered).find(|name| !is_taken(name)).unwrap_or(name)
+}
+
+/// Factors with their exponents.
+type Factors = Vec<(Scalar, u32)>;
+
+/// A factor of a sum with its sign and its other factors.
+type Term = (Rational, Factors);
+
+struct Names<'a> {
+    scalars: &'a Scalars,
+}
+
+impl Names<'_> {
+    /// The name of a value or of its negative; `None` where there is no short one.
+    fn value(&self, scalar: Scalar, is_negative: bool) -> Option<String> {
+        work::spend(1);
+        let sign = integer(if is_negative { -1 } else { 1 });
+        let name = match self.scalars.node(scalar) {
+            Node::Sum(constant, terms) => {
+                let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.factors(*term));
+                self.sum(constant * &sign, terms.iter().map(term).collect())
+            }
+            _ => self.product(&sign, &self.factors(scalar)),
+        };
+        name.filter(|name| is_short(name))
+    }
+
+    fn factors(&self, scalar: Scalar) -> Factors {
+        match self.scalars.node(scalar) {
+            Node::Product(factors) => factors.clone(),
+            _ => vec![(scalar, 1)],
+        }
+    }
+
+    /// The terms with the sums in them multiplied out, where that leaves fewer: (a + b + c)/h − b/h − c/h is a/h.
+    fn multiplied_out(&self, constant: &Rational, terms: &[Term]) -> Option<(Rational, Vec<Term>)> {
+        let mut constant = constant.clone();
+        let mut parts: Vec<Term> = Vec::new();
+        let mut add = |weight: Rational, factors: Factors| match parts.iter_mut().find(|(_, other)| *other == factors) {
+            _ if factors.is_empty() => constant += weight,
+            Some((sum, _)) => *sum += weight,
+            None => parts.push((weight, factors)),
+        };
+        for (weight, factors) in terms {
+            let is_sum =
+                |(base, power): &(Scalar, u32)| *power == 1 && matches!(self.scalars.node(*base), Node::Sum(..));
+            let position = factors.iter().position(is_sum);
+            let Some((position, Node::Sum(inner, terms))) = position.map(|at| (at, self.scalars.node(factors[at].0)))
+            else {
+                add(weight.clone(), factors.clone());
+                continue;
             };
-            let single = input.is_vector && input.row == 0 && !scalars.has_other_entries(input);
-            plain.then(|| if single { base.to_lowercase() } else { format!("{}_{index}", base.to_lowercase()) })
+            let mut others = factors.clone();
+            others.remove(position);
+            if !inner.is_zero() {
+                add(weight * inner, others.clone());
+            }
+            for (term, inner) in terms {
+                let mut factors = others.clone();
+                for (base, power) in self.factors(*term) {
+                    match factors.iter_mut().find(|(other, _)| *other == base) {
+                        Some((_, sum)) => *sum += power,
+                        None => factors.push((base, power)),
+                    }
+                }
+                factors.sort_unstable();
+                add(weight * inner, factors);
+            }
         }
-        Node::Sum(constant, terms) if *constant == integer(0) && terms.len() == 1 => {
-            Some(format!("{}_{}", numeral(&terms[0].1)?, describe(scalars, terms[0].0)?))
+        parts.retain(|(weight, _)| !weight.is_zero());
+        (parts.len() < terms.len()).then_some((constant, parts))
+    }
+
+    /// What all terms have in common, `of` the rest of them.
+    fn sum(&self, constant: Rational, terms: Vec<Term>) -> Option<String> {
+        let (constant, terms) = self.multiplied_out(&constant, &terms).unwrap_or((constant, terms));
+        let (Some((weight, factors)), true) = (terms.first(), constant.is_zero()) else {
+            return self.joined(constant, &terms);
+        };
+        if terms.len() == 1 {
+            return self.product(weight, factors);
         }
-        Node::Product(factors) if factors.len() <= 3 => {
-            let parts: Option<Vec<String>> = factors
-                .iter()
-                .map(|&(factor, exponent)| {
-                    let name = describe(scalars, factor)?;
-                    Some(if exponent == 1 { name } else { format!("{name}_{exponent}") })
-                })
-                .collect();
-            Some(parts?.join("_"))
+        let size = weight.abs();
+        let size = if terms.iter().all(|(weight, _)| weight.abs() == size) { size } else { integer(1) };
+        let in_all = |base: Scalar| {
+            let power =
+                |factors: &Factors| factors.iter().find(|(other, _)| *other == base).map_or(0, |(_, power)| *power);
+            terms.iter().map(|(_, factors)| power(factors)).min().unwrap_or(0)
+        };
+        let common = factors.iter().map(|&(base, _)| (base, in_all(base))).filter(|(_, power)| *power > 0);
+        let common: Factors = common.collect();
+        let rest = |(weight, factors): &Term| {
+            let left = factors.iter().map(|&(base, power)| (base, power - in_all(base)));
+            (weight / &size, left.filter(|(_, power)| *power > 0).collect())
+        };
+        let rest = self.joined(constant, &terms.iter().map(rest).collect::<Vec<_>>())?;
+        if size.is_one() && common.is_empty() {
+            Some(rest)
+        } else {
+            Some(format!("{}_of_{rest}", self.product(&size, &common)?))
         }
-        Node::Reciprocal(x) => Some(format!("per_{}", describe(scalars, *x)?)),
-        _ => None,
+    }
+
+    /// `a_plus_b_minus_c`, those that are added first.
+    fn joined(&self, constant: Rational, terms: &[Term]) -> Option<String> {
+        let mut terms = terms.to_vec();
+        if !constant.is_zero() {
+            terms.insert(0, (constant, Vec::new()));
+        }
+        terms.sort_by_key(|(weight, _)| weight.is_negative());
+        let (mut name, mut field) = (String::new(), None);
+        for (weight, factors) in &terms {
+            name += match (name.is_empty(), weight.is_negative()) {
+                (true, false) => "",
+                (true, true) => "minus_",
+                (false, false) => "_plus_",
+                (false, true) => "_minus_",
+            };
+            let entry = match factors.as_slice() {
+                [(only, 1)] if weight.abs().is_one() => self.entry(*only),
+                _ => None,
+            };
+            name += &match &entry {
+                Some((base, index)) if field.as_ref() == Some(base) => index.clone(),
+                _ => self.product(&weight.abs(), factors)?,
+            };
+            field = entry.map(|(base, _)| base);
+            if name.len() > LONGEST_NAME {
+                return None;
+            }
+        }
+        Some(name)
+    }
+
+    /// The field and the index of an entry of a field that has several.
+    fn entry(&self, scalar: Scalar) -> Option<(String, String)> {
+        match self.scalars.node(scalar) {
+            Node::Input(input) if input.role != Role::StepSize && !self.is_single(input) => {
+                Some((field(input), index(input)))
+            }
+            _ => None,
+        }
+    }
+
+    fn product(&self, weight: &Rational, factors: &Factors) -> Option<String> {
+        let mut words = Vec::new();
+        if weight.is_negative() {
+            words.push("minus".to_string());
+        }
+        if !weight.abs().is_one() || factors.is_empty() {
+            words.push(numeral(&weight.abs())?);
+        }
+        let (mut sums, mut below) = (Vec::new(), Vec::new());
+        for &(base, power) in factors {
+            match self.scalars.node(base) {
+                Node::Reciprocal(x) => {
+                    let inner = self.factors(*x);
+                    below.extend(inner.into_iter().map(|(base, inner)| (base, inner * power)));
+                }
+                Node::Sum(..) if power == 1 => sums.push(self.base(base)?),
+                _ => words.push(self.raised(base, power)?),
+            }
+        }
+        if !below.is_empty() {
+            let mut names = Vec::new();
+            for (base, power) in below {
+                names.push(self.raised(base, power)?);
+            }
+            words.push(format!("per_{}", names.join("_")));
+        }
+        if !sums.is_empty() {
+            let sums = sums.join("_times_");
+            words.push(if words.is_empty() { sums } else { format!("of_{sums}") });
+        }
+        Some(words.join("_"))
+    }
+
+    fn raised(&self, base: Scalar, power: u32) -> Option<String> {
+        let name = self.base(base)?;
+        Some(match power {
+            1 => name,
+            2 => format!("{name}_squared"),
+            3 => format!("{name}_cubed"),
+            _ => format!("{name}_to_{power}"),
+        })
+    }
+
+    /// The name of what is no product.
+    fn base(&self, scalar: Scalar) -> Option<String> {
+        match self.scalars.node(scalar) {
+            Node::Input(input) if input.role == Role::StepSize => Some("h".into()),
+            Node::Input(input) if self.is_single(input) => Some(field(input)),
+            Node::Input(input) => Some(format!("{}_{}", field(input), index(input))),
+            Node::Pi => Some("pi".into()),
+            Node::Root(x, (1, 2)) => Some(format!("root_of_{}", self.value(*x, false)?)),
+            Node::Root(x, (numerator, denominator)) => {
+                Some(format!("{}_to_{numerator}_over_{denominator}", self.value(*x, false)?))
+            }
+            Node::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.value(*x, false)?)),
+            Node::Output(call, output) => {
+                let name = match &self.scalars.call_of(*call).callee {
+                    Callee::Analytic(Analytic::Exponential) => "exponential",
+                    Callee::Analytic(Analytic::Phi) => "phi",
+                    Callee::Analytic(Analytic::Logarithm) => "logarithm",
+                    Callee::Inverse => "inverse",
+                    Callee::Value(_) | Callee::Gradient(_) => return None,
+                };
+                Some(format!("{name}_{}{}", output.row, output.column))
+            }
+            Node::Sum(..) | Node::Product(_) | Node::Reciprocal(_) => self.value(scalar, false),
+        }
+    }
+
+    /// Whether an input has no other entries that are read.
+    fn is_single(&self, input: &Input) -> bool {
+        input.is_vector && input.row == 0 && !self.scalars.has_other_entries(input)
     }
 }
 
-fn numeral(coefficient: &Rational) -> Option<&'static str> {
-    let table = [
-        (1, 2, "half"),
-        (2, 1, "two"),
-        (-1, 1, "minus"),
-        (1, 4, "quarter"),
-        (4, 1, "four"),
-        (-1, 2, "minus_half"),
-        (-2, 1, "minus_two"),
+/// The name of the field behind an input.
+fn field(input: &Input) -> String {
+    let name = input.name.replace(['[', '.'], "_").replace(']', "").to_lowercase();
+    if name.starts_with(|first: char| first.is_ascii_digit()) { format!("field_{name}") } else { name }
+}
+
+fn index(input: &Input) -> String {
+    if input.is_vector { input.row.to_string() } else { format!("{}{}", input.row, input.column) }
+}
+
+/// `half`, `two`, `three_quarters`.
+fn numeral(value: &Rational) -> Option<String> {
+    const WHOLE: [&str; 17] = [
+        "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+        "thirteen", "fourteen", "fifteen", "sixteen",
     ];
-    table.iter().find(|(n, d, _)| *coefficient == clebsch_symbolic::rational(*n, *d)).map(|(_, _, name)| *name)
+    let part = [
+        (2, "half"),
+        (3, "third"),
+        (4, "quarter"),
+        (5, "fifth"),
+        (6, "sixth"),
+        (8, "eighth"),
+        (12, "twelfth"),
+        (16, "sixteenth"),
+        (32, "thirty_second"),
+        (64, "sixty_fourth"),
+    ];
+    let (numerator, denominator) = value.parts()?;
+    let whole = || WHOLE.get(usize::try_from(numerator).ok()?).map(|word| (*word).to_string());
+    let part = || part.iter().find(|(number, _)| *number == denominator).map(|(_, word)| *word);
+    match (numerator, denominator) {
+        (_, 1) => whole(),
+        (1, _) => part().map(str::to_string),
+        (_, 2) => Some(format!("{}_halves", whole()?)),
+        _ => Some(format!("{}_{}s", whole()?, part()?)),
+    }
 }

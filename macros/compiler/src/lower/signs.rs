@@ -5,7 +5,6 @@
 
 use clebsch_symbolic::{Interner, One, Rational, Shape, Zero, integer, work};
 
-use super::code::is_in_brackets;
 use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 
 /// A code that begins with no sign, and whether its negative is meant.
@@ -112,7 +111,7 @@ impl Signs {
                 (is_negative, Code::Local(place))
             }
             Code::Output(index, callee, output) => (false, Code::Output(self.places[index].1, callee, output)),
-            Code::Sum(constant, terms) => self.sum(constant, terms),
+            Code::Sum(constant, terms) => self.sum(constant, terms, is_head),
             Code::Product(factors) => self.product(factors, is_head),
             Code::Reciprocal(x) => {
                 let (is_negative, x) = self.split(*x);
@@ -131,7 +130,9 @@ impl Signs {
         }
     }
 
-    fn sum(&mut self, constant: Rational, terms: Vec<(Rational, Code)>) -> Signed {
+    fn sum(&mut self, constant: Rational, terms: Vec<(Rational, Code)>, is_head: bool) -> Signed {
+        // several terms stand in brackets
+        let is_head = is_head || terms.len() > 1 || !constant.is_zero();
         let mut parts = Vec::with_capacity(terms.len() + 1);
         if !constant.is_zero() {
             let sign = integer(if constant.is_negative() { -1 } else { 1 });
@@ -139,17 +140,18 @@ impl Signs {
         }
         let (subtracted, added): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(weight, _)| weight.is_negative());
         for (weight, term) in added.into_iter().chain(subtracted) {
-            parts.push(self.weighted(weight, term));
+            parts.push(self.weighted(weight, term, is_head));
         }
         in_order(parts)
     }
 
     /// A term with its sign in the weight.
-    fn weighted(&mut self, weight: Rational, term: Code) -> (Rational, Code) {
+    fn weighted(&mut self, weight: Rational, term: Code, is_head: bool) -> (Rational, Code) {
+        let is_head = is_head && is_exact(&weight);
         let is_bracketed = is_bracketed(&term);
-        let (is_negative, term) = self.split_at(term, is_exact(&weight));
+        let (is_negative, term) = self.split_at(term, is_head);
         // a number times −(b c) is not the number times b, times c
-        let term = if is_bracketed && is_product(&term) && !is_exact(&weight) { bracketed(term) } else { term };
+        let term = if is_bracketed && is_product(&term) && !is_head { bracketed(term) } else { term };
         (if is_negative { -weight } else { weight }, term)
     }
 
@@ -175,7 +177,8 @@ impl Signs {
             MatrixOperation::Sum(weights) => {
                 let mut parts: Vec<_> = weights.into_iter().zip(operands).collect();
                 parts.sort_by_key(|(weight, _)| weight.is_negative());
-                let mut parts: Vec<_> = parts.into_iter().map(|(weight, part)| self.weighted(weight, part)).collect();
+                let mut parts: Vec<_> =
+                    parts.into_iter().map(|(weight, part)| self.weighted(weight, part, true)).collect();
                 let is_negative = parts.iter().all(|(weight, _)| weight.is_negative());
                 if is_negative {
                     parts.iter_mut().for_each(flip);
@@ -252,10 +255,12 @@ fn bracketed(code: Code) -> Code {
     Code::Sum(integer(0), vec![(integer(1), code)])
 }
 
-/// Whether it is a sum that is written in brackets beside a multiplication.
+/// Whether it is a sum that stands in brackets beside a multiplication. One term that is added stands without before signs are moved.
 fn is_bracketed(code: &Code) -> bool {
     match code {
-        Code::Sum(constant, terms) => is_in_brackets(constant, terms),
+        Code::Sum(constant, terms) => {
+            !constant.is_zero() || terms.len() > 1 || terms.iter().any(|(weight, _)| weight.is_negative())
+        }
         _ => false,
     }
 }
@@ -392,7 +397,11 @@ mod tests {
                     let terms = (0..count).map(|_| (self.weight(), self.code(depth - 1, locals))).collect();
                     Code::Sum(constant, terms)
                 }
-                5 => Code::Sum(integer(0), vec![(-self.weight().abs(), self.code(depth - 1, locals))]),
+                5 => match self.code(depth - 1, locals) {
+                    // a quotient is no sum of one term
+                    Code::Reciprocal(x) => Code::Reciprocal(x),
+                    term => Code::Sum(integer(0), vec![(self.weight(), term)]),
+                },
                 6 => Code::Product((0..2 + self.below(2)).map(|_| self.code(depth - 1, locals)).collect()),
                 _ => Code::Reciprocal(Box::new(self.code(depth - 1, locals))),
             }
@@ -447,6 +456,11 @@ mod tests {
             total.unwrap_or(0.0)
         }
 
+        fn is_in_brackets(&self, constant: &Rational, terms: &[(Rational, Code)]) -> bool {
+            let is_plain = constant.is_zero() && terms.len() == 1 && terms[0].0 == integer(1);
+            is_in_brackets(constant, terms) && (self.in_order || !is_plain)
+        }
+
         /// What stands before a factor times the factor, which is written without brackets where it is a product.
         fn times(&self, before: Option<f64>, factor: &Code) -> f64 {
             match factor {
@@ -456,7 +470,7 @@ mod tests {
                     let above = above.into_iter().fold(before, |product, factor| Some(self.times(product, factor)));
                     below.into_iter().fold(above.unwrap_or(1.0), |quotient, divisor| quotient / self.value(divisor))
                 }
-                Code::Sum(constant, terms) if !is_in_brackets(constant, terms) => {
+                Code::Sum(constant, terms) if !self.is_in_brackets(constant, terms) => {
                     let weight = number(&terms[0].0);
                     self.times(Some(before.map_or(weight, |before| before * weight)), &terms[0].1)
                 }
