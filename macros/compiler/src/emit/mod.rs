@@ -79,6 +79,8 @@ fn pretty(items: &TokenStream) -> String {
 struct Emitter<'a, 'g> {
     program: &'a Program<'g>,
     model: &'a Model<'g>,
+    /// Paths of the runtime, as they are spelled where no name of the expansion is in scope.
+    spelled: Paths,
     paths: Paths,
     generics: Generics,
     names: Names,
@@ -135,16 +137,18 @@ impl Generics {
 impl<'a, 'g> Emitter<'a, 'g> {
     fn new(program: &'a Program<'g>) -> Emitter<'a, 'g> {
         let model = &program.formulas.model;
-        let paths = Paths::new(&model.item);
-        let generics = Generics::of(&model.item, &paths);
-        Emitter { program, model, paths, generics, names: Names::new(model) }
+        let (spelled, names) = (Paths::new(&model.item), Names::new(model));
+        let paths = spelled.named(&model.item, &names);
+        let generics = Generics::of(&model.item, &spelled);
+        Emitter { program, model, spelled, paths, generics, names }
     }
 
     fn items(&self) -> TokenStream {
         let groups = self.groups();
         if self.model.is_steered() {
             let (controlled, derivation) = (self.controlled(), self.derivation_of_control());
-            return quote!(#groups #controlled #derivation);
+            let aliases = self.aliases();
+            return quote!(#groups #aliases #controlled #derivation);
         }
         let power = self.power();
         let constants = self.constants_type();
@@ -153,7 +157,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let parts = self.parts();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
-        quote!(#groups #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity)
+        let aliases = self.aliases();
+        quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -172,7 +177,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
         let item = self.model.power.as_ref().map_or(&self.model.item, |power| &power.item);
-        let Generics { parameters, arguments, predicates } = Generics::of(item, &self.paths);
+        let Generics { parameters, arguments, predicates } = Generics::of(item, &self.spelled);
         let (ident, name) = (&item.ident, format_ident!("{name}"));
         let documentation = docs::lines(&[documentation.to_string()]);
         quote! {
@@ -243,22 +248,51 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.model.factors.iter().map(|factor| factor.group.dimension()).sum()
     }
 
-    fn configuration_type(&self) -> TokenStream {
-        nested_type(&self.model.configuration, &|leaf| {
+    /// Short names for what signatures are made of.
+    fn aliases(&self) -> TokenStream {
+        let Names { runtime, scalar, configuration, element, momentum, .. } = &self.names;
+        let (module, spelled) = (&self.spelled.private, &self.spelled.scalar);
+        let is_parameter = matches!(self.model.item.scalar, crate::model::ScalarType::Parameter(_));
+        let scalar = (!is_parameter).then(|| quote!(type #scalar = #spelled;));
+        let generics = is_parameter.then(|| quote!(<#spelled>));
+        let [q, f, mu] = self.types(&self.paths);
+        quote! {
+            use #module as #runtime;
+            #scalar
+            type #configuration #generics = #q;
+            type #element #generics = #f;
+            type #momentum #generics = #mu;
+        }
+    }
+
+    /// The types of q, F and μ.
+    fn types(&self, paths: &Paths) -> [TokenStream; 3] {
+        let configuration = nested_type(&self.model.configuration, &|leaf| {
             let configuration = &self.model.configurations[leaf];
-            self.paths.leaf(configuration.shape, configuration.is_quaternion)
-        })
+            paths.leaf(configuration.shape, configuration.is_quaternion)
+        });
+        let element = nested_type(&self.model.element, &|factor| {
+            let group = self.model.factors[factor].group;
+            paths.leaf(group.element_shape(), group == Group::UnitQuaternions)
+        });
+        [configuration, element, paths.matrix(self.dimension(), 1)]
+    }
+
+    fn configuration_type(&self) -> TokenStream {
+        self.alias(&self.names.configuration)
     }
 
     fn element_type(&self) -> TokenStream {
-        nested_type(&self.model.element, &|factor| {
-            let group = self.model.factors[factor].group;
-            self.paths.leaf(group.element_shape(), group == Group::UnitQuaternions)
-        })
+        self.alias(&self.names.element)
     }
 
     fn momentum_type(&self) -> TokenStream {
-        self.paths.matrix(self.dimension(), 1)
+        self.alias(&self.names.momentum)
+    }
+
+    fn alias(&self, name: &Ident) -> TokenStream {
+        let (_, arguments) = self.constants_generics();
+        quote!(#name #arguments)
     }
 
     /// Whether the end kick of a step serves as the start kick of the next.

@@ -17,6 +17,16 @@ pub struct Names {
     pub velocity: Ident,
     /// The lifetime of its references.
     pub lifetime: Lifetime,
+    /// The runtime's module for generated code.
+    pub runtime: Ident,
+    /// The scalar, where it is no parameter.
+    pub scalar: Ident,
+    /// The type of configurations q.
+    pub configuration: Ident,
+    /// The type of group elements F.
+    pub element: Ident,
+    /// The type of momenta μ.
+    pub momentum: Ident,
 }
 
 impl Names {
@@ -30,6 +40,10 @@ impl Names {
             collect(item.generics.where_clause.to_token_stream(), &mut taken);
         }
         model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
+        if let Some(opaque) = &model.opaque {
+            collect(opaque.value.to_token_stream(), &mut taken);
+            collect(opaque.gradient.to_token_stream(), &mut taken);
+        }
         if let ScalarType::Parameter(ident) = &model.item.scalar {
             taken.insert(ident.to_string());
         }
@@ -38,6 +52,11 @@ impl Names {
             constants: free("Constants", &taken),
             velocity: free("Velocity", &taken),
             lifetime: Lifetime::new(&lifetime, proc_macro2::Span::call_site()),
+            runtime: free("runtime", &taken),
+            scalar: free("T", &taken),
+            configuration: free("Q", &taken),
+            element: free("F", &taken),
+            momentum: free("Mu", &taken),
             taken,
         }
     }

@@ -4,6 +4,7 @@ use clebsch_symbolic::Shape;
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::names::Names;
 use crate::model::{Item, ScalarType};
 
 /// The paths of the runtime for one expansion.
@@ -26,6 +27,16 @@ impl Paths {
             ScalarType::Parameter(ident) => quote!(#ident),
         };
         Paths { krate: quote!(#krate), private: quote!(#krate::__private), scalar }
+    }
+
+    /// The same in an expansion that gives the module and the scalar names of its own.
+    pub fn named(&self, item: &Item, names: &Names) -> Paths {
+        let (runtime, scalar) = (&names.runtime, &names.scalar);
+        let scalar = match &item.scalar {
+            ScalarType::Parameter(_) => self.scalar.clone(),
+            ScalarType::F32 | ScalarType::F64 => quote!(#scalar),
+        };
+        Paths { krate: self.krate.clone(), private: quote!(#runtime), scalar }
     }
 
     /// The type of an array of this shape, or of a quaternion.

@@ -17,7 +17,8 @@ impl Emitter<'_, '_> {
         let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
-        let (configuration, element, momentum) = (self.configuration_type(), self.element_type(), self.momentum_type());
+        // what a person reads in the documentation is spelled
+        let [configuration, element, momentum] = self.types(&self.spelled);
         let (input, private) = (self.input_type(), &self.paths.private);
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
