@@ -17,6 +17,7 @@ mod powers;
 mod public;
 mod rotations;
 mod scalars;
+mod schemes;
 mod steps;
 mod table;
 mod whole;

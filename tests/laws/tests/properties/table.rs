@@ -6,9 +6,19 @@ pub type Property = (&'static str, &'static [&'static str]);
 /// The properties of each file.
 #[rustfmt::skip]
 pub const PROPERTIES: &[(&str, &[Property])] = &[
-    ("runtime/src/composition.rs", &[
-        ("impulses_scale_with_their_steps",        &["Impulse::scaled"]),
+    ("runtime/src/scheme/composed.rs", &[
         ("slopes_are_those_along_the_whole_step",  &["Stage::slopes"]),
+    ]),
+    ("tests/laws/tests/properties/schemes.rs", &[
+        ("steps_are_their_parts",          &["Parts::advance", "Parts::element", "Parts::increment", "Parts::lift", "Parts::motion", "Parts::on_space", "Substep::solve", "Substep::start_kick", "Substep::end_kick", "Substep::update", "Substep::start_gradient", "Substep::end_gradient", "Stepping::inverse_legendre", "Stepping::step_constants"]),
+        ("schemes_step_systems",           &["Scheme::constants", "Scheme::whole", "Scheme::held", "Scheme::momentum", "Scheme::left", "Scheme::left_after", "Scheme::scaled", "Scheme::step", "Scheme::step_into", "Scheme::steps", "Scheme::step_symmetric", "Scheme::inverse_legendre", "Stepping::held", "Stepping::impulse", "Stepping::momentum_held", "Stepping::step", "Stepping::step_symmetric"]),
+        ("forces_push_at_both_ends",       &["Substep::start_force", "Substep::moving_force", "Substep::end_force"]),
+        ("coupled_costs_have_slopes",      &["Substep::rest", "Substep::coupled_gradient"]),
+        ("free_motions_are_followed",      &["FreeMotion::kept", "FreeMotion::follow"]),
+        ("kicks_of_splittings_are_momenta", &["SplitKicks::step_size", "SplitKicks::kick", "SplitKicks::kick_gradient"]),
+        ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
+        ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
+        ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes"]),
     ]),
     ("runtime/src/double_double/tests.rs", &[
         ("pairs_are_unevaluated_sums", &["DoubleDouble::new", "DoubleDouble::parts"]),
@@ -46,8 +56,8 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("affine_equations_take_one_elimination",  &["solve_linear_equation", "LinearEquation::system", "LinearEquation::correct", "LinearEquation::orientation"]),
         ("transforms_obey_fenchel_and_young",      &["legendre_fenchel", "VelocityEquation::linearize"]),
         ("collocation_follows_linear_equations",   &["collocate"]),
-        ("compositions_have_their_orders",         &["compose", "compose_symmetric"]),
-        ("compositions_are_their_stages",          &["Composed::new", "Composed::stage"]),
+        ("compositions_have_their_orders",         &["compose"]),
+        ("compositions_are_their_stages",          &["Stages::new", "Stages::stage"]),
         ("splittings_have_their_orders",           &["split"]),
     ]),
     ("tests/laws/tests/properties/formulas.rs", &[
@@ -57,7 +67,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ]),
         ("rotations_act_on_the_sphere_from_the_left", &["Clebsch::isotropy_defect", "Clebsch::project_momentum", "Clebsch::orbit_defect", "Stepper::project"]),
         ("motions_act_from_the_right",       &["Clebsch::act", "Clebsch::coadjoint", "Clebsch::momentum_map"]),
-        ("legendre_transforms_are_inverse",  &["Clebsch::legendre", "Clebsch::legendre_next", "Clebsch::inverse_legendre", "Stepper::legendre", "Stepper::legendre_next", "Stepper::inverse_legendre"]),
+        ("legendre_transforms_are_inverse",  &["Clebsch::legendre", "Clebsch::legendre_next", "Stepper::legendre", "Stepper::legendre_next", "Stepper::inverse_legendre"]),
         ("energies_are_kinetic_and_potential", &["Clebsch::kinetic_energy", "Clebsch::potential", "Stepper::energy", "Stepper::kinetic_energy", "Stepper::potential"]),
         ("potentials_depend_on_time",        &["Stepper::potential_at", "Stepper::legendre_at", "Stepper::legendre_next_at", "Stepper::inverse_legendre_at"]),
     ]),
@@ -140,12 +150,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("tests/laws/tests/properties/steps.rs", &[
         ("ways_of_stepping_agree", &[
-            "Clebsch::impulse", "Clebsch::impulse_after", "Clebsch::step", "Clebsch::steps", "Clebsch::stepper", "State::configuration", "State::momentum", "State::into_parts", "Stepper::state", "Stepper::step",
+            "Stepping::impulse", "Scheme::left_after", "Stepping::step", "Scheme::steps", "Clebsch::stepper", "State::configuration", "State::momentum", "State::into_parts", "Stepper::state", "Stepper::step",
             "Stepper::advance", "Stepper::trajectory",
         ]),
         ("merged_steps_agree",                             &["Stepper::advance"]),
         ("steps_are_legendre_transforms_and_symmetric",    &["Stepper::step", "Stepper::conserved", "Conserves::conserved"]),
-        ("representations_agree",                          &["Stepper::cotangent_state", "Stepper::step_symmetric", "Clebsch::step_symmetric", "CotangentState::configuration", "CotangentState::covector", "CotangentState::into_parts"]),
+        ("representations_agree",                          &["Stepper::cotangent_state", "Stepper::step_symmetric", "Stepping::step_symmetric", "CotangentState::configuration", "CotangentState::covector", "CotangentState::into_parts"]),
         ("lanes_are_bodies_alone",                         &["Stepper::step_each", "Stepper::failure", "State::lane"]),
         ("states_know_their_time",                         &["Stepper::state_at", "Stepper::cotangent_state_at", "Stepper::staggered_state_at", "State::time", "CotangentState::time"]),
         ("staggered_steps_are_read_to_second_order",       &["Stepper::staggered_state", "Stepper::synchronized", "Stepper::synchronized_energy", "Clebsch::stagger"]),
@@ -162,8 +172,8 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("maps_of_all_kinds_of_numbers_are_inverted", &["Jacobian::solve"]),
         ("skew_matrices_have_components",    &["skew", "skew_components", "skew_times", "skew_outer"]),
         ("inertias_are_inverted",            &["InertiaInverse::new", "InertiaInverse::matrix", "InertiaInverse::times", "InertiaInverse::energy", "invert_uniform", "kinetic_energy_uniform", "orientation_of_inertia", "orientation_of_uniform"]),
-        ("integrators_step_in_place",           &["Clebsch::step_into", "in_place", "Stepper::integrator", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),
-        ("states_hold_what_they_step_in",        &["Clebsch::held", "Clebsch::momentum_held"]),
+        ("integrators_step_in_place",           &["Scheme::step_into", "Stepper::integrator", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),
+        ("states_hold_what_they_step_in",        &["Stepping::held", "Stepping::momentum_held"]),
         ("covectors_are_turned_in_their_plane", &["turned_in_plane"]),
         ("points_follow_great_circles",      &["tangent", "momentum_of_tangent", "push", "turn_freely", "turn_great_circle"]),
         ("units_of_projections_do_not_matter", &["projection", "distance_of_projection"]),
