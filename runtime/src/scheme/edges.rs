@@ -105,7 +105,7 @@ asked! {
 /// The derivatives of an edge with respect to what is fixed during a step.
 pub struct ByQuantities<'a, S: Clebsch + ?Sized>(pub Ends<'a, S>);
 
-impl<S: Varied<M> + ?Sized, const M: usize> Visit<S, M> for ByQuantities<'_, S> {
+impl<S: Varied<M>, const M: usize> Visit<S, M> for ByQuantities<'_, S> {
     type Output = S::Slopes;
 
     #[inline(always)]
