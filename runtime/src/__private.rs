@@ -39,7 +39,7 @@ pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrappe
 pub use crate::scheme::{
     AdjointPair, AlongFreeMotion, Apart, Collocated, Composed, FreeGreatCircle, FreeSites, GradientFour, GradientSix,
     GreatCircle, KickDriftKick, Kicks, OfOrderEight, OfOrderFour, OfOrderSix, PlainFour, PlainSix, Scheme, Shared,
-    SitesOfFirstOrder, SitesOfSecondOrder, Sizes, Split, Stages, Stepping, compose, split,
+    SitesOfFirstOrder, SitesOfSecondOrder, Sizes, Split, Stages, Stepping, Unstepped, compose, split,
 };
 pub use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{

@@ -22,6 +22,7 @@ mod kick_drift_kick;
 mod sites;
 mod split;
 mod substep;
+mod unstepped;
 
 use crate::{Clebsch, Clock, Error, Space, Time};
 use core::fmt::Debug;
@@ -35,6 +36,7 @@ pub use kick_drift_kick::KickDriftKick;
 pub use sites::{FreeSites, SitesOfFirstOrder, SitesOfSecondOrder};
 pub use split::{GradientFour, GradientSix, Kicks, PlainFour, PlainSix, Split, split};
 pub use substep::{Apart, Shared};
+pub use unstepped::Unstepped;
 
 /// What a state of S holds of its momentum.
 pub type Held<S> = <<S as Clebsch>::Scheme as Scheme<S>>::Held;

@@ -77,11 +77,10 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             type Element = #element;
             type Momentum = #momentum;
             type MomentumMatrix = #element;
-            type Held = #momentum;
-            type Impulse = ();
             type Input = #input;
             type Time = #time;
             type Constants = ();
+            type Scheme = #krate::__private::Unstepped;
             const NAME: &'static ::core::primitive::str = #name;
             const ORDER: ::core::primitive::u32 = 0;
             const DERIVATION: &'static ::core::primitive::str = "";
@@ -95,8 +94,6 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
     let configuration = quote!(Self::Configuration);
     let result = |value: TokenStream| quote!(::core::result::Result<#value, #krate::Error>);
     let constants = result(quote!(()));
-    let (element, step) = (result(quote!(Self::Element)), result(quote!((#configuration, Self::Momentum, ()))));
-    let symmetric = result(quote!((#configuration, #configuration)));
     let signatures = [
         quote!(constants(&self, h: #scalar) -> #constants),
         quote!(act(&self, f: &Self::Element, q: &#configuration) -> #configuration),
@@ -104,12 +101,6 @@ fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
         quote!(coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum),
         quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
         quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &Self::Element) -> Self::Momentum),
-        quote!(inverse_legendre(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #element),
-        quote!(held(q: &#configuration, mu: &Self::Momentum) -> Self::Held),
-        quote!(momentum_held(q: &#configuration, held: &Self::Held) -> Self::Momentum),
-        quote!(impulse(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum)),
-        quote!(step(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum, impulse: &(), u: &Self::Input) -> #step),
-        quote!(step_symmetric(&self, constants: &(), t: #scalar, q: &#configuration, p: &#configuration) -> #symmetric),
         quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar),
         quote!(kinetic_energy(&self, constants: &(), t: #scalar, q: &#configuration, mu: &Self::Momentum) -> #scalar),
         quote!(momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix),

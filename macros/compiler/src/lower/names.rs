@@ -21,7 +21,8 @@ pub fn constants(scalars: &Scalars, hoisted: &Hoisted) -> Vec<String> {
 }
 
 fn is_short(name: &str) -> bool {
-    name.len() <= LONGEST_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    // what cancels has no name: a − a is nothing
+    !name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
 /// A name that no other constant has, nor what stands beside them.
