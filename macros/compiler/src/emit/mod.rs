@@ -255,11 +255,13 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let is_parameter = matches!(self.model.item.scalar, crate::model::ScalarType::Parameter(_));
         let scalar = (!is_parameter).then(|| quote!(type #scalar = #spelled;));
         let generics = is_parameter.then(|| quote!(<#spelled>));
+        // momenta that are stepped alone have no configuration
+        let of_configuration = generics.clone().filter(|_| !self.model.configurations.is_empty());
         let [q, f, mu] = self.types(&self.paths);
         quote! {
             use #module as #runtime;
             #scalar
-            type #configuration #generics = #q;
+            type #configuration #of_configuration = #q;
             type #element #generics = #f;
             type #momentum #generics = #mu;
         }
@@ -279,7 +281,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
     }
 
     fn configuration_type(&self) -> TokenStream {
-        self.alias(&self.names.configuration)
+        let name = &self.names.configuration;
+        if self.model.configurations.is_empty() { quote!(#name) } else { self.alias(name) }
     }
 
     fn element_type(&self) -> TokenStream {
