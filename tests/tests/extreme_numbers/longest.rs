@@ -2,6 +2,7 @@
 
 use crate::checks::{Scene, momentum, step};
 use crate::slots::Slots;
+use clebsch::__private::Scheme;
 use clebsch::{Error, Scalar};
 use clebsch_tests::oracle::random::Random;
 
@@ -27,7 +28,11 @@ fn longest_steps_of<S: Scene>(h: S::Scalar) -> [usize; 2] {
         let Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step } = error else { continue };
         let Some(longest) = solvable_step else {
             // none is tried where each would take constants of kilobytes, but for free motions, where it is known
-            assert!(size_of::<S::Constants>() > 2048 && !S::IS_FREE_MOTION, "{}: no step for {mu:?}: {error}", S::NAME);
+            assert!(
+                size_of::<<S::Scheme as Scheme<S>>::Constants>() > 2048 && !S::IS_FREE_MOTION,
+                "{}: no step for {mu:?}: {error}",
+                S::NAME
+            );
             continue;
         };
         let step_of = |h: f64| {

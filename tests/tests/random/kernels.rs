@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use clebsch_compiler::lower::{Callee, Code, Kernel, Output};
+use clebsch_compiler::lower::{Callee, Code, Kernel, Output, Program};
 use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
 use nalgebra::SMatrix;
 
@@ -26,6 +26,16 @@ impl Values {
     /// A formula with these numbers.
     pub fn evaluate(&self, formula: Expr<'_>) -> Matrix<f64> {
         formula.evaluate(&mut |symbol| self.0[&symbol.as_symbol().expect("a symbol").name].clone())
+    }
+
+    /// Σ; of κI the kernel gives κ.
+    pub fn inertia(&self, program: &Program<'_>) -> Matrix<f64> {
+        let shape = program.formulas.inertia.shape();
+        let entries = self.run(&program.inertia, &[], &[]).remove(0);
+        match entries[..] {
+            [kappa] => Matrix::from_fn(shape, |(i, j)| if i == j { kappa } else { 0.0 }),
+            _ => Matrix::new(shape, entries),
+        }
     }
 
     /// The outputs of a kernel, one list of entries each.

@@ -5,7 +5,6 @@ use std::cell::RefCell;
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
 use clebsch_compiler::derive::Solution;
 use clebsch_compiler::lower::{Kernel, Program, Solve, StepKernels};
-use clebsch_symbolic::Matrix;
 use nalgebra::{SMatrix, SVector};
 
 use crate::kernels::Values;
@@ -47,9 +46,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
             }
         }
         if !program.formulas.inertia_moves() {
-            let n = program.formulas.inertia.shape().rows;
-            let entries = values.run(&program.inertia, &[], &[]).remove(0);
-            let inverse = Matrix::new(clebsch_symbolic::Shape::square(n), entries).inverse().0;
+            let inverse = values.inertia(&program).inverse().0;
             values.0.insert("inertia_inverse".into(), inverse);
         }
         let constants = values.run(&program.constants, &[], &[]).concat();
@@ -210,7 +207,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
         let slope = program.gyroscopic.as_ref().map(|kernel| self.values.run(kernel, &[], &[]).remove(0));
         let mut mu = state.mu.clone();
         mu.iter_mut().zip(slope.unwrap_or_default()).for_each(|(mu, slope)| *mu -= slope);
-        let inertia = self.values.run(&program.inertia, &[], &[]).remove(0);
+        let inertia = self.values.inertia(program).entries;
         let xi = solution(&inertia, &mu);
         Some(mu.iter().zip(xi).map(|(mu, xi)| mu * xi).sum::<f64>() / 2.0 + potential)
     }
