@@ -7,7 +7,7 @@ use crate::parts::{HamiltonEquations, Substep};
 use crate::summation::Sums;
 use crate::{Error, Scalar, Space};
 
-/// Steps of order 16 by [`collocation`](crate::collocation) of (q, p), N numbers.
+/// Steps of order 16 by collocation of (q, p), N numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Collocated<const N: usize>;
 
