@@ -58,8 +58,7 @@ impl<'g> Emitter<'_, 'g> {
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
         let structure = self.equation_structure(&name, Id::Equation(index, number), None);
-        let (solution, predictor) = (Id::Solution(index, number), Id::Predictor(index, number));
-        let solved = self.program.formulas.titled_all(|id| id == solution || id == predictor);
+        let solved = self.program.formulas.titled(Id::Solution(index, number));
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
             Some(kernel) => {
@@ -80,8 +79,7 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
             None => {
-                let is_predicted = solved.iter().any(|row| row.id == predictor);
-                let title = match (is_predicted, solve.given.is_empty()) {
+                let title = match (solved.is_empty(), solve.given.is_empty()) {
                     (true, _) => "The solution, h Σ⁻¹μ in the units of the chart.",
                     (false, true) => "The solution, coordinate after coordinate.",
                     (false, false) => "The solution where the coordinates of equations before this one are x.",
@@ -220,10 +218,8 @@ impl<'g> Emitter<'_, 'g> {
         let prepared = if keeps { quote!((*target, #(#prepared,)*)) } else { quote!([#(#prepared),*]) };
         let predict = solve.predict.as_ref().map(|kernel| {
             let body = code::body(&scope, kernel, None);
-            let predictor = self.program.formulas.titled(Id::Predictor(index, number));
-            let documentation = docs::formulas("The solution to first order in h.", predictor, None);
             quote! {
-                #documentation
+                /// The solution to first order in h.
                 #[inline]
                 fn predict(&self, target: &#target) -> #vector {
                     #body
