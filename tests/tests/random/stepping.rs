@@ -46,7 +46,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
             }
         }
         if !program.formulas.inertia_moves() {
-            let inverse = values.inertia(&program).inverse().0;
+            let inverse = values.inertia(program).inverse().0;
             values.0.insert("inertia_inverse".into(), inverse);
         }
         let constants = values.run(&program.constants, &[], &[]).concat();
