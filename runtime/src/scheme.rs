@@ -12,6 +12,33 @@
 //! ```
 //! A declaration names its scheme, [`Clebsch::Scheme`], and implements the parts that this scheme calls, [`crate::parts`].
 
+/// What most schemes have in common: one set of constants, and states that hold N itself.
+macro_rules! momentum_is_held {
+    () => {
+        type Held = S::Momentum;
+        type Constants = S::Constants;
+
+        fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
+            system.constants(h)
+        }
+
+        #[inline(always)]
+        fn whole(constants: &S::Constants) -> &S::Constants {
+            constants
+        }
+
+        #[inline(always)]
+        fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
+            *mu
+        }
+
+        #[inline(always)]
+        fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
+            *held
+        }
+    };
+}
+
 mod adjoint_pair;
 mod collocated;
 mod composed;

@@ -14,28 +14,9 @@ use core::marker::PhantomData;
 pub struct AdjointPair<C>(PhantomData<C>);
 
 impl<S: Substep<0> + Substep<1> + Substep<2>, C: Carry<S>> Scheme<S> for AdjointPair<C> {
-    type Held = S::Momentum;
     type Left = LeftOf<S, C::Impulse>;
-    type Constants = S::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-        *held
-    }
+    momentum_is_held!();
 
     #[inline]
     fn left(system: &S, constants: &S::Constants, t: S::Scalar, q: &S::Configuration, _: &S::Momentum) -> Self::Left {

@@ -12,28 +12,9 @@ use crate::{Error, Scalar, Space};
 pub struct Collocated<const N: usize>;
 
 impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Collocated<N> {
-    type Held = S::Momentum;
     type Left = LeftOf<S, ()>;
-    type Constants = S::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-        *held
-    }
+    momentum_is_held!();
 
     #[inline]
     fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {

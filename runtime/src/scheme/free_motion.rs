@@ -11,28 +11,9 @@ use crate::{Error, Space};
 pub struct AlongFreeMotion;
 
 impl<S: Substep<0> + FreeMotion> Scheme<S> for AlongFreeMotion {
-    type Held = S::Momentum;
     type Left = LeftOf<S, S::Kept>;
-    type Constants = S::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-        *held
-    }
+    momentum_is_held!();
 
     fn left(system: &S, constants: &S::Constants, _: S::Scalar, _: &S::Configuration, mu: &S::Momentum) -> Self::Left {
         S::Sums::joined(system.kept(constants, mu), (Space::origin(), Space::origin()))

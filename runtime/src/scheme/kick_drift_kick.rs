@@ -17,28 +17,9 @@ use core::marker::PhantomData;
 pub struct KickDriftKick<C, const W: usize = 0>(PhantomData<C>);
 
 impl<S: Substep<0> + Substep<W>, C: Carry<S>, const W: usize> Scheme<S> for KickDriftKick<C, W> {
-    type Held = S::Momentum;
     type Left = LeftOf<S, C::Impulse>;
-    type Constants = S::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-        *held
-    }
+    momentum_is_held!();
 
     #[inline]
     fn left(system: &S, constants: &S::Constants, t: S::Scalar, q: &S::Configuration, _: &S::Momentum) -> Self::Left {

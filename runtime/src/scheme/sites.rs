@@ -19,27 +19,7 @@ pub struct FreeSites<const N: usize>;
 /// What the schemes of sites have in common: constants, and states that hold their momenta.
 macro_rules! of_sites {
     ($start:expr, $end:expr) => {
-        type Held = S::Momentum;
-        type Constants = S::Constants;
-
-        fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-            system.constants(h)
-        }
-
-        #[inline(always)]
-        fn whole(constants: &S::Constants) -> &S::Constants {
-            constants
-        }
-
-        #[inline(always)]
-        fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-            *mu
-        }
-
-        #[inline(always)]
-        fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-            *held
-        }
+        momentum_is_held!();
 
         #[inline]
         fn step(
