@@ -73,8 +73,8 @@ impl<S: Clebsch> Stepper<S> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        // copies: what is handed on by reference would be kept in memory at every step; and without the error, with which the numbers of a step that
-        // succeeds would be read by halves
+        // Copy the state on the cold path only: passing it by reference would force it into memory in every step. Build the error there too: otherwise
+        // LLVM splits the loads of a successful result.
         let Ok(next) = self.attempt(state, u) else {
             let (before, u) = (*state, *u);
             return Err(self.refused(&before, &u));
