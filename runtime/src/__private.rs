@@ -20,7 +20,8 @@ pub use crate::implicit::{
 };
 pub use crate::linear::{solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
-pub use crate::matrices::{determinant, embedded, matrix_of, shifted, skew, skew_components, skew_outer, skew_times};
+pub use crate::matrices::{axial, determinant, embedded, hat, matrix_of, shifted};
+pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{
     largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
@@ -33,7 +34,7 @@ pub use crate::parameters::{
     projection,
 };
 pub use crate::parts::{
-    FreeMotion, GreatCircles, HamiltonEquations, Parts, SplitKicks, Substep, Varied, VariedSubstep,
+    FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks, Substep, Varied, VariedSubstep,
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
 pub use crate::scheme::{

@@ -105,6 +105,21 @@ pub fn matrix_of<T: Scalar, const R: usize, const C: usize>(
     }))
 }
 
+/// x^, the matrix with x^ v = x × v: Σ x_k E_k in the basis of so(3).
+#[inline]
+pub fn hat<T: Scalar>(x: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+    let [[x, y, z]] = x.data.0;
+    let zero = T::zero();
+    columns([[zero, z, -y], [-z, zero, x], [y, -x, zero]])
+}
+
+/// The components ⟨A, E_k⟩ in that basis: (A₃₂ − A₂₃, A₁₃ − A₃₁, A₂₁ − A₁₂).
+#[inline]
+pub fn axial<T: Scalar>(a: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
+    let [[_, a21, a31], [a12, _, a32], [a13, a23, _]] = a.data.0;
+    columns([[a32 - a23, a13 - a31, a21 - a12]])
+}
+
 /// Σ x_k E_k in the basis E_ji − E_ij of so(n), i < j in the order (12) (13) … (n−1 n): the rotation of axis i towards axis j.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the symmetry and, below constant bounds, cost no checks.

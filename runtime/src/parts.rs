@@ -48,6 +48,9 @@ pub trait Parts: Clebsch + Sized {
     }
 }
 
+/// The coordinates that a solve finds.
+pub type Solved<X> = Result<X, Error>;
+
 /// What rounding has taken off q, where sums are compensated.
 pub type RestOf<S> = <<S as Parts>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
 
@@ -55,6 +58,9 @@ pub type RestOf<S> = <<S as Parts>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, 
 ///
 /// Every time is that at which the whole step starts. A part that a declaration does not have is `None` and costs nothing.
 pub trait Substep<const K: usize>: Parts {
+    /// Whether what acts at the end of a substep is what acts at its start, so that one kick serves both.
+    const ENDS_AS_IT_STARTS: bool = false;
+
     /// J(q, ∂U₀), the kick at the start, with −r(q, I) where sums are not compensated.
     #[inline(always)]
     fn start_kick(
@@ -75,8 +81,7 @@ pub trait Substep<const K: usize>: Parts {
         t: Self::Scalar,
         q: &Self::Configuration,
     ) -> Option<Self::Momentum> {
-        let _ = (constants, t, q);
-        None
+        if Self::ENDS_AS_IT_STARTS { self.start_kick(constants, t, q) } else { None }
     }
 
     /// −r(q, I): what a coupled cost, or one with a term that is linear in the velocity, gives at F = I.
@@ -147,8 +152,7 @@ pub trait Substep<const K: usize>: Parts {
         t: Self::Scalar,
         q: &Self::Configuration,
     ) -> Option<Self::Configuration> {
-        let _ = (constants, t, q);
-        None
+        if Self::ENDS_AS_IT_STARTS { self.start_gradient(constants, t, q) } else { None }
     }
 
     /// ∂_q K(q, F), F = I + D, of a cost that couples.

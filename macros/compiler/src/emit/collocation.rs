@@ -55,7 +55,7 @@ impl Emitter<'_, '_> {
         quote! {
             #documentation
             #[inline(always)]
-            fn slope(&self, constants: &#constants, t: #scalar, y: &#numbers) -> #numbers {
+            fn slope(&self, c: &#constants, t: #scalar, y: &#numbers) -> #numbers {
                 let (q, p) = <Self as #private::HamiltonEquations<#numbers_of_pair>>::parted(y);
                 #locals
                 [#(#entries),*]
@@ -66,8 +66,7 @@ impl Emitter<'_, '_> {
     fn covector(&self, kernels: &CollocationKernels) -> TokenStream {
         let constants = self.constants_of_step();
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
-        let signature =
-            quote!(covector(&self, constants: &#constants, q: &#configuration, mu: &#momentum) -> #configuration);
+        let signature = quote!(covector(&self, c: &#constants, q: &#configuration, mu: &#momentum) -> #configuration);
         self.part(
             "A covector p at q with the momentum J(q, p) = μ.",
             &[],
@@ -85,7 +84,7 @@ impl Emitter<'_, '_> {
         let guess = self.part(
             "The chart coordinates x of the motion by the velocity ξ = Σ⁻¹(μ − A) for the time h, to first order in h.",
             &[],
-            quote!(guess(&self, constants: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #momentum),
+            quote!(guess(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #momentum),
             &kernels.guess,
             None,
         );

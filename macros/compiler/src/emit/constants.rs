@@ -124,14 +124,14 @@ impl Emitter<'_, '_> {
 
     /// The sign of det Σ/h for some components: of Dρ at the identity for short steps, but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
-        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let private = &self.paths.private;
         let count = components.len();
         if self.has_uniform_inertia() {
             let count = Literal::usize_unsuffixed(count);
             return quote!(#private::orientation_of_uniform(inertia / h, #count)?);
         }
         let first = components.first().copied().unwrap_or(0);
-        if self.program.form.keeps_matrices() && components.iter().copied().eq(first..first + count) {
+        if components.iter().copied().eq(first..first + count) {
             let part = match count == self.dimension() {
                 true => quote!(inertia),
                 false => matrices::block(quote!(inertia), Shape::square(count), (first, first)),
@@ -141,19 +141,16 @@ impl Emitter<'_, '_> {
         let rows = components.iter().map(|&i| {
             let row = components.iter().map(|&j| {
                 let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
-                quote!(inertia[(#i, #j)] / h)
+                quote!(inertia[(#i, #j)])
             });
             quote!([#(#row),*])
         });
-        quote! {
-            #private::Orientation::of([#(#rows),*])
-                .ok_or(#krate::Error::SingularKineticEnergy { condition: ::core::f64::INFINITY })?
-        }
+        quote!(#private::orientation_of_inertia(&#private::matrix([#(#rows),*]), h)?)
     }
 
     /// The method `constants`.
     pub(super) fn constants(&self) -> TokenStream {
-        let (private, scalar, krate) = (&self.paths.private, &self.paths.scalar, &self.paths.krate);
+        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         let scope = self.scope_of_system();
         let (constants, checks) = (&self.names.constants, self.checks());
         let moves = self.program.formulas.inertia_moves();
@@ -203,7 +200,7 @@ impl Emitter<'_, '_> {
         let body = quote! {
             #inertia
             #locals
-            ::core::result::Result::Ok(#constants {
+            #private::Ok(#constants {
                 #(#fields)*
                 #(#orientations)*
                 #(#rotations)*
@@ -213,7 +210,7 @@ impl Emitter<'_, '_> {
         };
         quote! {
             #documentation
-            fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
+            fn constants(&self, h: #scalar) -> #private::Result<Self::Constants, #private::Error> {
                 #checks
                 #body
             }

@@ -24,8 +24,8 @@ pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) 
     let source = first.source.map(|source| format!("Source: {source}."));
     let line: Vec<String> = [shape, cost, source].into_iter().flatten().collect();
     let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
-    let mut text = vec![title.to_string(), String::new()];
+    let mut text = vec![title.to_string()];
     text.extend(equations);
-    text.extend([String::new(), line.join(" ")]);
+    text.push(line.join(" "));
     lines(&text)
 }

@@ -1,8 +1,8 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
 use clebsch_symbolic::Shape;
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Literal, TokenStream, TokenTree};
+use quote::{format_ident, quote};
 
 use super::names::Names;
 use super::{Emitter, Generics, code, docs, matrices};
@@ -27,37 +27,65 @@ impl<'g> Emitter<'_, 'g> {
         types
     }
 
-    /// The struct of an equation: the system and the constants, with the equation as its documentation.
-    fn equation_structure(&self, name: &Ident, id: Id, place: Option<&Solve>) -> TokenStream {
+    /// The struct of an equation: the system and the constants, and where it is; with the equation as its documentation.
+    fn equation_structure(&self, name: &Ident, id: Id, solve: &Solve) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, (_, constants)) = (&self.model.item.ident, self.constants_generics());
         let Names { lifetime, constants: constants_name, .. } = &self.names;
         let formulas = self.program.formulas.titled(id);
         let documentation = docs::formulas("The momentum equation in the chart.", formulas, None);
-        let (time, configuration, input) = (self.time_parameter(), self.configuration_type(), self.input_type());
-        let place = place.filter(|solve| solve.moves).map(|solve| {
-            let input = solve.reads_input.then(|| quote!(u: &#lifetime #input,));
-            quote!(#time q: &#lifetime #configuration, #input)
-        });
+        let (scalar, configuration, input) = (&self.paths.scalar, self.configuration_type(), self.input_type());
+        let time = (solve.moves && self.is_timed()).then(|| quote!(#scalar,));
+        let configuration = solve.moves.then(|| quote!(&#lifetime #configuration,));
+        let input = solve.reads_input.then(|| quote!(&#lifetime #input,));
         quote! {
             #documentation
-            struct #name<#lifetime, #parameters> #predicates {
-                system: &#lifetime #ident<#arguments>,
-                constants: &#lifetime #constants_name #constants,
-                #place
-            }
+            struct #name<#lifetime, #parameters>(
+                &#lifetime #ident<#arguments>,
+                &#lifetime #constants_name #constants,
+                #time #configuration #input
+            ) #predicates;
         }
+    }
+
+    /// What an equation holds, by the names that its methods call it.
+    pub(super) fn held_by_equation(&self, solve: &Solve) -> Vec<&'static str> {
+        let mut held = vec!["system", "c"];
+        held.extend((solve.moves && self.is_timed()).then_some("t"));
+        held.extend(solve.moves.then_some("q"));
+        held.extend(solve.reads_input.then_some("u"));
+        held
+    }
+
+    /// What of it some code reads, as names of its own.
+    fn read_by(&self, solve: &Solve, code: &TokenStream) -> Option<TokenStream> {
+        let held = self.held_by_equation(solve);
+        let read: Vec<bool> = held.iter().map(|name| mentions(code, name)).collect();
+        let last = read.iter().rposition(|&is_read| is_read)?;
+        let names = held.iter().zip(&read).take(last + 1).map(|(name, is_read)| {
+            let name = if *is_read { format_ident!("{name}") } else { format_ident!("_") };
+            quote!(#name)
+        });
+        let names: Vec<TokenStream> = names.collect();
+        let rest = (last + 1 < held.len()).then(|| quote!(..));
+        Some(quote!(let &Self(#(#names,)* #rest) = self;))
+    }
+
+    /// The body of a method of an equation.
+    fn body_of_equation(&self, solve: &Solve, code: TokenStream) -> TokenStream {
+        let read = self.read_by(solve, &code);
+        quote!(#read #code)
     }
 
     /// The type of an equation that is solved by a formula.
     fn solved_equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
-        let (private, krate) = (&self.paths.private, &self.paths.krate);
+        let private = &self.paths.private;
         let lifetime = &self.names.lifetime;
         let name = self.names.equation(self.program.suffix(index), number);
         let scope = self.scope_of_solve(solve);
-        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
-        let structure = self.equation_structure(&name, Id::Equation(index, number), None);
+        let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
+        let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
         let solved = self.program.formulas.titled(Id::Solution(index, number));
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
@@ -69,12 +97,18 @@ impl<'g> Emitter<'_, 'g> {
                     solved,
                     solve.predict.as_ref(),
                 );
+                let body = self.body_of_equation(
+                    solve,
+                    quote! {
+                        let x = { #body };
+                        #private::below_right_angle(x, { #by_reference #locals #sine })
+                    },
+                );
                 quote! {
                     #documentation
                     #[inline]
-                    fn closed_form(&self, target: &#target) -> ::core::result::Result<#vector, #krate::Error> {
-                        let x = { #body };
-                        #private::below_right_angle(x, { #by_reference #locals #sine })
+                    fn closed_form(&self, mu: &#target) -> #private::Solved<#vector> {
+                        #body
                     }
                 }
             }
@@ -86,13 +120,14 @@ impl<'g> Emitter<'_, 'g> {
                 };
                 let documentation = docs::formulas(title, solved, solve.predict.as_ref());
                 let given = (!solve.given.is_empty()).then(|| {
-                    let given = self.paths.matrix(solve.given.len(), 1);
+                    let given = self.vector_type(solve.given.len());
                     quote!(, x: &#given)
                 });
+                let body = self.body_of_equation(solve, quote!(#body));
                 quote! {
                     #documentation
                     #[inline]
-                    fn explicit(&self, target: &#target #given) -> #vector {
+                    fn explicit(&self, mu: &#target #given) -> #vector {
                         #body
                     }
                 }
@@ -107,22 +142,12 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// The scope of an equation's methods: `target` holds its momenta, and `x` its unknowns, or those that are given.
+    /// The scope of an equation's methods: `mu` holds its momenta, and `x` its unknowns, or those that are given.
     fn scope_of_solve(&self, solve: &Solve) -> code::Scope<'_, 'g> {
         let mut scope = self.scope_of_equation();
-        scope.momentum = "target";
         scope.momenta = solve.momenta.clone();
         scope.coordinates = if solve.given.is_empty() { solve.components.clone() } else { solve.given.clone() };
         scope
-    }
-
-    /// The time and the configuration of an equation that depends on them, as names of their own.
-    fn place(&self, solve: &Solve) -> Option<TokenStream> {
-        solve.moves.then(|| {
-            let time = self.is_timed().then(|| quote!(let t = self.t;));
-            let input = solve.reads_input.then(|| quote!(let u = self.u;));
-            quote!(#time let q = self.q; #input)
-        })
     }
 
     /// The parameters of the traits: the scalar, the number of unknowns, and that of momenta where it is another.
@@ -168,12 +193,13 @@ impl<'g> Emitter<'_, 'g> {
         let (private, lifetime) = (&self.paths.private, &self.names.lifetime);
         let name = self.names.equation(self.program.suffix(index), number);
         let scope = self.scope_of_solve(solve);
-        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
+        let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
-        let structure = self.equation_structure(&name, Id::Equation(index, number), Some(solve));
+        let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
         let jacobian = self.program.formulas.titled(Id::Jacobian(index, number));
         let documentation = docs::formulas("Dρ and −ρ(0).", jacobian, Some(&solve.linearize));
-        let (place, (locals, right, left)) = (self.place(solve), self.linearized(&scope, solve));
+        let (locals, right, left) = self.linearized(&scope, solve);
+        let body = self.body_of_equation(solve, quote!(#locals (#left, #right)));
         let (dimensions, correct, orientation) =
             (self.dimensions(solve), self.correct(solve), self.orientation(index, number, solve));
         quote! {
@@ -182,10 +208,8 @@ impl<'g> Emitter<'_, 'g> {
             impl<#lifetime, #parameters> #private::LinearEquation<#dimensions> for #name<#lifetime, #arguments> #predicates {
                 #documentation
                 #[inline]
-                fn system(&self, target: &#target) -> (#matrix, #vector) {
-                    #place
-                    #locals
-                    (#left, #right)
+                fn system(&self, mu: &#target) -> (#matrix, #vector) {
+                    #body
                 }
 
                 #correct
@@ -199,34 +223,45 @@ impl<'g> Emitter<'_, 'g> {
         let (private, scalar, lifetime) = (&self.paths.private, &self.paths.scalar, &self.names.lifetime);
         let name = self.names.equation(self.program.suffix(index), number);
         let scope = self.scope_of_solve(solve);
-        let (vector, target) = (self.paths.matrix(solve.dimension, 1), self.paths.matrix(solve.momenta.len(), 1));
+        let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
         let jacobian_type = self.jacobian_type(solve);
         let keeps = self.program.form.keeps_matrices();
         let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
+        let prepares = keeps || !solve.prepare.outputs.is_empty();
         let (terms, target_again) = match keeps {
+            _ if !prepares => (target.clone(), quote!()),
             true => {
                 let types = solve.prepare.outputs.iter().map(|(shape, _)| match shape.is_scalar() {
                     true => quote!(#scalar),
                     false => self.paths.matrix(shape.rows, shape.columns),
                 });
-                (quote!((#target, #(#types,)*)), quote!(let target = &terms.0;))
+                (quote!((#target, #(#types,)*)), quote!(let mu = &terms.0;))
             }
             false => (quote!([#scalar; #terms]), quote!()),
         };
         let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
         let prepare_locals = code::locals(&scope, &solve.prepare);
-        let prepared = if keeps { quote!((*target, #(#prepared,)*)) } else { quote!([#(#prepared),*]) };
+        let prepared = if !prepares {
+            quote!(*mu)
+        } else if keeps {
+            quote!((*mu, #(#prepared,)*))
+        } else {
+            quote!([#(#prepared),*])
+        };
+        let given = if prepares { quote!(terms: &Self::Terms) } else { quote!(mu: &#target) };
         let predict = solve.predict.as_ref().map(|kernel| {
-            let body = code::body(&scope, kernel, None);
+            let body = self.body_of_equation(solve, code::body(&scope, kernel, None));
             quote! {
                 /// The solution to first order in h.
                 #[inline]
-                fn predict(&self, target: &#target) -> #vector {
+                fn predict(&self, mu: &#target) -> #vector {
                     #body
                 }
             }
         });
-        let (place, (locals, residual, jacobian)) = (self.place(solve), self.linearized(&scope, solve));
+        let prepared = self.body_of_equation(solve, quote!(#prepare_locals #prepared));
+        let (locals, residual, jacobian) = self.linearized(&scope, solve);
+        let linearization = self.body_of_equation(solve, quote!(#target_again #locals (#residual, #jacobian)));
         let equation = Id::Equation(index, number);
         let is_shown = |id: Id| match id {
             Id::JacobianFactor(..) => {
@@ -235,16 +270,16 @@ impl<'g> Emitter<'_, 'g> {
             _ => id == equation || id == Id::Jacobian(index, number),
         };
         let formulas = self.program.formulas.titled_all(is_shown);
-        let structure = self.equation_structure(&name, equation, Some(solve));
+        let structure = self.equation_structure(&name, equation, solve);
         let linearized = docs::formulas("The residual and its Jacobian.", formulas, Some(&solve.linearize));
         let alone = solve.residual.as_ref().map(|kernel| {
             let documentation = docs::formulas("The residual alone.", &formulas[..1], Some(kernel));
             let body = code::body(&scope, kernel, None);
+            let body = self.body_of_equation(solve, quote!(#target_again #body));
             quote! {
                 #documentation
                 #[inline]
-                fn residual(&self, terms: &Self::Terms, x: &#vector) -> #vector {
-                    #target_again
+                fn residual(&self, #given, x: &#vector) -> #vector {
                     #body
                 }
             }
@@ -272,8 +307,8 @@ impl<'g> Emitter<'_, 'g> {
             quote! {
                 /// The declared number of iterations.
                 #[inline]
-                fn limit() -> ::core::option::Option<u32> {
-                    ::core::option::Option::Some(#most)
+                fn limit() -> #private::Option<u32> {
+                    #private::Some(#most)
                 }
             }
         });
@@ -287,9 +322,7 @@ impl<'g> Emitter<'_, 'g> {
                 type Jacobian = #jacobian_type;
 
                 #[inline]
-                fn prepare(&self, target: &#target) -> Self::Terms {
-                    #place
-                    #prepare_locals
+                fn prepare(&self, mu: &#target) -> Self::Terms {
                     #prepared
                 }
 
@@ -299,11 +332,8 @@ impl<'g> Emitter<'_, 'g> {
 
                 #linearized
                 #[inline]
-                fn linearize(&self, terms: &Self::Terms, x: &#vector) -> (#vector, Self::Jacobian) {
-                    #target_again
-                    #place
-                    #locals
-                    (#residual, #jacobian)
+                fn linearize(&self, #given, x: &#vector) -> (#vector, Self::Jacobian) {
+                    #linearization
                 }
 
                 #correct
@@ -314,4 +344,18 @@ impl<'g> Emitter<'_, 'g> {
             }
         }
     }
+}
+
+/// Whether a name stands among some tokens, not as a field or a method.
+fn mentions(tokens: &TokenStream, name: &str) -> bool {
+    let mut is_member = false;
+    tokens.clone().into_iter().any(|token| {
+        let was_member =
+            std::mem::replace(&mut is_member, matches!(&token, TokenTree::Punct(dot) if dot.as_char() == '.'));
+        match token {
+            TokenTree::Ident(ident) => !was_member && ident == name,
+            TokenTree::Group(group) => mentions(&group.stream(), name),
+            TokenTree::Punct(_) | TokenTree::Literal(_) => false,
+        }
+    })
 }

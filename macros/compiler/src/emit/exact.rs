@@ -27,10 +27,10 @@ impl Emitter<'_, '_> {
         let found = if kept {
             let index = Literal::usize_unsuffixed(self.index_of_free_rotation(number));
             let method = if weight.is_some() { quote!(turn_of) } else { quote!(gibbs_vector_of) };
-            quote!(#private::FreeRotation::#method(&constants.#rotation, &kept[#index], #target)?)
+            quote!(#private::FreeRotation::#method(&c.#rotation, &kept[#index], #target)?)
         } else {
             let method = if weight.is_some() { quote!(turn) } else { quote!(gibbs_vector) };
-            quote!(#private::FreeRotation::#method(&constants.#rotation, #target)?)
+            quote!(#private::FreeRotation::#method(&c.#rotation, #target)?)
         };
         let turned_back = is_left.then(|| quote!(let #solution = -#solution;));
         match weight {
@@ -74,7 +74,7 @@ impl Emitter<'_, '_> {
         let motions = self.free_rotations().map(|(name, solve)| {
             let target = self.part_of("mu", &solve.momenta);
             let target = if self.is_left(solve) { quote!(&-#target) } else { target };
-            quote!(#private::#kind::motion(&constants.#name, #target))
+            quote!(#private::#kind::motion(&c.#name, #target))
         });
         let followed = self.followed();
         self.implementation(
@@ -83,7 +83,7 @@ impl Emitter<'_, '_> {
                 type Kept = [#private::#kept<#scalar>; #count];
 
                 /// What the free motions with this momentum keep.
-                fn kept(&self, constants: &#constants, mu: &#momentum) -> Self::Kept {
+                fn kept(&self, c: &#constants, mu: &#momentum) -> Self::Kept {
                     [#(#motions),*]
                 }
 
@@ -91,7 +91,7 @@ impl Emitter<'_, '_> {
                 #[inline]
                 fn follow(
                     &self,
-                    constants: &#constants,
+                    c: &#constants,
                     kept: &Self::Kept,
                     mu: &#momentum,
                 ) -> #private::Result<(<Self as #private::Parts>::Motion, #momentum), #private::Error> {
@@ -112,11 +112,11 @@ impl Emitter<'_, '_> {
         // spatial momenta move as those of the body that turns back
         if self.is_left(solve) {
             return quote! {
-                let (d, mu) = #private::FreeRotation4::turn(&constants.#name, &kept[0], &-*mu)?;
+                let (d, mu) = #private::FreeRotation4::turn(&c.#name, &kept[0], &-*mu)?;
                 #private::Ok((d.transpose(), -mu))
             };
         }
-        quote!(#private::FreeRotation4::turn(&constants.#name, &kept[0], mu))
+        quote!(#private::FreeRotation4::turn(&c.#name, &kept[0], mu))
     }
 
     /// The implementation of `SplitKicks`.
@@ -124,7 +124,7 @@ impl Emitter<'_, '_> {
         let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let arguments =
-            quote!(&self, constants: &#constants, t: #scalar, q: &#configuration, weight: #scalar, gradient: #scalar);
+            quote!(&self, c: &#constants, t: #scalar, q: &#configuration, weight: #scalar, gradient: #scalar);
         let formulas = &self.program.formulas;
         let formula = formulas.titled(Id::SplittingKick);
         let size = self.size_of_step();

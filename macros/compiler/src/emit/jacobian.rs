@@ -15,8 +15,8 @@ impl Emitter<'_, '_> {
             let field = format_ident!("orientation{suffix}_{}", number + 1);
             quote! {
                 #[inline]
-                fn orientation(&self) -> ::core::option::Option<#private::Orientation> {
-                    ::core::option::Option::Some(self.constants.#field)
+                fn orientation(&self) -> #private::Option<#private::Orientation> {
+                    #private::Some(self.1.#field)
                 }
             }
         })
@@ -25,7 +25,7 @@ impl Emitter<'_, '_> {
     /// The solution of linear systems with the Jacobian, where it is symmetric or block triangular.
     pub(super) fn correct(&self, solve: &Solve) -> Option<TokenStream> {
         let private = &self.paths.private;
-        let vector = self.paths.matrix(solve.dimension, 1);
+        let vector = self.vector_type(solve.dimension);
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
         let (title, body) = match &solve.structure {
             Structure::Dense | Structure::Sylvester(_) => return None,
@@ -39,7 +39,7 @@ impl Emitter<'_, '_> {
         Some(quote! {
             #[doc = #title]
             #[inline]
-            fn correct(a: &#matrix, b: &#vector) -> ::core::option::Option<(#vector, #private::Orientation)> {
+            fn correct(a: &#matrix, b: &#vector) -> #private::Option<(#vector, #private::Orientation)> {
                 #body
             }
         })
@@ -78,7 +78,7 @@ impl Emitter<'_, '_> {
         let sign = signs.fold(quote!(sign0), |product, sign| quote!(#product * #sign));
         quote! {
             #(#systems)*
-            ::core::option::Option::Some((#private::vector([#(#names),*]), #sign))
+            #private::Some((#private::vector([#(#names),*]), #sign))
         }
     }
 }

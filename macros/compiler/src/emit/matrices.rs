@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 
 use super::code::{self, Scope, accessor, nested};
 use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
-use crate::model::Access;
+use crate::model::{Access, Layout};
 
 impl Scope<'_, '_> {
     /// An operation on whole matrices.
@@ -26,7 +26,7 @@ impl Scope<'_, '_> {
         };
         match operation {
             MatrixOperation::Argument(input) => match self.place(input.role, *shape) {
-                Place::Reference(name) => quote!((*#name)),
+                Place::Reference(name) => quote!(*#name),
                 Place::Value(value) => value,
             },
             MatrixOperation::Zero => {
@@ -36,7 +36,7 @@ impl Scope<'_, '_> {
             MatrixOperation::Entries => code::grid(self, *shape, operands, false),
             MatrixOperation::Sum(weights) => self.weighted_sum(weights, operands),
             MatrixOperation::Scaled => {
-                let (matrix, number) = (self.code(&operands[0], true), self.code(&operands[1], true));
+                let (matrix, number) = (self.operand(&operands[0], Binding::Product), self.code(&operands[1], true));
                 quote!(#matrix * #number)
             }
             MatrixOperation::Shifted => {
@@ -44,7 +44,7 @@ impl Scope<'_, '_> {
                 quote!(#private::shifted(#matrix, #number))
             }
             MatrixOperation::Product => {
-                let (a, b) = (self.by_reference(&operands[0]), self.by_reference(&operands[1]));
+                let (a, b) = (self.factor(&operands[0], Binding::Product), self.factor(&operands[1], Binding::Atom));
                 quote!(#a * #b)
             }
             MatrixOperation::InertiaTimes => {
@@ -71,6 +71,8 @@ impl Scope<'_, '_> {
                 quote!(<#matrix>::from_diagonal(#diagonal))
             }
             MatrixOperation::Diagonal => method("diagonal"),
+            MatrixOperation::Hat => call("hat"),
+            MatrixOperation::Axial => call("axial"),
             MatrixOperation::Skew => call("skew"),
             MatrixOperation::SkewComponents => call("skew_components"),
             MatrixOperation::SkewTimes => call("skew_times"),
@@ -84,8 +86,9 @@ impl Scope<'_, '_> {
             }
             MatrixOperation::Entry(i, j) => {
                 let matrix = self.receiver(&operands[0]);
+                let is_column = matches!(&operands[0], Code::Whole(whole) if whole.shape.is_column());
                 let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
-                quote!(#matrix[(#i, #j)])
+                if is_column { quote!(#matrix[#i]) } else { quote!(#matrix[(#i, #j)]) }
             }
         }
     }
@@ -93,15 +96,8 @@ impl Scope<'_, '_> {
     /// The type of a shared term, where what is called does not say it.
     pub(super) fn type_of(&self, code: &Code) -> Option<TokenStream> {
         let Code::Whole(whole) = code else { return None };
-        let is_open = matches!(
-            whole.operation,
-            MatrixOperation::Embedded(..)
-                | MatrixOperation::Skew
-                | MatrixOperation::SkewComponents
-                | MatrixOperation::SkewOuter
-        );
         let matrix = self.paths.matrix(whole.shape.rows, whole.shape.columns);
-        is_open.then(|| quote!(: #matrix))
+        code.needs_name().then(|| quote!(: #matrix))
     }
 
     /// A matrix as an argument of a function.
@@ -110,10 +106,29 @@ impl Scope<'_, '_> {
             Some(Place::Reference(name)) => name,
             Some(Place::Value(value)) => quote!(&#value),
             None => {
-                let value = self.code(operand, false);
+                let value = self.operand(operand, Binding::Atom);
                 quote!(&#value)
             }
         }
+    }
+
+    /// A matrix that is multiplied: names are borrowed, values are not.
+    fn factor(&self, operand: &Code, least: Binding) -> TokenStream {
+        match operand {
+            Code::Whole(whole) if !matches!(whole.operation, MatrixOperation::Argument(_)) => {
+                self.operand(operand, least)
+            }
+            _ => self.by_reference(operand),
+        }
+    }
+
+    /// A matrix that is added or multiplied by a number, in brackets unless it binds as much as is asked.
+    fn operand(&self, operand: &Code, least: Binding) -> TokenStream {
+        if let Some(Place::Reference(name)) = self.argument(operand) {
+            return name;
+        }
+        let value = self.code(operand, true);
+        if Binding::of(operand) < least { quote!((#value)) } else { value }
     }
 
     /// A matrix whose method is called.
@@ -121,7 +136,7 @@ impl Scope<'_, '_> {
         match self.argument(operand) {
             Some(Place::Reference(name)) => name,
             Some(Place::Value(value)) => value,
-            None => self.code(operand, true),
+            None => self.operand(operand, Binding::Atom),
         }
     }
 
@@ -137,13 +152,14 @@ impl Scope<'_, '_> {
         let (one, zero) = (integer(1), integer(0));
         let mut tokens = TokenStream::new();
         for (position, (weight, operand)) in weights.iter().zip(operands).enumerate() {
-            let (operand, size) = (self.code(operand, true), weight.abs());
-            let term = match size == one {
-                true => quote!(#operand),
-                false => {
-                    let size = self.number(&size);
-                    quote!(#operand * #size)
-                }
+            let size = weight.abs();
+            let least = if position == 0 && *weight < zero { Binding::Atom } else { Binding::Product };
+            let operand = self.operand(operand, least);
+            let term = if size == one {
+                operand
+            } else {
+                let size = self.number(&size);
+                quote!(#operand * #size)
             };
             tokens = match (position, *weight < zero) {
                 (0, false) => term,
@@ -215,8 +231,14 @@ impl Scope<'_, '_> {
         let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
         let time = timed.then(|| self.code(&operands[0], false)).map(|time| quote!(#time,));
         let leaves = &operands[usize::from(timed)..];
-        let configuration = nested(&self.model.configuration, &mut |leaf| self.code(&leaves[leaf], false));
-        quote!(#method(#system, #time &#configuration))
+        let configuration = match &self.model.configuration {
+            Layout::Leaf(leaf) => self.by_reference(&leaves[*leaf]),
+            several => {
+                let configuration = nested(several, &mut |leaf| self.code(&leaves[leaf], false));
+                quote!(&#configuration)
+            }
+        };
+        quote!(#method(#system, #time #configuration))
     }
 
     fn opaque_gradient(&self, argument: usize, operands: &[Code]) -> TokenStream {
@@ -224,6 +246,27 @@ impl Scope<'_, '_> {
         let gradient = self.opaque(&Callee::Gradient(String::new()), operands);
         let access = accessor(&self.model.configurations[argument - usize::from(timed)].accessor);
         quote!(#gradient #access)
+    }
+}
+
+/// How much an expression binds, as Rust reads it.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Atom,
+}
+
+impl Binding {
+    fn of(code: &Code) -> Binding {
+        let Code::Whole(whole) = code else { return Binding::Atom };
+        match &whole.operation {
+            MatrixOperation::Sum(weights) if weights.len() > 1 || weights.iter().any(Rational::is_negative) => {
+                Binding::Sum
+            }
+            MatrixOperation::Sum(_) | MatrixOperation::Scaled | MatrixOperation::Product => Binding::Product,
+            _ => Binding::Atom,
+        }
     }
 }
 

@@ -196,12 +196,12 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// The scope of a part of a step.
     fn scope_of_step(&self) -> Scope<'_, 'g> {
-        self.scope(quote!(self), Some(quote!(constants)))
+        self.scope(quote!(self), Some(quote!(c)))
     }
 
     /// The scope of a method of an equation.
     fn scope_of_equation(&self) -> Scope<'_, 'g> {
-        self.scope(quote!(self.system), Some(quote!(self.constants)))
+        self.scope(quote!(system), Some(quote!(c)))
     }
 
     fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
@@ -231,12 +231,6 @@ impl<'a, 'g> Emitter<'a, 'g> {
     /// Whether the cost or the potential depends on the time, so that steps are told it.
     fn is_timed(&self) -> bool {
         self.program.formulas.is_timed()
-    }
-
-    /// The time as an argument of a part of a step, where it matters.
-    fn time_parameter(&self) -> TokenStream {
-        let scalar = &self.paths.scalar;
-        if self.is_timed() { quote!(t: #scalar,) } else { quote!() }
     }
 
     fn input_type(&self) -> TokenStream {
@@ -291,6 +285,16 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     fn momentum_type(&self) -> TokenStream {
         self.alias(&self.names.momentum)
+    }
+
+    /// The type of a vector, by its name where it has one.
+    fn vector_type(&self, rows: usize) -> TokenStream {
+        if rows == self.dimension() { self.momentum_type() } else { self.paths.matrix(rows, 1) }
+    }
+
+    /// The names of the types of q, F and μ.
+    fn names_of_types(&self) -> [TokenStream; 3] {
+        [self.configuration_type(), self.element_type(), self.momentum_type()]
     }
 
     fn alias(&self, name: &Ident) -> TokenStream {

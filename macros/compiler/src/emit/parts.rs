@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Group;
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::code::Nesting;
 use super::{Emitter, code, docs};
@@ -81,7 +81,7 @@ impl Emitter<'_, '_> {
         quote! {
             #documentation
             #[inline]
-            fn #name(&self, constants: &#constants, #arguments) -> #private::Option<#result> {
+            fn #name(&self, c: &#constants, #arguments) -> #private::Option<#result> {
                 #locals
                 #private::Some(#value)
             }
@@ -315,7 +315,15 @@ impl Emitter<'_, '_> {
         let forces = self.forces_of_step(step);
         let gradients = self.model.has_covectors().then(|| self.gradients(index, step));
         let (solve, update) = (self.solve(index, step), self.update(index, step));
-        self.implementation(quote!(Substep<#number>), quote!(#kicks #forces #gradients #solve #update))
+        let ends_as_it_starts = self.ends_as_it_starts(index, step).then(|| {
+            quote!(
+                const ENDS_AS_IT_STARTS: ::core::primitive::bool = true;
+            )
+        });
+        self.implementation(
+            quote!(Substep<#number>),
+            quote!(#ends_as_it_starts #kicks #forces #gradients #solve #update),
+        )
     }
 
     /// Whether a step ends with a kick of its own.
@@ -324,7 +332,7 @@ impl Emitter<'_, '_> {
     }
 
     fn kicks(&self, index: usize, step: &StepKernels) -> TokenStream {
-        let (private, formulas) = (&self.paths.private, &self.program.formulas);
+        let formulas = &self.program.formulas;
         let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
         let at = || quote!(t: #scalar, q: &#configuration);
         let kick = |name: &str, title: &str, kernel: &Kernel, id: Id| {
@@ -333,32 +341,50 @@ impl Emitter<'_, '_> {
         let start = step.start.as_ref();
         let start =
             start.map(|kernel| kick("start_kick", "The kick at the start of a step.", kernel, Id::StartKick(index)));
-        let is_last = index + 1 == self.program.formulas.parts;
-        // where time matters, the kick at the end of a step is the one that knows its time
-        let same = match step.end {
-            Some(_) if step.end_is_start => Some(Literal::usize_unsuffixed(index)),
-            Some(_) if is_last && self.shares_impulse() && !self.is_timed() => Some(Literal::usize_unsuffixed(0)),
-            _ => None,
-        };
-        let end = step.end.as_ref().filter(|_| self.ends_with_kick()).map(|kernel| match same {
-            Some(first) => {
-                let (constants, momentum, at) = (self.constants_of_step(), self.momentum_type(), at());
-                let title = "The kick at the end of a step is that at the start of the next.";
-                let documentation = docs::formulas(title, formulas.titled(Id::EndKick(index)), None);
-                quote! {
-                    #documentation
-                    #[inline]
-                    fn end_kick(&self, constants: &#constants, #at) -> #private::Option<#momentum> {
-                        #private::Substep::<#first>::start_kick(self, constants, t, q)
-                    }
-                }
-            }
-            None => kick("end_kick", "The kick at the end of a step.", kernel, Id::EndKick(index)),
-        });
+        let end =
+            step.end.as_ref().filter(|_| self.ends_with_kick()).and_then(|kernel| match self.same_kick(index, step) {
+                Some(first) if first == index && self.ends_as_it_starts(index, step) => None,
+                Some(first) => Some(self.kick_of_start(index, first)),
+                None => Some(kick("end_kick", "The kick at the end of a step.", kernel, Id::EndKick(index))),
+            });
         let rest = step.rest.as_ref().filter(|_| self.model.has_covectors() || self.is_compensated()).map(|kernel| {
             kick("rest", "What the cost gives at F = I, with the other sign.", kernel, Id::RestKick(index))
         });
         quote!(#start #end #rest)
+    }
+
+    /// The substep whose kick at the start is that at the end.
+    fn same_kick(&self, index: usize, step: &StepKernels) -> Option<usize> {
+        let is_last = index + 1 == self.program.formulas.parts;
+        // where time matters, the kick at the end of a step is the one that knows its time
+        match step.end {
+            Some(_) if step.end_is_start => Some(index),
+            Some(_) if is_last && self.shares_impulse() && !self.is_timed() => Some(0),
+            _ => None,
+        }
+    }
+
+    /// Whether all that acts at the end of a substep is what acts at its start.
+    fn ends_as_it_starts(&self, index: usize, step: &StepKernels) -> bool {
+        let has_gradients =
+            self.model.has_covectors() && (step.start_gradient.is_some() || step.end_gradient.is_some());
+        self.ends_with_kick() && self.same_kick(index, step) == Some(index) && (step.end_is_start || !has_gradients)
+    }
+
+    /// A kick at the end that is the one at the start of another substep.
+    fn kick_of_start(&self, index: usize, first: usize) -> TokenStream {
+        let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
+        let [configuration, _, momentum] = self.names_of_types();
+        let first = Literal::usize_unsuffixed(first);
+        let title = "The kick at the end of a step is that at the start of the next.";
+        let documentation = docs::formulas(title, self.program.formulas.titled(Id::EndKick(index)), None);
+        quote! {
+            #documentation
+            #[inline]
+            fn end_kick(&self, c: &#constants, t: #scalar, q: &#configuration) -> #private::Option<#momentum> {
+                #private::Substep::<#first>::start_kick(self, c, t, q)
+            }
+        }
     }
 
     fn forces_of_step(&self, step: &StepKernels) -> TokenStream {
@@ -382,7 +408,7 @@ impl Emitter<'_, '_> {
         if self.program.splitting.is_some() || self.program.collocation.is_some() {
             return TokenStream::new();
         }
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
+        let scalar = &self.paths.scalar;
         let (configuration, element) = (self.configuration_type(), self.element_type());
         let gradient = |name: &str, title: &str, (kernel, id): (&Kernel, Id), at: TokenStream| {
             let arguments = quote!(t: #scalar, q: &#configuration, #at);
@@ -393,22 +419,9 @@ impl Emitter<'_, '_> {
             let title = "∂U₀(q), the kick of the covector at the start of a step.";
             gradient("start_gradient", title, (kernel, Id::StartGradient(index)), quote!())
         });
-        let same = step.end_is_start && step.start_gradient.is_some();
-        let end = step.end_gradient.as_ref().map(|kernel| {
-            if !same {
-                let title = "∂U₁(q), the kick of the covector at the end of a step.";
-                return gradient("end_gradient", title, (kernel, Id::EndGradient(index)), quote!());
-            }
-            let (number, constants) = (Literal::usize_unsuffixed(index), self.constants_of_step());
-            let formulas = self.program.formulas.titled(Id::EndGradient(index));
-            let documentation = docs::formulas("∂U₁(q) = ∂U₀(q).", formulas, None);
-            quote! {
-                #documentation
-                #[inline]
-                fn end_gradient(&self, constants: &#constants, t: #scalar, q: &#configuration) -> #private::Option<#configuration> {
-                    #private::Substep::<#number>::start_gradient(self, constants, t, q)
-                }
-            }
+        let end = step.end_gradient.as_ref().filter(|_| !self.ends_as_it_starts(index, step)).map(|kernel| {
+            let title = "∂U₁(q), the kick of the covector at the end of a step.";
+            gradient("end_gradient", title, (kernel, Id::EndGradient(index)), quote!())
         });
         let coupled = step.coupled_gradient.as_ref().map(|kernel| {
             let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
@@ -439,29 +452,48 @@ impl Emitter<'_, '_> {
         let (configuration, momentum, input) = (self.configuration_type(), self.momentum_type(), self.input_type());
         let coordinates = self.coordinates_type();
         let (title, body) = if self.program.formulas.turns_whole() {
-            let kept = quote!(#private::FreeMotion::kept(self, constants, mu));
-            let followed = quote!(#private::FreeMotion::follow(self, constants, &#kept, mu).map(|(d, _)| d));
+            let kept = quote!(#private::FreeMotion::kept(self, c, mu));
+            let followed = quote!(#private::FreeMotion::follow(self, c, &#kept, mu).map(|(d, _)| d));
             (" F − I of the group element whose momentum is μ.", followed)
         } else {
-            let (solutions, result) = self.solved(index, step, false);
-            (
-                " The chart coordinates x of the group element whose momentum is μ.",
-                quote!(#solutions #private::Ok(#result)),
-            )
+            (" The chart coordinates x of the group element whose momentum is μ.", self.coordinates_of(index, step))
         };
         quote! {
             #[doc = #title]
             #[inline]
-            fn solve(
-                &self,
-                constants: &#constants,
-                t: #scalar,
-                q: &#configuration,
-                mu: &#momentum,
-                u: &#input,
-            ) -> #private::Result<#coordinates, #private::Error> {
+            fn solve(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum, u: &#input) -> #private::Solved<#coordinates> {
                 #body
             }
+        }
+    }
+
+    /// The coordinates that the equations of a step give, or the error of one of them.
+    fn coordinates_of(&self, index: usize, step: &StepKernels) -> TokenStream {
+        let private = &self.paths.private;
+        if let [solve] = &step.solves[..]
+            && !matches!(solve.solution, Solution::FreeRotation | Solution::Explicit)
+        {
+            return self.found(index, 0, solve, None);
+        }
+        let (solutions, result) = self.solved(index, step, false);
+        quote!(#solutions #private::Ok(#result))
+    }
+
+    /// What solves an equation, as a result where it can fail.
+    fn found(&self, index: usize, number: usize, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
+        let (private, name) = (&self.paths.private, self.names.equation(self.program.suffix(index), number));
+        let held = self.held_by_equation(solve).into_iter().map(|held| match held {
+            "system" => quote!(self),
+            held => format_ident!("{held}").to_token_stream(),
+        });
+        let (equation, target) = (quote!(#name(#(#held),*)), self.part_of("mu", &solve.momenta));
+        match solve.solution {
+            Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
+            Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
+            Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)),
+            Solution::Newton if solve.residual.is_some() => quote!(#private::solve_fixed_point(&#equation, #target)),
+            // by construction: free rotations are no equations of a type
+            Solution::Newton | Solution::FreeRotation => quote!(#private::solve(&#equation, #target)),
         }
     }
 
@@ -477,24 +509,16 @@ impl Emitter<'_, '_> {
             quote!(#solution[#position])
         };
         let solutions = step.solves.iter().enumerate().map(|(number, solve)| {
-            let (name, solution) =
-                (self.names.equation(self.program.suffix(index), number), format_ident!("x{}", number + 1));
-            let target = self.part_of("mu", &solve.momenta);
-            let place = self.place_of_equation(solve);
-            let equation = quote!(#name { system: self, constants, #place });
+            let solution = format_ident!("x{}", number + 1);
+            if solve.solution == Solution::FreeRotation {
+                let target = self.part_of("mu", &solve.momenta);
+                return self.found_free_rotation(index, number, solve, &target, kept);
+            }
             let given = solve.given.iter().map(entry);
             let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
-            let found = match solve.solution {
-                Solution::FreeRotation => return self.found_free_rotation(index, number, solve, &target, kept),
-                Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)?),
-                Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
-                Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)?),
-                Solution::Newton if solve.residual.is_some() => {
-                    quote!(#private::solve_fixed_point(&#equation, #target)?)
-                }
-                Solution::Newton => quote!(#private::solve(&#equation, #target)?),
-            };
-            quote!(let #solution = #found;)
+            let found = self.found(index, number, solve, given);
+            let fails = (solve.solution != Solution::Explicit).then(|| quote!(?));
+            quote!(let #solution = #found #fails;)
         });
         let solutions = quote!(#(#solutions)*);
         let components: Vec<usize> = (0..self.dimension()).collect();
@@ -503,16 +527,6 @@ impl Emitter<'_, '_> {
         let weights = (1..=self.program.formulas.weighted().len()).map(|number| format_ident!("w{number}"));
         let result = if self.program.formulas.weighted().is_empty() { x } else { quote!((#x, [#(#weights),*])) };
         (solutions, result)
-    }
-
-    /// The fields of an equation that tell where it is.
-    fn place_of_equation(&self, solve: &Solve) -> TokenStream {
-        if !solve.moves {
-            return TokenStream::new();
-        }
-        let time = self.is_timed().then(|| quote!(t,));
-        let input = solve.reads_input.then(|| quote!(u,));
-        quote!(#time q, #input)
     }
 
     /// Some components of a flat vector, by reference; all of them are the vector itself.

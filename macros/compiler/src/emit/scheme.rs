@@ -63,8 +63,8 @@ impl Emitter<'_, '_> {
             let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
             let turn = quote! {
                 #[inline]
-                fn turn(constants: &#constants) -> #scalar {
-                    constants.step_size * constants.inertia_inverse
+                fn turn(c: &#constants) -> #scalar {
+                    c.step_size * c.inertia_inverse
                 }
             };
             return self.implementation(quote!(GreatCircles), turn);
@@ -77,8 +77,8 @@ impl Emitter<'_, '_> {
         let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
         quote! {
             #[inline]
-            fn step_size(constants: &#constants) -> #scalar {
-                constants.step_size
+            fn step_size(c: &#constants) -> #scalar {
+                c.step_size
             }
         }
     }

@@ -57,6 +57,7 @@ impl Emitter<'_, '_> {
 
     /// The implementation of `Conserves`, where something is conserved.
     pub(super) fn conserves(&self) -> TokenStream {
+        let [configuration, _, momentum] = self.names_of_types();
         // what is conserved of a power is a sum over its sites
         let conserved = self.program.conserved.as_ref().filter(|_| self.model.power.is_none());
         let Some(kernel) = conserved else { return TokenStream::new() };
@@ -87,7 +88,7 @@ impl Emitter<'_, '_> {
                 type Conserved = #private::Conserved<#scalar, #count>;
 
                 #documentation
-                fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved {
+                fn conserved(&self, q: &#configuration, mu: &#momentum) -> Self::Conserved {
                     #locals
                     #private::Conserved::new([#(#names),*], #values)
                 }
@@ -109,7 +110,7 @@ impl Emitter<'_, '_> {
             let of_block = self.block_of_inertia(solve);
             if self.program.formulas.turns_whole() {
                 return match self.is_left(solve) {
-                    true => quote!(-#private::free_momentum_4d(&#of_block, h, &f #access.transpose())),
+                    true => quote!((-#private::free_momentum_4d(&#of_block, h, &f #access.transpose()))),
                     false => quote!(#private::free_momentum_4d(&#of_block, h, &f #access)),
                 };
             }
@@ -118,13 +119,13 @@ impl Emitter<'_, '_> {
                 _ => quote!(#private::gibbs_vector_of_matrix(&f #access)),
             };
             match self.is_left(solve) {
-                true => quote!(-#private::free_momentum(&#of_block, h, &-#rotation)),
+                true => quote!((-#private::free_momentum(&#of_block, h, &-#rotation))),
                 false => quote!(#private::free_momentum(&#of_block, h, &#rotation)),
             }
         };
         if self.dimension() == 3 || self.program.formulas.turns_whole() {
             let momentum = solves().map(momentum);
-            return Some(quote!(let inertia = { #inertia }; let mu = #(#momentum)*;));
+            return Some(quote!(let inertia = { #inertia }; let mu = &#(#momentum)*;));
         }
         let blocks = solves().map(|solve| {
             let (start, momentum) = (Literal::usize_unsuffixed(solve.components[0]), momentum(solve));
@@ -134,6 +135,7 @@ impl Emitter<'_, '_> {
             let inertia = { #inertia };
             let mut mu = <#private::SVector<#scalar, #dimension> as #private::Space<#scalar>>::origin();
             #(#blocks)*
+            let mu = &mu;
         })
     }
 
@@ -170,11 +172,12 @@ impl Emitter<'_, '_> {
 
     fn formulas(&self) -> TokenStream {
         let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
+        let [configuration, element, momentum] = self.names_of_types();
         let free = self.free_momenta();
         let methods = [
             self.method(
                 ("The action.", formulas.titled(Id::Action)),
-                quote!(act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration),
+                quote!(act(&self, f: &#element, q: &#configuration) -> #configuration),
                 &program.act,
                 Some(Nesting::Configuration),
             ),
@@ -183,13 +186,13 @@ impl Emitter<'_, '_> {
                     "The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).",
                     formulas.titled(Id::MomentumMap),
                 ),
-                quote!(momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum),
+                quote!(momentum_map(&self, q: &#configuration, p: &#configuration) -> #momentum),
                 &program.momentum_map,
                 None,
             ),
             self.method(
                 ("The coadjoint action.", formulas.titled(Id::Coadjoint)),
-                quote!(coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum),
+                quote!(coadjoint(&self, f: &#element, mu: &#momentum) -> #momentum),
                 &program.coadjoint,
                 None,
             ),
@@ -199,7 +202,7 @@ impl Emitter<'_, '_> {
                     "The discrete Legendre transform: the momentum N before the step that moves q by F.",
                     formulas.titled(Id::Legendre),
                 ),
-                quote!(legendre(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
+                quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
                 &program.legendre,
                 None,
             ),
@@ -209,19 +212,19 @@ impl Emitter<'_, '_> {
                     "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
                     formulas.titled(Id::LegendreNext),
                 ),
-                quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum),
+                quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
                 &program.legendre_next,
                 None,
             ),
             self.method(
                 ("The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.", &[]),
-                quote!(momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix),
+                quote!(momentum_matrix(mu: &#momentum) -> #element),
                 &program.momentum_matrix,
                 Some(Nesting::Element),
             ),
             self.method(
                 ("The components μ_i = tr(MᵀE_i) of a momentum.", &[]),
-                quote!(momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum),
+                quote!(momentum_components(m: &#element) -> #momentum),
                 &program.momentum_components,
                 None,
             ),
@@ -231,7 +234,8 @@ impl Emitter<'_, '_> {
     }
 
     fn potential(&self) -> TokenStream {
-        let scalar = &self.paths.scalar;
+        let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
+        let [configuration, _, momentum] = self.names_of_types();
         let formulas = &self.program.formulas;
         let scope = self.scope_of_system();
         let locals = code::locals(&scope, &self.program.potential);
@@ -245,18 +249,12 @@ impl Emitter<'_, '_> {
         let energy = self.kinetic_energy();
         quote! {
             #potential
-            fn potential(&self, t: #scalar, q: &Self::Configuration) -> #scalar {
+            fn potential(&self, t: #scalar, q: &#configuration) -> #scalar {
                 #locals
                 #value
             }
             #kinetic
-            fn kinetic_energy(
-                &self,
-                constants: &Self::Constants,
-                t: #scalar,
-                q: &Self::Configuration,
-                mu: &Self::Momentum,
-            ) -> #scalar {
+            fn kinetic_energy(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #scalar {
                 #energy
             }
         }
@@ -283,9 +281,9 @@ impl Emitter<'_, '_> {
                 quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
             }
             false => match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
-                (true, _) => quote!(#private::kinetic_energy_uniform(&constants.inertia_inverse, #mu)),
-                (false, true) => quote!(constants.inertia_inverse.energy(#mu)),
-                (false, false) => quote!(#private::kinetic_energy(&constants.inertia_inverse, #mu)),
+                (true, _) => quote!(#private::kinetic_energy_uniform(&c.inertia_inverse, #mu)),
+                (false, true) => quote!(c.inertia_inverse.energy(#mu)),
+                (false, false) => quote!(#private::kinetic_energy(&c.inertia_inverse, #mu)),
             },
         };
         quote!(#shift #energy)
@@ -332,11 +330,12 @@ impl Emitter<'_, '_> {
 
     /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
     fn stagger(&self) -> Option<TokenStream> {
+        let [configuration, _, momentum] = self.names_of_types();
         let (kernel, scalar) = (self.program.stagger.as_ref()?, &self.paths.scalar);
         let formulas = self.program.formulas.titled(Id::SynchronizedMomentum);
         Some(self.method(
             ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", formulas),
-            quote!(stagger(&self, h: #scalar, t: #scalar, q: &Self::Configuration) -> Self::Momentum),
+            quote!(stagger(&self, h: #scalar, t: #scalar, q: &#configuration) -> #momentum),
             kernel,
             None,
         ))
@@ -379,18 +378,20 @@ impl Emitter<'_, '_> {
     }
 
     fn check_of_orbit(&self) -> Option<TokenStream> {
+        let [configuration, _, _] = self.names_of_types();
         let scalar = &self.paths.scalar;
         let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != Space::Vectors);
         let defect = is_promised.then(|| self.orbit_defect())?;
         Some(quote! {
             /// By how much q violates what the declaration promises.
-            fn orbit_defect(&self, q: &Self::Configuration) -> #scalar {
+            fn orbit_defect(&self, q: &#configuration) -> #scalar {
                 #defect
             }
         })
     }
 
     fn checks_of_isotropy(&self) -> Option<TokenStream> {
+        let [configuration, _, momentum] = self.names_of_types();
         let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
         let kernel = self.program.generator.as_ref()?;
         let (defect, projection) = if self.program.form.keeps_matrices() {
@@ -411,11 +412,11 @@ impl Emitter<'_, '_> {
         };
         Some(quote! {
             /// The size of the component of μ that no motion of q can have.
-            fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
+            fn isotropy_defect(&self, q: &#configuration, mu: &#momentum) -> #scalar {
                 #defect
             }
             /// The momentum without that component.
-            fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
+            fn project_momentum(&self, q: &#configuration, mu: &#momentum) -> #momentum {
                 #projection
             }
         })

@@ -252,7 +252,7 @@ impl Emitter<'_, '_> {
             #[inline]
             fn #name(
                 &self,
-                constants: &#constants,
+                c: &#constants,
                 t: #scalar,
                 q: &#configuration,
                 d: &#element,

@@ -92,6 +92,10 @@ pub enum MatrixOperation {
     DiagonalMatrix,
     /// The diagonal of a matrix.
     Diagonal,
+    /// x^ in the basis of so(3).
+    Hat,
+    /// ⟨A, E_k⟩ in that basis.
+    Axial,
     /// Σ x_k E_k in the basis of so(n).
     Skew,
     /// ⟨A, E_k⟩ in that basis.
@@ -185,6 +189,51 @@ impl Kernel {
         Kernel { locals, outputs }
     }
 
+    /// The same with each shared term that is used once in its place, where its type is known without a name.
+    pub(super) fn nested(self) -> Kernel {
+        let mut uses = vec![0_usize; self.locals.len()];
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        self.locals.iter().chain(outputs).flat_map(Code::locals).for_each(|index| uses[index] += 1);
+        // the type of what is returned is known
+        let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
+        let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).collect();
+        let mut places: Vec<Code> = Vec::new();
+        let mut locals = Vec::new();
+        for (index, (code, uses)) in self.locals.iter().zip(uses).enumerate() {
+            let code = code.with_locals(&|other| places[other].clone());
+            if uses == 1 && (!code.needs_name() || returned.contains(&index)) {
+                places.push(code);
+            } else {
+                places.push(Code::Local(locals.len()));
+                locals.push(code);
+            }
+        }
+        let renamed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
+        let outputs = self.outputs.iter();
+        let outputs = outputs.map(|(shape, entries)| (*shape, entries.iter().map(renamed).collect())).collect();
+        Kernel { locals, outputs }
+    }
+
+    /// Its outputs, where each is an entry of an argument.
+    pub(super) fn reads(&self) -> Option<Vec<Code>> {
+        let outputs = self.outputs.iter().map(|(_, entries)| match &entries[..] {
+            [read @ Code::Read(_)] => Some(read.clone()),
+            _ => None,
+        });
+        outputs.collect()
+    }
+
+    /// The same with other codes for what is computed once per solve.
+    pub(super) fn with_terms(&self, terms: &[Code]) -> Kernel {
+        let put_in = |code: &Code| match code {
+            Code::Term(index) => Some(terms[*index].clone()),
+            _ => None,
+        };
+        let mapped = |codes: &Vec<Code>| codes.iter().map(|code| code.mapped(&put_in)).collect();
+        let outputs = self.outputs.iter().map(|(shape, entries)| (*shape, mapped(entries))).collect();
+        Kernel { locals: mapped(&self.locals), outputs }
+    }
+
     /// Which of its terms an output is made of.
     pub fn needed_by(&self, output: usize) -> Vec<bool> {
         let mut needed = vec![false; self.locals.len()];
@@ -265,6 +314,25 @@ impl Code {
         (total, all)
     }
 
+    fn as_local(&self) -> Option<usize> {
+        match self {
+            Code::Local(index) => Some(*index),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a matrix whose size only the type of a name says.
+    pub(crate) fn needs_name(&self) -> bool {
+        let Code::Whole(whole) = self else { return false };
+        matches!(
+            whole.operation,
+            MatrixOperation::Embedded(..)
+                | MatrixOperation::Skew
+                | MatrixOperation::SkewComponents
+                | MatrixOperation::SkewOuter
+        )
+    }
+
     fn divisor(&self) -> Option<&Code> {
         match self {
             Code::Reciprocal(x) => Some(x),
@@ -323,9 +391,24 @@ impl Code {
 
     /// The same with other codes for its shared terms.
     pub(super) fn with_locals(&self, other: &impl Fn(usize) -> Code) -> Code {
-        let inner = |code: &Code| code.with_locals(other);
+        self.mapped(&|part| match part {
+            Code::Local(index) => Some(other(*index)),
+            Code::Output(index, callee, output) => match other(*index) {
+                Code::Local(index) => Some(Code::Output(index, callee.clone(), *output)),
+                // by construction: calls are terms wherever they are put in
+                _ => None,
+            },
+            _ => None,
+        })
+    }
+
+    /// The same with other codes for some of its parts.
+    fn mapped(&self, other: &impl Fn(&Code) -> Option<Code>) -> Code {
+        if let Some(code) = other(self) {
+            return code;
+        }
+        let inner = |code: &Code| code.mapped(other);
         match self {
-            Code::Local(index) => other(*index),
             Code::Sum(constant, terms) => {
                 Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
             }
@@ -338,11 +421,6 @@ impl Code {
                 let inner = |(shape, entries): &(Shape, Vec<Code>)| (*shape, entries.iter().map(inner).collect());
                 Code::Call(callee.clone(), arguments.iter().map(inner).collect())
             }
-            Code::Output(index, callee, output) => match other(*index) {
-                Code::Local(index) => Code::Output(index, callee.clone(), *output),
-                // by construction: calls are terms wherever they are put in
-                _ => self.clone(),
-            },
             Code::Whole(whole) => {
                 let operands = whole.operands.iter().map(inner).collect();
                 Code::Whole(Box::new(Whole { operands, ..(**whole).clone() }))

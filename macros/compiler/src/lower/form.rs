@@ -113,8 +113,7 @@ fn largest_system(formulas: &Formulas<'_>) -> usize {
 /// What of a system has no code with whole matrices.
 pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<Feature> {
     let model = &formulas.model;
-    let is_quaternion = model.configurations.iter().any(|leaf| leaf.is_quaternion)
-        || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions);
+    let is_quaternion = has_quaternions(formulas);
     let is_held = !formulas.is_free && model.isotropy == Isotropy::Fixed;
     let has = |feature: &Feature| match feature {
         Feature::Inputs => model.is_steered() || model.control.is_some(),
@@ -128,6 +127,13 @@ pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<Feature> {
         _ => false,
     };
     features::refused_beside(Feature::Matrices).find(has)
+}
+
+/// Whether configurations or group elements are quaternions, which are no matrices.
+pub(super) fn has_quaternions(formulas: &Formulas<'_>) -> bool {
+    let model = &formulas.model;
+    model.configurations.iter().any(|leaf| leaf.is_quaternion)
+        || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions)
 }
 
 /// About the multiplications of a linearisation of each momentum equation, written out: each column of the Jacobian is a directional

@@ -19,9 +19,13 @@ use words::{Weighted, cheapest_cut, common_letter};
 
 /// One output for each expression.
 pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
-    let mut lowering = Matrices::default();
-    let outputs = expressions.iter().map(|&expr| (expr.shape(), vec![lowering.value(expr)])).collect();
-    signs::moved(Kernel { locals: lowering.locals, outputs })
+    Matrices::default().kernel(expressions)
+}
+
+/// The same for a person to read: as few statements as there are shared terms, and matrices of blocks entry by entry.
+pub(super) fn short_kernel(expressions: &[Expr<'_>]) -> Kernel {
+    let lowering = Matrices { joins_blocks: true, ..Matrices::default() };
+    lowering.kernel(expressions).without_unused().nested()
 }
 
 /// Vectors, one after the other in one output.
@@ -29,11 +33,17 @@ pub(super) fn stack(expressions: &[Expr<'_>]) -> Kernel {
     kernel(&stacked(expressions).into_iter().collect::<Vec<_>>())
 }
 
-/// Numbers, one after the other in one output.
-pub(super) fn list(expressions: &[Expr<'_>]) -> Kernel {
-    let mut lowering = Matrices::default();
+/// The same for a person to read.
+pub(super) fn short_stack(expressions: &[Expr<'_>]) -> Kernel {
+    short_kernel(&stacked(expressions).into_iter().collect::<Vec<_>>())
+}
+
+/// Numbers, one after the other in one output, for a person to read.
+pub(super) fn short_list(expressions: &[Expr<'_>]) -> Kernel {
+    let mut lowering = Matrices { joins_blocks: true, ..Matrices::default() };
     let entries: Vec<Code> = expressions.iter().map(|&expr| lowering.value(expr)).collect();
-    signs::moved(Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] })
+    let outputs = vec![(Shape::vector(entries.len()), entries)];
+    signs::moved(Kernel { locals: lowering.locals, outputs }).without_unused().nested()
 }
 
 /// The largest entry of each expression, in one output.
@@ -70,9 +80,16 @@ pub(super) fn stacked<'g>(expressions: &[Expr<'g>]) -> Option<Expr<'g>> {
 struct Matrices {
     locals: Vec<Code>,
     known: Table<usize, Code>,
+    /// Whether matrices that are made of blocks are written entry by entry.
+    joins_blocks: bool,
 }
 
 impl Matrices {
+    fn kernel(mut self, expressions: &[Expr<'_>]) -> Kernel {
+        let outputs = expressions.iter().map(|&expr| (expr.shape(), vec![self.value(expr)])).collect();
+        signs::moved(Kernel { locals: self.locals, outputs })
+    }
+
     /// The code of an expression: a scalar where it is 1×1, else the matrix as a whole.
     fn value(&mut self, expr: Expr<'_>) -> Code {
         if let Some(known) = self.known.get(&expr.position()) {
@@ -150,7 +167,11 @@ impl Matrices {
             View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
             View::Block(a, row, column) => self.block(a, row, column, shape),
             View::Embed(a, row, column) => {
+                let inner = a.shape();
                 let a = self.value(a);
+                if self.joins_blocks {
+                    return self.embedded(&a, inner, (row, column), shape);
+                }
                 self.operation(MatrixOperation::Embedded(row, column), vec![a], shape, Cost::default())
             }
             View::Hadamard(a, b) => {
@@ -171,9 +192,12 @@ impl Matrices {
             }
             View::Wedge(algebra, x) => {
                 let x = self.value(x);
-                match is_rotations(graph, algebra) {
-                    true => self.operation(MatrixOperation::Skew, vec![x], shape, Cost::default()),
-                    false => self.wedge(graph, algebra, &x),
+                if is_rotations(graph, algebra) {
+                    self.operation(MatrixOperation::Skew, vec![x], shape, Cost::default())
+                } else if is_hat(graph, algebra) {
+                    self.operation(MatrixOperation::Hat, vec![x], shape, Cost::default())
+                } else {
+                    self.wedge(graph, algebra, &x)
                 }
             }
             View::Components(algebra, a) => match self.outer(graph, algebra, a) {
@@ -203,7 +227,7 @@ impl Matrices {
         }
         let value = self.value(a);
         match shape.is_scalar() {
-            true => entry(&value, row, column),
+            true => self.entry(&value, row, column),
             false => self.operation(MatrixOperation::Block(row, column), vec![value], shape, Cost::default()),
         }
     }
@@ -214,7 +238,7 @@ impl Matrices {
         let mut entries = vec![Vec::new(); shape.len()];
         for (k, element) in basis.elements.iter().enumerate() {
             for (i, j, value) in element {
-                let x = if algebra.dimension() == 1 { x.clone() } else { entry(x, k, 0) };
+                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(x, k, 0) };
                 entries[i * shape.columns + j].push((value.clone(), x));
             }
         }
@@ -228,10 +252,14 @@ impl Matrices {
             let cost = Cost { additions: shape.rows, ..Cost::default() };
             return self.operation(MatrixOperation::SkewComponents, vec![a], shape, cost);
         }
+        if is_hat(graph, algebra) && !(self.joins_blocks && self.is_read(&a)) {
+            let cost = Cost { additions: 3, ..Cost::default() };
+            return self.operation(MatrixOperation::Axial, vec![a], shape, cost);
+        }
         let basis = graph.basis(algebra);
         let component = |element: &clebsch_symbolic::Sparse| {
-            let terms = element.iter().map(|(i, j, value)| (value.clone(), entry(&a, *i, *j))).collect();
-            linear(integer(0), terms)
+            let terms = element.iter().map(|(i, j, value)| (value.clone(), self.entry(&a, *i, *j))).collect();
+            total(terms)
         };
         let components: Vec<Code> = basis.elements.iter().map(component).collect();
         match components.len() {
@@ -308,6 +336,9 @@ impl Matrices {
         match word {
             [only] => {
                 let only = self.value(*only);
+                if self.joins_blocks && self.is_read(&only) {
+                    return total((0..n).map(|i| (integer(1), self.entry(&only, i, i))).collect());
+                }
                 self.operation(
                     MatrixOperation::Trace,
                     vec![only],
@@ -364,7 +395,7 @@ impl Matrices {
         let columns = numbers.len() / shape.rows;
         let row = |row: &[Rational]| {
             let terms = row.iter().enumerate().filter(|(_, number)| **number != integer(0));
-            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), entry(vector, j, 0))).collect();
+            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), self.entry(vector, j, 0))).collect();
             linear(integer(0), terms)
         };
         let entries: Vec<Code> = numbers.chunks(columns).map(row).collect();
@@ -448,6 +479,12 @@ impl Matrices {
                     let product = self.product(&word);
                     let cost = Cost { multiplications: shape.len(), ..Cost::default() };
                     let weight = linear(integer(0), vec![(coefficient, scale)]);
+                    if self.joins_blocks && self.is_listed(&product) {
+                        let entries = shape.positions().map(|(i, j)| times(&weight, self.entry(&product, i, j)));
+                        let entries = entries.collect();
+                        parts.push((integer(1), self.entries(shape, entries)));
+                        continue;
+                    }
                     let weight = self.shared(weight);
                     parts.push((
                         integer(1),
@@ -471,6 +508,9 @@ impl Matrices {
             [] => return self.operation(MatrixOperation::Zero, Vec::new(), shape, Cost::default()),
             _ => {}
         }
+        if let Some(entries) = self.joined(shape, &parts) {
+            return self.entries(shape, entries);
+        }
         let multiplications =
             parts.iter().filter(|(weight, _)| *weight != integer(1) && *weight != integer(-1)).count();
         let cost = Cost {
@@ -480,6 +520,101 @@ impl Matrices {
         };
         let (weights, operands) = parts.into_iter().unzip();
         self.operation(MatrixOperation::Sum(weights), operands, shape, cost)
+    }
+}
+
+/// Matrices of blocks, entry by entry.
+impl Matrices {
+    /// The operation that a matrix is the result of.
+    fn operation_of<'a>(&'a self, code: &'a Code) -> Option<&'a Whole> {
+        match code {
+            Code::Local(index) => self.operation_of(&self.locals[*index]),
+            Code::Whole(whole) => Some(whole),
+            _ => None,
+        }
+    }
+
+    /// Entry (i, j) of a matrix, in that which it is a part of.
+    fn entry(&self, a: &Code, i: usize, j: usize) -> Code {
+        let Some(whole) = self.operation_of(a).filter(|_| self.joins_blocks) else { return entry(a, i, j) };
+        match &whole.operation {
+            MatrixOperation::Argument(first) => Code::Read(Input { row: i, column: j, ..first.clone() }),
+            MatrixOperation::Entries => whole.operands[i * whole.shape.columns + j].clone(),
+            MatrixOperation::Zero => Code::Number(integer(0)),
+            MatrixOperation::Transpose => self.entry(&whole.operands[0], j, i),
+            MatrixOperation::Block(row, column) => self.entry(&whole.operands[0], row + i, column + j),
+            MatrixOperation::Hat => match (3 + j - i) % 3 {
+                0 => Code::Number(integer(0)),
+                1 => linear(integer(0), vec![(integer(-1), self.entry(&whole.operands[0], 3 - i - j, 0))]),
+                _ => self.entry(&whole.operands[0], 3 - i - j, 0),
+            },
+            _ => entry(a, i, j),
+        }
+    }
+
+    /// Whether the entries of a matrix are made one by one.
+    fn is_listed(&self, code: &Code) -> bool {
+        self.operation_of(code).is_some_and(|whole| match whole.operation {
+            MatrixOperation::Entries | MatrixOperation::Zero | MatrixOperation::Hat => true,
+            MatrixOperation::Transpose => self.is_listed(&whole.operands[0]),
+            _ => false,
+        })
+    }
+
+    /// Whether they are made one by one, or are those of a larger matrix.
+    fn is_read(&self, code: &Code) -> bool {
+        self.is_listed(code)
+            || self.operation_of(code).is_some_and(|whole| match whole.operation {
+                MatrixOperation::Block(..) => true,
+                MatrixOperation::Transpose => self.is_read(&whole.operands[0]),
+                _ => false,
+            })
+    }
+
+    /// A block in a matrix of zeros.
+    fn embedded(&mut self, a: &Code, inner: Shape, (row, column): (usize, usize), shape: Shape) -> Code {
+        let entry = |(i, j): (usize, usize)| {
+            let within = i.checked_sub(row).zip(j.checked_sub(column));
+            let within = within.filter(|(i, j)| *i < inner.rows && *j < inner.columns);
+            match within {
+                None => Code::Number(integer(0)),
+                Some(_) if inner.is_scalar() => a.clone(),
+                Some((i, j)) => self.entry(a, i, j),
+            }
+        };
+        let entries = shape.positions().map(entry).collect();
+        self.entries(shape, entries)
+    }
+
+    /// The entries of a sum of matrices that are made one by one, or of vectors of which one is.
+    fn joined(&self, shape: Shape, parts: &[(Rational, Code)]) -> Option<Vec<Code>> {
+        let mut listed = parts.iter().map(|(_, part)| self.is_listed(part));
+        let is_joined = if shape.is_column() { listed.any(|listed| listed) } else { listed.all(|listed| listed) };
+        let sum = |(i, j): (usize, usize)| {
+            total(parts.iter().map(|(weight, part)| (weight.clone(), self.entry(part, i, j))).collect())
+        };
+        (self.joins_blocks && is_joined).then(|| shape.positions().map(sum).collect())
+    }
+}
+
+/// Σ weight · code, without what is 0.
+fn total(terms: Vec<(Rational, Code)>) -> Code {
+    let (mut constant, mut rest) = (integer(0), Vec::new());
+    for (weight, term) in terms {
+        match term {
+            Code::Number(value) => constant += weight * value,
+            term => rest.push((weight, term)),
+        }
+    }
+    linear(constant, rest)
+}
+
+/// weight · code.
+fn times(weight: &Code, code: Code) -> Code {
+    match code {
+        Code::Number(value) if value == integer(0) => Code::Number(value),
+        Code::Number(value) => linear(integer(0), vec![(value, weight.clone())]),
+        code => Code::Product(vec![weight.clone(), code]),
     }
 }
 
@@ -503,6 +638,11 @@ fn skew_letter(letter: Expr<'_>) -> Option<(Rational, Expr<'_>)> {
 fn is_rotations(graph: &Graph, algebra: Algebra) -> bool {
     let shape = algebra.matrix_shape();
     algebra.is_skew() && shape.rows > 3 && algebra == graph.algebra_of(Group::SpecialOrthogonal(shape.rows))
+}
+
+/// Whether a basis is that of so(3), x^ v = x × v.
+fn is_hat(graph: &Graph, algebra: Algebra) -> bool {
+    algebra == graph.algebra_of(Group::SpecialOrthogonal(3))
 }
 
 /// The word of a column times a row, and where the row begins, where ⟨·, E⟩ of it is taken for rotations.

@@ -16,6 +16,7 @@ mod matrices;
 mod names;
 mod pairs;
 mod print;
+mod rare;
 mod scalar;
 mod signs;
 mod stepping;
@@ -28,6 +29,8 @@ use clebsch_symbolic::{Expr, Property, Shape, identity};
 use crate::derive::{self, Formulas, Id, Stencil, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Factor, Isotropy, Space};
+
+use rare::Rare;
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use control::{BendKernels, ControlKernels, EndpointKernels, StepOfInputs};
@@ -141,7 +144,12 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let steps = stepping::steps(&formulas, &mut scalars, &mut hoisted);
     let splitting = stepping::splitting(&formulas, &mut scalars, &mut hoisted);
     let collocation = stepping::collocation(&formulas, &mut scalars, &mut hoisted);
-    let lift = stepping::of_row(&formulas, Id::Lift, &mut scalars);
+    let rare = Rare::of(&formulas);
+    // steps of order 16 carry covectors along
+    let lift = match formulas.collocation {
+        Some(_) => stepping::of_row(&formulas, Id::Lift, &mut scalars),
+        None => rare.kernel(&mut scalars, formulas.value(Id::Lift).unwrap_or_default()),
+    };
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
     let endpoint = control::endpoint(&formulas, &mut scalars);
@@ -150,7 +158,9 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let after = legendre_next(&formulas);
     let names = names::constants(&scalars, &hoisted);
     let constants = hoisted.kernel(&mut scalars, Hoisting::Nothing);
-    let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| stack(scalars, &replaced(parts, &inverses));
+    let asked =
+        |expressions: &[Expr<'_>], scalars: &mut Scalars| rare.kernel(scalars, &replaced(expressions, &inverses));
+    let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| rare.stack(scalars, &replaced(parts, &inverses));
     let links = formulas.links.iter().map(|link| {
         let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();
         LinkKernels { value: outputs(&mut scalars, &[link.term.value]), gradient: outputs(&mut scalars, &slopes) }
@@ -160,24 +170,29 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let program = Program {
         links,
         gathered,
-        act: outputs(&mut scalars, &formulas.model.action),
-        momentum_map: stacked(&formulas.momentum_map, &mut scalars),
+        act: asked(&formulas.model.action, &mut scalars),
+        // these steps, and those of sites, map covectors
+        momentum_map: if formulas.collocation.is_some() || formulas.model.power.is_some() {
+            stack(&mut scalars, &replaced(&formulas.momentum_map, &inverses))
+        } else {
+            stacked(&formulas.momentum_map, &mut scalars)
+        },
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),
         legendre: stacked(&formulas.legendre, &mut scalars),
         legendre_next: stacked(&after, &mut scalars),
         stagger: formulas.stagger.as_ref().map(|stagger| stacked(stagger, &mut scalars)),
-        potential: outputs(&mut scalars, &[formulas.potential_energy]),
+        potential: asked(&[formulas.potential_energy], &mut scalars),
         inertia: inertia(&formulas, &mut scalars),
         energy_coefficients: (!form.keeps_matrices()).then(|| energy_coefficients(&formulas, &mut scalars)),
-        momentum_matrix: outputs(&mut scalars, &momentum_matrices(&formulas)),
+        momentum_matrix: asked(&momentum_matrices(&formulas), &mut scalars),
         momentum_components: stacked(&momentum_components(&formulas), &mut scalars),
         velocity: velocity(&formulas, &mut scalars),
         gyroscopic: gyroscopic(&formulas, &mut scalars),
-        conserved: conserved(&formulas, &mut scalars),
+        conserved: conserved(&formulas, &rare, &mut scalars),
         membership: membership(&formulas, &mut scalars),
         generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed).then(|| {
             match formulas.projection.as_ref().filter(|_| scalars.keeps_matrices) {
-                Some(projection) => stacked(projection, &mut scalars),
+                Some(projection) => stack(&mut scalars, &replaced(projection, &inverses)),
                 None => generator(&formulas, &mut scalars),
             }
         }),
@@ -379,7 +394,7 @@ fn gyroscopic(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
 }
 
 /// The values of the conserved momenta, in one vector. Inverses are those of configurations, by the formulas of their groups.
-fn conserved(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+fn conserved(formulas: &Formulas<'_>, rare: &Rare, scalars: &mut Scalars) -> Option<Kernel> {
     let leaves = formulas.model.configurations.iter().filter_map(|leaf| match leaf.space {
         Space::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
         _ => None,
@@ -387,7 +402,7 @@ fn conserved(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
     let inverses: Vec<_> = leaves.flatten().collect();
     let values: Vec<_> =
         formulas.symmetries.conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
-    let conserved = || if scalars.keeps_matrices { matrices::list(&values) } else { stack(scalars, &values) };
+    let conserved = || rare.list(scalars, &values);
     (!values.is_empty()).then(conserved)
 }
 

@@ -240,6 +240,8 @@ fn is_linear(operation: &MatrixOperation) -> bool {
             | Hadamard
             | DiagonalMatrix
             | Diagonal
+            | Hat
+            | Axial
             | Skew
             | SkewComponents
             | SkewTimes

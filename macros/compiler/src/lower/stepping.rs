@@ -289,10 +289,16 @@ fn solve<'g>(
         Solution::Newton => {
             let outputs = linearized(scalars, equation.residual, &equation.columns(&formulas.symbols));
             let mut terms = Hoisted::default();
-            let linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
+            let mut linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
             let newton = fixed_point::Newton { linearize: &linearize, predict: predict.as_ref() };
             residual = fixed_point::residual(formulas, equation, &newton, scalars, (hoisted, &mut terms));
-            (terms.kernel(scalars, Hoisting::Constants(hoisted)), linearize)
+            let mut prepare = terms.kernel(scalars, Hoisting::Constants(hoisted));
+            // what is there already needs no preparation
+            if let Some(reads) = prepare.reads() {
+                (prepare, linearize) = (Kernel::default(), linearize.with_terms(&reads));
+                residual = residual.map(|alone| alone.with_terms(&reads));
+            }
+            (prepare, linearize)
         }
     };
     let mut solve = Solve {
