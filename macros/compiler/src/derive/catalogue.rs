@@ -74,6 +74,10 @@ pub enum Id {
     JacobianFactor(usize, usize),
     /// x(μ).
     Solution(usize, usize),
+    /// x(μ) to first order in h, component by component: what iterations start from.
+    Predictor(usize, usize),
+    /// The same with whole matrices.
+    WholePredictor(usize, usize),
     /// M⁺.
     MomentumUpdate(usize),
     /// The same with F = I + D.
@@ -100,6 +104,8 @@ pub enum Id {
     Lift,
     /// What a step of order 16 collocates.
     HamiltonEquations,
+    /// What its sweeps start from.
+    Guess,
 }
 
 /// How often a formula is computed.
@@ -138,6 +144,8 @@ impl Id {
             | Id::Jacobian(index, _)
             | Id::JacobianFactor(index, _)
             | Id::Solution(index, _)
+            | Id::Predictor(index, _)
+            | Id::WholePredictor(index, _)
             | Id::MomentumUpdate(index)
             | Id::MomentumAfter(index)
             | Id::EndKick(index)
@@ -153,7 +161,9 @@ impl Id {
             Id::Equation(_, number)
             | Id::Jacobian(_, number)
             | Id::JacobianFactor(_, number)
-            | Id::Solution(_, number) => Some(number),
+            | Id::Solution(_, number)
+            | Id::Predictor(_, number)
+            | Id::WholePredictor(_, number) => Some(number),
             _ => None,
         }
     }
@@ -183,6 +193,7 @@ impl Id {
             Id::Jacobian(..) => &["linearize", "system"],
             Id::JacobianFactor(..) => &["linearize"],
             Id::Solution(..) => &["closed_form", "explicit"],
+            Id::Predictor(..) => &["predict", "explicit"],
             Id::MomentumAfter(_) => &["update"],
             Id::EndKick(_) => &["end_kick"],
             Id::EndGradient(_) => &["end_gradient"],
@@ -237,6 +248,7 @@ impl Id {
             Id::Jacobian(..) => listed("Jacobian", Some(LieGroupMethods), Hot),
             Id::JacobianFactor(..) => unlisted("factor of the Jacobian", None, Hot),
             Id::Solution(..) => listed("solution", None, Hot),
+            Id::Predictor(..) | Id::WholePredictor(..) | Id::Guess => unlisted("predictor", None, Hot),
             Id::MomentumUpdate(_) => listed("momentum update", Some(ClebschOptimalControl), Hot),
             Id::MomentumAfter(_) => unlisted("momentum update", Some(ClebschOptimalControl), Hot),
             Id::Increment => unlisted("increment", Some(LieGroupMethods), Hot),

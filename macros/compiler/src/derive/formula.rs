@@ -36,6 +36,8 @@ enum Wording<'g> {
     AsIs,
     /// Each expression as it is or expanded, whichever is shorter.
     Shorter,
+    /// As these expressions, where what is computed is made of their entries.
+    Like(Vec<Expr<'g>>),
     /// In words: Unicode and LaTeX.
     Words(String, String),
     /// Each expression with a kick at this place added to it.
@@ -69,6 +71,11 @@ impl<'g> Formula<'g> {
     /// A formula whose expressions are written expanded where that is shorter.
     pub(super) fn shorter(id: Id, symbol: impl Into<String>, value: &[Expr<'g>]) -> Formula<'g> {
         Formula { wording: Wording::Shorter, ..Formula::new(id, symbol, value) }
+    }
+
+    /// The same formula, written like these expressions.
+    pub(super) fn like(self, expressions: Vec<Expr<'g>>) -> Formula<'g> {
+        Formula { wording: Wording::Like(expressions), ..self }
     }
 
     /// The same formula in words.
@@ -115,7 +122,8 @@ impl<'g> Formula<'g> {
 
     /// The shapes of the right sides.
     pub fn shapes(&self) -> Vec<Shape> {
-        self.value.iter().map(|value| value.shape()).collect()
+        let written = if let Wording::Like(expressions) = &self.wording { expressions } else { &self.value };
+        written.iter().map(|value| value.shape()).collect()
     }
 
     /// `symbol = expression`, tuples in parentheses.
@@ -144,6 +152,9 @@ impl<'g> Formula<'g> {
         match &self.wording {
             Wording::AsIs => each(&|value| notation.of(without_embeddings(value))),
             Wording::Shorter => each(&|value| notation.of(without_embeddings(shorter(value)))),
+            Wording::Like(expressions) => {
+                expressions.iter().map(|value| notation.of(without_embeddings(shorter(*value)))).collect()
+            }
             Wording::Words(unicode, latex) => vec![if notation == Notation::Latex { latex } else { unicode }.clone()],
             Wording::AndKick(place, kicks) => {
                 let write = |(value, kick): (&Expr<'g>, &Expr<'g>)| {

@@ -74,7 +74,7 @@ impl<'g> Formulas<'g> {
         rows.extend(self.rows_of_move());
         rows.extend(self.row_of_stagger());
         rows.extend(self.rows_of_splitting());
-        rows.extend(self.row_of_collocation());
+        rows.extend(self.rows_of_collocation());
         rows.retain(|row| !row.value.is_empty());
         rows
     }

@@ -86,7 +86,8 @@ impl<'g> Emitter<'_, 'g> {
         let scope = self.scope_of_solve(solve);
         let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
         let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
-        let solved = self.program.formulas.titled(Id::Solution(index, number));
+        let (solution, predictor) = (Id::Solution(index, number), Id::Predictor(index, number));
+        let solved = self.program.formulas.titled_all(|id| id == solution || id == predictor);
         let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
         let method = match &solve.sine_squared {
             Some(kernel) => {
@@ -113,7 +114,8 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }
             None => {
-                let title = match (solved.is_empty(), solve.given.is_empty()) {
+                let is_predicted = solved.iter().any(|row| row.id == predictor);
+                let title = match (is_predicted, solve.given.is_empty()) {
                     (true, _) => "The solution, h Σ⁻¹μ in the units of the chart.",
                     (false, true) => "The solution, coordinate after coordinate.",
                     (false, false) => "The solution where the coordinates of equations before this one are x.",
@@ -251,8 +253,10 @@ impl<'g> Emitter<'_, 'g> {
         let given = if prepares { quote!(terms: &Self::Terms) } else { quote!(mu: &#target) };
         let predict = solve.predict.as_ref().map(|kernel| {
             let body = self.body_of_equation(solve, code::body(&scope, kernel, None));
+            let predictor = self.program.formulas.titled(Id::Predictor(index, number));
+            let documentation = docs::formulas("The solution to first order in h.", predictor, None);
             quote! {
-                /// The solution to first order in h.
+                #documentation
                 #[inline]
                 fn predict(&self, mu: &#target) -> #vector {
                     #body

@@ -7,7 +7,6 @@ use super::kernel::kernel;
 use super::{Code, Hoisted, Hoisting, Kernel, Scalars, grids, matrices};
 use crate::derive::{Equation, Formulas, Solution};
 use crate::model::Solver;
-use clebsch_symbolic::Expr;
 
 /// A linearisation with its linear system has to cost as many residuals, or Newton's method is taken.
 const RESIDUALS: usize = 3;
@@ -37,7 +36,7 @@ pub(super) fn residual<'g>(
         return None;
     }
     let (mut constants, mut more) = (hoisted.clone(), terms.clone());
-    let outputs = grids(scalars, &[by_halves(formulas, equation)]);
+    let outputs = grids(scalars, &[formulas.residual_by_halves(equation)]);
     let residual = kernel(scalars, &outputs, Hoisting::Terms(&mut constants, &mut more));
     let m = equation.components.len();
     let iteration = operations(&residual) + operations(predict) + 4 * m;
@@ -65,16 +64,4 @@ pub(super) fn residual_of_matrices<'g>(
 fn operations(kernel: &Kernel) -> usize {
     let calls = kernel.locals.iter().filter(|code| matches!(code, Code::Call(..))).count();
     kernel.cost().total() + MATRIX_FUNCTION * calls
-}
-
-/// ρ(x) with the slopes of exponentials on so(4) by its halves.
-fn by_halves<'g>(formulas: &Formulas<'g>, equation: &Equation<'g>) -> Expr<'g> {
-    let slopes = equation.factors.iter().flat_map(|&k| {
-        let (group, x) = (formulas.model.factors[k].group, formulas.symbols.stacked_coordinates(k));
-        [x, -x]
-            .into_iter()
-            .filter_map(move |x| Some((group.exponential_slope(x), group.exponential_slope_by_halves(x)?)))
-    });
-    let slopes: Vec<_> = slopes.collect();
-    if slopes.is_empty() { equation.residual } else { equation.residual.substitute(&slopes) }
 }

@@ -13,6 +13,7 @@ use clebsch_symbolic::{
 
 use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
+use crate::derive::stacked;
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
 use words::{Weighted, cheapest_cut, common_letter};
@@ -58,21 +59,6 @@ pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
     };
     let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
     signs::moved(Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] })
-}
-
-/// Vectors, one after the other.
-pub(super) fn stacked<'g>(expressions: &[Expr<'g>]) -> Option<Expr<'g>> {
-    let (&first, rest) = expressions.split_first()?;
-    if rest.is_empty() {
-        return Some(first);
-    }
-    let shape = Shape::vector(expressions.iter().map(|part| part.shape().rows).sum());
-    let mut row = 0;
-    Some(expressions.iter().fold(first.graph().zero(shape), |sum, part| {
-        let placed = part.embed(shape, row, 0);
-        row += part.shape().rows;
-        sum + placed
-    }))
 }
 
 /// What is lowered of one kernel.

@@ -426,11 +426,6 @@ fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
         .then(|| kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing))
 }
 
-/// Σ⁻¹ as a symbol, which the stepper computes from Σ.
-fn inertia_inverse<'g>(formulas: &Formulas<'g>) -> Expr<'g> {
-    crate::derive::inertia_inverse(formulas.model.graph, formulas.inertia.shape())
-}
-
 impl Program<'_> {
     /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
     pub fn turns_in_plane(&self) -> bool {

@@ -7,8 +7,8 @@ use clebsch_symbolic::{Expr, Role, Shape, Zero};
 use super::fixed_point;
 use super::kernel::kernel;
 use super::matrices;
-use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, inertia_inverse, plain};
-use crate::derive::{Equation, Formulas, Id, Solution, Structure, Substep, by_inertia, chart_slope};
+use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, plain};
+use crate::derive::{Formulas, Id, Solution, Structure};
 
 /// The kernels of one substep.
 pub struct StepKernels {
@@ -154,14 +154,8 @@ pub(super) fn collocation(
 ) -> Option<CollocationKernels> {
     let collocation = formulas.collocation.as_ref()?;
     let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
-    let h = formulas.model.step_size;
-    let entries = collocation.algebra.iter().flat_map(|xi| (0..xi.shape().rows).map(|i| xi.entry(i, 0)));
-    let guess: Vec<_> = entries
-        .enumerate()
-        .map(|(component, velocity)| slope_of_chart(formulas, component, 1) * h * velocity)
-        .collect();
     Some(CollocationKernels {
-        guess: stack(scalars, hoisted, &guess),
+        guess: stack(scalars, hoisted, formulas.value(Id::Guess)?),
         slope: separate(scalars, hoisted, &slopes),
         lift: separate(scalars, hoisted, &collocation.lift),
     })
@@ -251,8 +245,8 @@ fn solve<'g>(
     let start = match (equation.formula, equation.solution) {
         (Some(formula), _) => Some(vec![formula]),
         (None, Solution::Linear | Solution::FreeRotation) => None,
-        (None, _) if scalars.keeps_matrices => whole_predictor(formulas, substep, equation),
-        (None, _) => predictor(formulas, substep, equation),
+        (None, _) if scalars.keeps_matrices => formulas.value(Id::WholePredictor(index, number)).map(<[_]>::to_vec),
+        (None, _) => formulas.value(Id::Predictor(index, number)).map(<[_]>::to_vec),
     };
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
@@ -264,7 +258,7 @@ fn solve<'g>(
         }
         Solution::Linear | Solution::Newton if scalars.keeps_matrices => {
             let linearize = match equation.solution {
-                Solution::Linear => [-equation.residual.substitute(&at_rest(formulas)), equation.directional],
+                Solution::Linear => [formulas.right_side(equation), equation.directional],
                 _ => [equation.residual, sylvester.unwrap_or(equation.directional)],
             };
             let linearize = matrices::kernel(&linearize);
@@ -279,10 +273,7 @@ fn solve<'g>(
             }
         }
         Solution::Linear => {
-            let rest = at_rest(formulas);
-            let columns = equation.columns(&formulas.symbols);
-            let columns: Vec<Expr<'g>> = columns.iter().map(|column| column.substitute(&rest)).collect();
-            let outputs = linearized(scalars, -equation.residual.substitute(&rest), &columns);
+            let outputs = linearized(scalars, formulas.right_side(equation), &formulas.columns_at_zero(equation));
             let system = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
             (kernel(scalars, &[], Hoisting::Nothing), system)
         }
@@ -332,12 +323,6 @@ fn solve<'g>(
     solve
 }
 
-/// The replacement of all chart coordinates by zero.
-fn at_rest<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let coordinates = formulas.symbols.blocks.iter().map(|block| block.coordinates);
-    coordinates.map(|x| (x, formulas.model.graph.zero(x.shape()))).collect()
-}
-
 /// A vector and the matrix with these columns.
 fn linearized(scalars: &mut Scalars, vector: Expr<'_>, columns: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
     let vector = grids(scalars, &[vector]).remove(0);
@@ -376,76 +361,4 @@ impl Solve {
         }
         (momenta, coordinates)
     }
-}
-
-/// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity: the solution to first order in h. `None` where Σ changes with the configuration.
-fn predictor<'g>(formulas: &Formulas<'g>, substep: &Substep<'g>, equation: &Equation<'g>) -> Option<Vec<Expr<'g>>> {
-    let graph = formulas.model.graph;
-    if formulas.inertia_moves() {
-        return None;
-    }
-    let count = equation.components.len();
-    let components = [equation.components.as_slice(), &equation.coupled].concat();
-    let shape = Shape::square(components.len());
-    let block = |matrix: Expr<'g>| {
-        let entry = |(i, j): (usize, usize)| matrix.entry(components[i], components[j]);
-        graph.stack(shape, shape.positions().map(entry).collect())
-    };
-    let inertia = block(formulas.inertia);
-    let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momentum_entry(formulas, component)).collect();
-    let velocity = by_inertia(inertia, || block(inertia_inverse(formulas)), &momentum);
-    let h = formulas.model.step_size;
-    Some(
-        velocity
-            .into_iter()
-            .take(count)
-            .zip(components)
-            .map(|(velocity, component)| slope_of_chart(formulas, component, substep.parts) * h * velocity)
-            .collect(),
-    )
-}
-
-/// The same for all components of each block at once.
-fn whole_predictor<'g>(
-    formulas: &Formulas<'g>,
-    substep: &Substep<'g>,
-    equation: &Equation<'g>,
-) -> Option<Vec<Expr<'g>>> {
-    if formulas.inertia_moves() {
-        return None;
-    }
-    let (symbols, h) = (&formulas.symbols, formulas.model.step_size);
-    let all = matrices::stacked(&symbols.momenta)?;
-    let (first, count) = (*equation.components.first()?, equation.components.len());
-    let is_run = equation.coupled.is_empty() && equation.components.iter().copied().eq(first..first + count);
-    // of the momentum those components are read that the equation is about
-    let (start, momentum) = if is_run { (first, all.block(first, 0, Shape::vector(count))) } else { (0, all) };
-    let velocity = match formulas.uniform_inertia {
-        Some(kappa) => momentum / kappa,
-        None => inertia_inverse(formulas).block(start, start, Shape::square(momentum.shape().rows)) * momentum,
-    };
-    let blocks = symbols.blocks_of(&equation.components).into_iter().map(|i| {
-        let block = symbols.blocks[i];
-        let part = velocity.block(block.offset - start, 0, Shape::vector(block.dimension()));
-        slope_of_chart(formulas, block.offset, substep.parts) * h * part
-    });
-    Some(blocks.collect())
-}
-
-/// dx/dξ at the identity for a component of one of so many parts of a step.
-fn slope_of_chart<'g>(formulas: &Formulas<'g>, component: usize, parts: i64) -> Expr<'g> {
-    let block = formulas.symbols.blocks_of(&[component])[0];
-    let (numerator, denominator) = chart_slope(&formulas.model, &formulas.symbols, block);
-    formulas.model.graph.rational(numerator, denominator * parts)
-}
-
-/// A component of the momentum, counted through all factors.
-fn momentum_entry<'g>(formulas: &Formulas<'g>, mut component: usize) -> Expr<'g> {
-    for mu in &formulas.symbols.momenta {
-        if component < mu.shape().rows {
-            return mu.entry(component, 0);
-        }
-        component -= mu.shape().rows;
-    }
-    formulas.model.graph.integer(0)
 }

@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::Expr;
 
+use crate::derive::exact::inertia_inverse;
 use crate::derive::{Equation, Formula, Formulas, Id, Solution, Substep};
 
 impl<'g> Formulas<'g> {
@@ -102,7 +103,23 @@ impl<'g> Formulas<'g> {
             .formula
             .map(|solution| Formula::new(Id::Solution(index, number), self.coordinates_of(equation), &[solution]));
         rows.extend(factor.into_iter().chain(solution));
+        rows.extend(self.rows_of_predictor(index, number));
         rows
+    }
+
+    /// What iterations of an equation start from.
+    fn rows_of_predictor(&self, index: usize, number: usize) -> Vec<Formula<'g>> {
+        let substep = &self.substeps[index];
+        let equation = &substep.equations[number];
+        if !self.is_predicted(equation) {
+            return Vec::new();
+        }
+        let symbol = self.coordinates_of(equation);
+        let row = Formula::new(Id::Predictor(index, number), symbol.as_str(), &self.predictor(substep, equation));
+        let printed = self.printed_predictor(substep, equation).unwrap_or_default();
+        let inverse = inertia_inverse(self.model.graph, self.inertia.shape());
+        let whole = self.whole_predictor(substep, equation, inverse).unwrap_or_default();
+        vec![row.like(printed), Formula::new(Id::WholePredictor(index, number), symbol, &whole)]
     }
 
     /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
@@ -158,8 +175,14 @@ impl<'g> Formulas<'g> {
         ]
     }
 
-    /// Hamilton's equations, which a step of order 16 collocates.
-    pub(super) fn row_of_collocation(&self) -> Option<Formula<'g>> {
+    /// Hamilton's equations, which a step of order 16 collocates, and what its sweeps start from.
+    pub(super) fn rows_of_collocation(&self) -> Vec<Formula<'g>> {
+        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
+        let guess = self.guess().map(|guess| Formula::new(Id::Guess, x, &guess));
+        self.row_of_collocation().into_iter().chain(guess).collect()
+    }
+
+    fn row_of_collocation(&self) -> Option<Formula<'g>> {
         let collocation = self.collocation.as_ref()?;
         let (q, xi) = (self.q(), self.letter(&self.symbols.algebra));
         let p = self.letter(&self.symbols.covectors);
