@@ -2,6 +2,9 @@
 //!
 //! (−a) b = −(a b), a − (−b) = a + b, −a − b = −(a + b) and a + b = b + a hold to the last bit: numbers are rounded alike on both sides of
 //! zero. Terms are otherwise added as before, so that nothing else than the sign of a zero changes.
+//!
+//! A shared term −a − b is computed as that where a does not change in the loop of a solve, so that −a is made once; where a changes it is a + b, which is
+//! then subtracted.
 
 use clebsch_symbolic::{Interner, One, Rational, Shape, Zero, integer, work};
 
@@ -21,15 +24,21 @@ pub(super) fn moved(kernel: Kernel) -> Kernel {
             continue;
         }
         let shape = shape(&code);
+        let is_computed = is_negative && has_terms(&code) && begins_slowly(&code);
         let (place, is_new) = signs.locals.intern(code);
-        signs.places.push((is_negative, place));
-        signs.shapes.extend(is_new.then_some(shape));
+        if is_new {
+            signs.shapes.push(shape);
+            signs.are_negative.push(is_computed);
+        }
+        signs.places.push((is_negative ^ signs.are_negative[place], place));
     }
     let mut outputs = Vec::with_capacity(kernel.outputs.len());
     for (shape, entries) in kernel.outputs {
         outputs.push((shape, entries.into_iter().map(|entry| signs.whole(entry)).collect()));
     }
-    Kernel { locals: signs.locals.into_values(), outputs }
+    let locals = signs.locals.into_values().into_iter().zip(signs.are_negative);
+    let locals = locals.map(|(code, is_negative)| if is_negative { negative(code) } else { code });
+    Kernel { locals: locals.collect(), outputs }
 }
 
 /// The negative of a code whose signs have been moved.
@@ -52,7 +61,7 @@ pub(super) fn negative(code: Code) -> Code {
 fn negative_sum(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
     let takes_sign = |(weight, code): &(Rational, Code)| !weight.is_one() || matches!(code, Code::Number(_));
     let is_second = constant.is_zero() && (terms[1].0.is_negative() || !takes_sign(&terms[0]) && takes_sign(&terms[1]));
-    if constant.is_zero() && !is_second && !takes_sign(&terms[0]) {
+    if constant.is_zero() && !is_second && !takes_sign(&terms[0]) && !begins_slowly(&terms[0].1) {
         return Code::Sum(integer(0), vec![(integer(-1), Code::Sum(constant, terms))]);
     }
     if is_second {
@@ -76,6 +85,8 @@ struct Signs {
     places: Vec<(bool, usize)>,
     /// The shapes of those that are matrices.
     shapes: Vec<Option<Shape>>,
+    /// Whether the negative of a term is computed: that of a sum whose first number takes the sign outside of loops.
+    are_negative: Vec<bool>,
 }
 
 impl Signs {
@@ -226,6 +237,23 @@ fn shape(code: &Code) -> Option<Shape> {
     }
 }
 
+/// Whether it is a sum of several terms.
+fn has_terms(code: &Code) -> bool {
+    matches!(code, Code::Sum(constant, terms) if !constant.is_zero() || terms.len() > 1)
+}
+
+/// Whether its first number changes less often than the rest: the negative of that number is made outside of the loop of a solve.
+fn begins_slowly(code: &Code) -> bool {
+    match code {
+        Code::Number(_) | Code::Constant(_) | Code::Term(_) => true,
+        Code::Sum(constant, terms) => {
+            !constant.is_zero() || terms.first().is_some_and(|(weight, term)| !weight.is_one() || begins_slowly(term))
+        }
+        Code::Product(factors) => factors.first().is_some_and(begins_slowly),
+        _ => false,
+    }
+}
+
 /// Whether the sign of an operand is that of the result.
 fn is_linear(operation: &MatrixOperation) -> bool {
     use MatrixOperation::*;
@@ -358,8 +386,22 @@ mod tests {
         let minus_b = sum(0, &[(-1, b.clone())]);
         let kernel = moved(with_terms(Vec::new(), Code::Product(vec![both.clone(), minus_b])));
         assert_eq!(*output(&kernel), Code::Product(vec![sum(0, &[(1, a.clone()), (1, b.clone())]), b.clone()]));
-        let kernel = moved(with_terms(Vec::new(), both));
-        assert_eq!(*output(&kernel), sum(0, &[(-1, sum(0, &[(1, a), (1, b)]))]));
+        let kernel = moved(with_terms(Vec::new(), both.clone()));
+        assert_eq!(*output(&kernel), both);
+        let terms = || vec![Code::Reciprocal(Box::new(a.clone())), Code::Reciprocal(Box::new(b.clone()))];
+        let kernel = moved(with_terms(terms(), sum(0, &[(-1, local(0)), (-1, local(1))])));
+        assert_eq!(*output(&kernel), sum(0, &[(-1, sum(0, &[(1, local(0)), (1, local(1))]))]));
+    }
+
+    #[test]
+    fn a_term_that_is_all_negative_stays_so_where_a_constant_takes_the_sign() {
+        let [a, b] = [0, 1].map(Code::Constant);
+        let both = sum(0, &[(-1, a.clone()), (-1, b.clone())]);
+        let opposite = sum(0, &[(1, a), (1, b.clone())]);
+        let kernel =
+            moved(with_terms(vec![both.clone(), opposite], sum(0, &[(1, b.clone()), (1, local(0)), (1, local(1))])));
+        assert_eq!(kernel.locals, [both]);
+        assert_eq!(*output(&kernel), sum(0, &[(1, b), (1, local(0)), (-1, local(0))]));
     }
 
     #[test]
