@@ -27,8 +27,8 @@ pub trait Parts: Clebsch + Sized {
     /// F = I + D.
     fn element(d: &Self::Element) -> Self::Element;
 
-    /// What of x and D the move takes.
-    fn motion(&self, x: &Self::Coordinates) -> Self::Motion;
+    /// What of x and D the move takes; D is made where it is needed.
+    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> Self::Motion;
 
     /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
     fn advance(&self, q: &Self::Configuration, motion: &Self::Motion) -> Self::Configuration;
@@ -204,7 +204,7 @@ pub trait FreeMotion: Parts {
     /// What the motion with this momentum keeps.
     fn kept(&self, constants: &Self::Constants, mu: &Self::Momentum) -> Self::Kept;
 
-    /// What moves q along this motion, and M after it where the motion gives both at once.
+    /// The coordinates x of this motion, and M after it where the motion gives both at once.
     ///
     /// # Errors
     /// As [`Substep::solve`].
@@ -213,7 +213,7 @@ pub trait FreeMotion: Parts {
         constants: &Self::Constants,
         kept: &Self::Kept,
         mu: &Self::Momentum,
-    ) -> Result<(Self::Motion, Self::Momentum), Error>;
+    ) -> Result<(Self::Coordinates, Self::Momentum), Error>;
 }
 
 /// Drifts that are exact, with kicks between them.

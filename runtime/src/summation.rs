@@ -5,7 +5,7 @@ use crate::{Scalar, Space};
 /// a + b as the rounded sum and what rounding took from it, whichever is the larger.
 ///
 /// Source: Knuth, *The Art of Computer Programming* 2, §4.2.2, theorem B (the error of a sum, due to Møller).
-#[inline]
+#[inline(always)]
 pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let of_b = sum - a;
@@ -24,7 +24,7 @@ pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
 /// seven additions, of which two stand between s and s⁺. Valid for any sizes of s and y, as long as s + y does not overflow.
 ///
 /// Source: Kahan, *Further remarks on reducing truncation errors*, Comm. ACM 8 (1965).
-#[inline]
+#[inline(always)]
 pub fn accumulate<T: Scalar, S: Space<T>>(sum: &S, rest: &S, increment: &S) -> (S, S) {
     let increment = increment.zip_map(rest, |d, r| d + r);
     (sum.zip_map(&increment, |s, y| exact_sum(s, y).0), sum.zip_map(&increment, |s, y| exact_sum(s, y).1))
@@ -49,7 +49,7 @@ pub trait Sums {
     /// The impulse and the rests.
     fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(
         left: &Self::Left<T, I, Q, N>,
-    ) -> (I, Rests<Self, T, Q, N>);
+    ) -> (&I, Rests<Self, T, Q, N>);
 
     /// The sum and its new rest.
     fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, increment: &V) -> V;
@@ -80,8 +80,8 @@ impl Sums for Plain {
     }
 
     #[inline(always)]
-    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &I) -> (I, ((), ())) {
-        (*left, ((), ()))
+    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &I) -> (&I, ((), ())) {
+        (left, ((), ()))
     }
 
     #[inline(always)]
@@ -116,8 +116,8 @@ impl Sums for Compensated {
     }
 
     #[inline(always)]
-    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &(I, (Q, N))) -> (I, (Q, N)) {
-        *left
+    fn parted<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>(left: &(I, (Q, N))) -> (&I, (Q, N)) {
+        (&left.0, left.1)
     }
 
     #[inline(always)]

@@ -87,7 +87,7 @@ fn step<S: Substep<0> + Substep<1>, C: Carry<S>>(
     u: &S::Input,
 ) -> Result<After<S, C>, Error> {
     let (mut state, impulse) = Moving::start(q, mu, left);
-    let kick = C::kick(&impulse, || Substep::<0>::start_kick(system, constants, t, q));
+    let kick = C::kick(impulse, || Substep::<0>::start_kick(system, constants, t, q));
     state.substep::<0>(system, constants, t, kick, u)?;
     state.push(Substep::<0>::end_kick(system, constants, t, &state.q));
     let kick = Substep::<1>::start_kick(system, constants, t, &state.q);

@@ -42,7 +42,7 @@ impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Colloca
         (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
     ) -> Result<Parted<S, Self>, Error> {
-        let (mut state, ()) = Moving::<S>::start::<()>(q, mu, left);
+        let (mut state, _) = Moving::<S>::start::<()>(q, mu, left);
         let p = completed(system, constants, q, mu);
         let (dq, dp) = change(system, constants, t, q, &p, mu)?;
         let half = S::Scalar::from_ratio(1, 2);
@@ -145,7 +145,7 @@ fn along<S: HamiltonEquations<N>, const N: usize>(
     p: &S::Configuration,
 ) -> [S::Scalar; N] {
     let d = system.increment(x);
-    let q = moved(system, q, x);
+    let q = moved(system, q, x, &d);
     let p = system.lift(&q, p, &d);
     S::joined(&q, &p)
 }

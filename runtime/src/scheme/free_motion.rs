@@ -39,7 +39,7 @@ impl<S: Substep<0> + FreeMotion> Scheme<S> for AlongFreeMotion {
         state: (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
     ) -> Result<Parted<S, Self>, Error> {
-        if S::IS_SHORT { steps(system, constants, t, 1, state) } else { called(system, constants, t, 1, state) }
+        if S::IS_SHORT { step(system, constants, t, state) } else { called(system, constants, t, state) }
     }
 
     fn steps(
@@ -47,10 +47,14 @@ impl<S: Substep<0> + FreeMotion> Scheme<S> for AlongFreeMotion {
         constants: &S::Constants,
         (t, _): (S::Scalar, S::Scalar),
         count: usize,
-        state: (&S::Configuration, &S::Momentum, &Self::Left),
+        (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
     ) -> Result<Parted<S, Self>, Error> {
-        steps(system, constants, t, count, state)
+        let (mut state, kept) = Moving::<S>::start::<S::Kept>(q, mu, left);
+        for _ in 0..count {
+            follow(system, constants, t, kept, &mut state)?;
+        }
+        Ok(state.finish(*kept))
     }
 
     #[inline]
@@ -76,28 +80,40 @@ impl<S: Substep<0> + FreeMotion> Scheme<S> for AlongFreeMotion {
     }
 }
 
-/// (q, N) after several steps of one motion.
+/// (q, N) after one step along a motion.
 ///
 /// # Errors
 /// Those of [`FreeMotion::follow`].
 #[inline(always)]
-fn steps<S: Substep<0> + FreeMotion>(
+fn follow<S: Substep<0> + FreeMotion>(
     system: &S,
     constants: &S::Constants,
     t: S::Scalar,
-    count: usize,
+    kept: &S::Kept,
+    state: &mut Moving<S>,
+) -> Result<(), Error> {
+    // copies: a reference to a part of the state would keep all of it in memory
+    let from = state.q;
+    let mu = state.mu;
+    let (x, mu) = system.follow(constants, kept, &mu)?;
+    state.mu = mu;
+    let motion = system.motion(&x, || system.increment(&x));
+    state.advance(system, &motion);
+    state.update(system.update(constants, t, &from, &mu, &motion));
+    state.on_space();
+    Ok(())
+}
+
+#[inline(always)]
+fn step<S: Substep<0> + FreeMotion>(
+    system: &S,
+    constants: &S::Constants,
+    t: S::Scalar,
     (q, mu, left): (&S::Configuration, &S::Momentum, &LeftOf<S, S::Kept>),
 ) -> Result<Parted<S, AlongFreeMotion>, Error> {
     let (mut state, kept) = Moving::<S>::start::<S::Kept>(q, mu, left);
-    for _ in 0..count {
-        let motion;
-        (motion, state.mu) = system.follow(constants, &kept, &state.mu)?;
-        let from = state.q;
-        state.advance(system, &motion);
-        state.update(system.update(constants, t, &from, &state.mu, &motion));
-        state.on_space();
-    }
-    Ok(state.finish(kept))
+    follow(system, constants, t, kept, &mut state)?;
+    Ok(state.finish(*kept))
 }
 
 /// A long step, which the compiler may call.
@@ -106,8 +122,7 @@ fn called<S: Substep<0> + FreeMotion>(
     system: &S,
     constants: &S::Constants,
     t: S::Scalar,
-    count: usize,
     state: (&S::Configuration, &S::Momentum, &LeftOf<S, S::Kept>),
 ) -> Result<Parted<S, AlongFreeMotion>, Error> {
-    steps(system, constants, t, count, state)
+    step(system, constants, t, state)
 }

@@ -94,7 +94,7 @@ pub(super) fn changed<S: Parts, C: Carry<S>>(
     change: impl FnOnce(C::Impulse) -> C::Impulse,
 ) -> LeftOf<S, C::Impulse> {
     let (impulse, rests) = S::Sums::parted(left);
-    S::Sums::joined(change(impulse), rests)
+    S::Sums::joined(change(*impulse), rests)
 }
 
 /// A state after a step: q, N, and what the step leaves.
@@ -110,7 +110,7 @@ fn step<S: Substep<0>, C: Carry<S>>(
     u: &S::Input,
 ) -> Result<After<S, C>, Error> {
     let (mut state, impulse) = Moving::start(q, mu, left);
-    let kick = C::kick(&impulse, || system.start_kick(constants, t, q));
+    let kick = C::kick(impulse, || system.start_kick(constants, t, q));
     state.substep::<0>(system, constants, t, kick, u)?;
     let kick = system.end_kick(constants, t, &state.q);
     state.push(kick);

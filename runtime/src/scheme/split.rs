@@ -149,7 +149,7 @@ impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Spli
         (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
     ) -> Result<Parted<S, Self>, Error> {
-        let (start, ()) = Moving::<S>::start::<()>(q, mu, left);
+        let (start, _) = Moving::<S>::start::<()>(q, mu, left);
         let drifted = |part, state| drift(system, constants, part, state);
         let kicked = |t, weight, gradient, mut state: Moving<S>| {
             state.push(Some(system.kick(constants, t, &state.q, weight, gradient)));
@@ -217,7 +217,7 @@ fn drift<S: Substep<0>>(
     mut state: Moving<S>,
 ) -> Result<Moving<S>, Error> {
     let x = solve_part(system, constants, part, &state.q, &state.mu)?;
-    let motion = system.motion(&x);
+    let motion = system.motion(&x, || system.increment(&x));
     let from = state.q;
     state.advance(system, &motion);
     state.update(system.update(constants, Zero::zero(), &from, &state.mu, &motion));
@@ -239,7 +239,7 @@ fn drift_symmetric<S: Substep<0>>(
 ) -> Result<(S::Configuration, S::Configuration), Error> {
     let x = solve_part(system, constants, part, &q, &system.momentum_map(&q, &p))?;
     let d = system.increment(&x);
-    let q = moved(system, &q, &x);
+    let q = moved(system, &q, &x, &d);
     let p = system.lift(&q, &p, &d);
     Ok((q, p))
 }

@@ -26,7 +26,11 @@ pub(super) struct Moving<S: Parts> {
 impl<S: Parts> Moving<S> {
     /// From a state, with the impulse that its last step has left.
     #[inline(always)]
-    pub fn start<I: Space<S::Scalar>>(q: &S::Configuration, mu: &S::Momentum, left: &LeftOf<S, I>) -> (Self, I) {
+    pub fn start<'a, I: Space<S::Scalar>>(
+        q: &S::Configuration,
+        mu: &S::Momentum,
+        left: &'a LeftOf<S, I>,
+    ) -> (Self, &'a I) {
         let (impulse, rests) = S::Sums::parted(left);
         (Self { q: *q, mu: *mu, rests }, impulse)
     }
@@ -98,7 +102,7 @@ impl<S: Parts> Moving<S> {
         self.push(kick);
         self.push(system.start_force(constants, t, &self.q, u));
         let x = system.solve(constants, t, &self.q, &at_rest::<S, K>(system, constants, t, &self.q, self.mu), u)?;
-        let motion = system.motion(&x);
+        let motion = system.motion(&x, || system.increment(&x));
         self.push(system.moving_force(constants, t, &self.q, &x, u));
         let from = self.q;
         self.advance(system, &motion);
@@ -182,7 +186,7 @@ pub(super) fn symmetric<S: Substep<K>, const K: usize>(
     let x = system.solve(constants, t, &q, &mu, &S::Input::origin())?;
     let d = system.increment(&x);
     let p = plus(p, system.coupled_gradient(constants, t, &q, &d));
-    let q = moved(system, &q, &x);
+    let q = moved(system, &q, &x, &d);
     let p = system.lift(&q, &p, &d);
     let p = plus(p, system.end_gradient(constants, t, &q));
     Ok((q, p))
@@ -190,8 +194,13 @@ pub(super) fn symmetric<S: Substep<K>, const K: usize>(
 
 /// q⁺ without a look at rounding: the step on T*Q is symplectic in all directions of T*Rⁿ.
 #[inline(always)]
-pub(super) fn moved<S: Parts>(system: &S, q: &S::Configuration, x: &S::Coordinates) -> S::Configuration {
-    let moved = system.advance(q, &system.motion(x));
+pub(super) fn moved<S: Parts>(
+    system: &S,
+    q: &S::Configuration,
+    x: &S::Coordinates,
+    d: &S::Element,
+) -> S::Configuration {
+    let moved = system.advance(q, &system.motion(x, || *d));
     S::Sums::made_plainly(q, moved)
 }
 

@@ -192,7 +192,7 @@ const _: () = {
         }
 
         #[inline]
-        fn motion(&self, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+        fn motion(&self, d: &SMatrix<f64, 3, 3>, _: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
             *d
         }
 

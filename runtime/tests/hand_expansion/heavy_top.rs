@@ -194,8 +194,8 @@ const _: () = {
         }
 
         #[inline]
-        fn motion(&self, c: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
-            increment(c)
+        fn motion(&self, _: &SVector<f64, 3>, d: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            d()
         }
 
         /// R⁺ = R F = R + R(F − I)

@@ -69,6 +69,7 @@ impl Emitter<'_, '_> {
     pub(super) fn free_motion(&self) -> TokenStream {
         let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
         let (momentum, kind) = (self.momentum_type(), self.kind_of_free_rotation());
+        let coordinates = self.coordinates_type();
         let kept = if self.program.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };
         let count = Literal::usize_unsuffixed(self.free_rotations().count());
         let motions = self.free_rotations().map(|(name, solve)| {
@@ -87,14 +88,14 @@ impl Emitter<'_, '_> {
                     [#(#motions),*]
                 }
 
-                /// What moves q along them.
+                /// The coordinates of these motions.
                 #[inline]
                 fn follow(
                     &self,
                     c: &#constants,
                     kept: &Self::Kept,
                     mu: &#momentum,
-                ) -> #private::Result<(<Self as #private::Parts>::Motion, #momentum), #private::Error> {
+                ) -> #private::Result<(#coordinates, #momentum), #private::Error> {
                     #followed
                 }
             },
@@ -106,7 +107,7 @@ impl Emitter<'_, '_> {
         let private = &self.paths.private;
         if !self.program.formulas.turns_whole() {
             let (solutions, result) = self.solved(0, &self.program.steps[0], true);
-            return quote!(#solutions #private::Ok((#private::Parts::motion(self, &#result), *mu)));
+            return quote!(#solutions #private::Ok((#result, *mu)));
         }
         let Some((name, solve)) = self.free_rotations().next() else { return TokenStream::new() };
         // spatial momenta move as those of the body that turns back

@@ -217,15 +217,17 @@ impl Emitter<'_, '_> {
     }
 
     fn motion_of_step(&self) -> TokenStream {
-        let (private, coordinates, motion) = (&self.paths.private, self.coordinates_type(), self.motion_type());
+        let coordinates = self.coordinates_type();
+        let element = self.element_type();
+        let motion = self.motion_type();
         let body = match self.motion() {
-            Motion::Increment => quote!(#private::Parts::increment(self, x)),
+            Motion::Increment => quote!(d()),
             Motion::Coordinates => quote!(*x),
-            Motion::Both => quote!((*x, #private::Parts::increment(self, x))),
+            Motion::Both => quote!((*x, d())),
         };
         quote! {
             #[inline]
-            fn motion(&self, x: &#coordinates) -> #motion {
+            fn motion(&self, x: &#coordinates, d: impl ::core::ops::FnOnce() -> #element) -> #motion {
                 #body
             }
         }
