@@ -50,7 +50,7 @@ pub use crate::steered::{
 pub use crate::stumpff::stumpff;
 pub use crate::summation::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
-pub use crate::{Clebsch, Clock, Conserved, Conserves, Error, Scalar, Space, Time};
+pub use crate::{Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Space, Time};
 pub use core;
 pub use core::option::Option::{self, None, Some};
 pub use core::result::Result::{self, Err, Ok};

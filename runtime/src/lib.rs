@@ -37,6 +37,7 @@
 //! |---|---|
 //! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | step one system in several ways | [`Clebsch::stepper_by`] and [`Method`]; [`Stepper::state_of`] takes a state over from one to another |
 //! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
 //! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`], in a `Box` |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
@@ -161,6 +162,7 @@ mod lanes;
 mod linear;
 mod logarithm;
 mod matrices;
+mod method;
 mod newton;
 mod opaque;
 mod orbit;
@@ -200,6 +202,7 @@ pub use drive::{Drive, Integrator, SiteError, SiteStorage, Sites};
 pub use error::Error;
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
+pub use method::{Declared, Method};
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;

@@ -4,10 +4,10 @@
 //! macro writes parts alone.
 
 use crate::summation::Sums;
-use crate::{Carried, Clebsch, Edge, Error, Momenta, Space};
+use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta, Space};
 
 /// What all substeps of a step share: how q moves, and what the step is made of.
-pub trait Parts: Clebsch + Sized {
+pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
     /// How a step adds to q and N.
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.
@@ -43,7 +43,7 @@ pub trait Parts: Clebsch + Sized {
     /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. It is the last thing that a step does: nothing waits
     /// for it.
     #[inline(always)]
-    fn on_space(q: Self::Configuration, rest: RestOf<Self>) -> (Self::Configuration, RestOf<Self>) {
+    fn on_space(q: Self::Configuration, rest: RestOf<Self, M>) -> (Self::Configuration, RestOf<Self, M>) {
         (q, rest)
     }
 }
@@ -52,41 +52,32 @@ pub trait Parts: Clebsch + Sized {
 pub type Solved<X> = Result<X, Error>;
 
 /// What rounding has taken off q, where sums are compensated.
-pub type RestOf<S> = <<S as Parts>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
+pub type RestOf<S, M = Declared> =
+    <<S as Parts<M>>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
 
 /// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted, `inverse_legendre`.
 ///
 /// Every time is that at which the whole step starts. A part that a declaration does not have is `None` and costs nothing.
-pub trait Substep<const K: usize>: Parts {
+pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
     /// Whether what acts at the end of a substep is what acts at its start, so that one kick serves both.
     const ENDS_AS_IT_STARTS: bool = false;
 
     /// J(q, ∂U₀), the kick at the start, with −r(q, I) where sums are not compensated.
     #[inline(always)]
-    fn start_kick(
-        &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-    ) -> Option<Self::Momentum> {
+    fn start_kick(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
         let _ = (constants, t, q);
         None
     }
 
     /// J(q⁺, ∂U₁), the kick at the end.
     #[inline(always)]
-    fn end_kick(
-        &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-    ) -> Option<Self::Momentum> {
+    fn end_kick(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
         if Self::ENDS_AS_IT_STARTS { self.start_kick(constants, t, q) } else { None }
     }
 
     /// −r(q, I): what a coupled cost, or one with a term that is linear in the velocity, gives at F = I.
     #[inline(always)]
-    fn rest(&self, constants: &Self::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
+    fn rest(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
         let _ = (constants, t, q);
         None
     }
@@ -95,7 +86,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn start_force(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         u: &Self::Input,
@@ -108,7 +99,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn moving_force(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         x: &Self::Coordinates,
@@ -122,7 +113,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn end_force(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         x: &Self::Coordinates,
@@ -136,7 +127,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn start_gradient(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
     ) -> Option<Self::Configuration> {
@@ -148,7 +139,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn end_gradient(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
     ) -> Option<Self::Configuration> {
@@ -159,7 +150,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn coupled_gradient(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         d: &Self::Element,
@@ -174,7 +165,7 @@ pub trait Substep<const K: usize>: Parts {
     /// [`Error::NotFinite`], [`Error::Unsolvable`] or [`Error::NotConverged`].
     fn solve(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
@@ -185,7 +176,7 @@ pub trait Substep<const K: usize>: Parts {
     #[inline(always)]
     fn update(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
@@ -197,12 +188,12 @@ pub trait Substep<const K: usize>: Parts {
 }
 
 /// Free motions that are exact: a step follows one, and what one keeps is made once for all steps of it.
-pub trait FreeMotion: Parts {
+pub trait FreeMotion<M: Method<Self> = Declared>: Parts<M> {
     /// What the motion with a momentum keeps.
     type Kept: Space<Self::Scalar>;
 
     /// What the motion with this momentum keeps.
-    fn kept(&self, constants: &Self::Constants, mu: &Self::Momentum) -> Self::Kept;
+    fn kept(&self, constants: &M::Constants, mu: &Self::Momentum) -> Self::Kept;
 
     /// The coordinates x of this motion, and M after it where the motion gives both at once.
     ///
@@ -210,21 +201,21 @@ pub trait FreeMotion: Parts {
     /// As [`Substep::solve`].
     fn follow(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         kept: &Self::Kept,
         mu: &Self::Momentum,
     ) -> Result<(Self::Coordinates, Self::Momentum), Error>;
 }
 
 /// Drifts that are exact, with kicks between them.
-pub trait SplitKicks: Parts {
+pub trait SplitKicks<M: Method<Self> = Declared>: Parts<M> {
     /// The size h of a step.
-    fn step_size(constants: &Self::Constants) -> Self::Scalar;
+    fn step_size(constants: &M::Constants) -> Self::Scalar;
 
     /// J(q, ∂U) of U = −h b V + h³ g G·Σ⁻¹G with the weights b and g.
     fn kick(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         weight: Self::Scalar,
@@ -234,7 +225,7 @@ pub trait SplitKicks: Parts {
     /// ∂U
     fn kick_gradient(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         weight: Self::Scalar,
@@ -243,7 +234,7 @@ pub trait SplitKicks: Parts {
 }
 
 /// Hamilton's equations of (q, p), N numbers of which the first half are those of q.
-pub trait HamiltonEquations<const N: usize>: Parts {
+pub trait HamiltonEquations<const N: usize, M: Method<Self> = Declared>: Parts<M> {
     /// Sweeps end where they change q and p by less than this part of them; 0 where only rounding ends them.
     const TOLERANCE: f64 = 0.0;
     /// The most sweeps of one step.
@@ -252,23 +243,21 @@ pub trait HamiltonEquations<const N: usize>: Parts {
     const IS_AFFINE: bool = false;
 
     /// The size h of a step.
-    fn step_size(constants: &Self::Constants) -> Self::Scalar;
+    fn step_size(constants: &M::Constants) -> Self::Scalar;
 
     /// (q′, p′) at y = (q, p), all entries of q and then those of p.
-    fn slope(&self, constants: &Self::Constants, t: Self::Scalar, y: &[Self::Scalar; N]) -> [Self::Scalar; N];
+    fn slope(&self, constants: &M::Constants, t: Self::Scalar, y: &[Self::Scalar; N]) -> [Self::Scalar; N];
 
     /// A covector p at q with the momentum J(q, p) = μ.
-    fn covector(
-        &self,
-        constants: &Self::Constants,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
-    ) -> Self::Configuration;
+    fn covector(&self, constants: &M::Constants, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Configuration;
+
+    /// J(q, p), as [`Clebsch::momentum_map`], in the form that is fast.
+    fn momentum(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum;
 
     /// The coordinates x of the motion by the velocity of the start for the time h, to first order in h.
     fn guess(
         &self,
-        constants: &Self::Constants,
+        constants: &M::Constants,
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
@@ -285,9 +274,9 @@ pub trait HamiltonEquations<const N: usize>: Parts {
 }
 
 /// Steps along great circles.
-pub trait GreatCircles: Substep<0> {
+pub trait GreatCircles<M: Method<Self> = Declared>: Substep<0, M> {
     /// h/κ, κ the inertia.
-    fn turn(constants: &Self::Constants) -> Self::Scalar;
+    fn turn(constants: &M::Constants) -> Self::Scalar;
 }
 
 /// A step that has been differentiated.

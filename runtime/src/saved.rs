@@ -2,7 +2,7 @@
 
 use crate::scheme::{Held, Left};
 use crate::stepper::{check_configuration, check_momentum};
-use crate::{Clebsch, Error, Space, State, Stepper, Time};
+use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -18,12 +18,12 @@ struct Record<Time, Configuration, Momentum, Impulse, Scalar> {
     step_size: Scalar,
 }
 
-impl<S: Clebsch> Serialize for State<S>
+impl<S: Clebsch, M: Method<S>> Serialize for State<S, M>
 where
     S::Time: Serialize,
     S::Configuration: Serialize,
-    Held<S>: Serialize,
-    Left<S>: Serialize,
+    Held<S, M>: Serialize,
+    Left<S, M>: Serialize,
     S::Scalar: Serialize,
 {
     fn serialize<W: Serializer>(&self, writer: W) -> Result<W::Ok, W::Error> {
@@ -33,14 +33,14 @@ where
 }
 
 /// A state as it was read, which no stepper has seen yet: [`Stepper::resume`] makes it a [`State`].
-pub struct SavedState<S: Clebsch>(State<S>);
+pub struct SavedState<S: Clebsch, M: Method<S> = Declared>(State<S, M>);
 
-impl<'de, S: Clebsch> Deserialize<'de> for SavedState<S>
+impl<'de, S: Clebsch, M: Method<S>> Deserialize<'de> for SavedState<S, M>
 where
     S::Time: Deserialize<'de>,
     S::Configuration: Deserialize<'de>,
-    Held<S>: Deserialize<'de>,
-    Left<S>: Deserialize<'de>,
+    Held<S, M>: Deserialize<'de>,
+    Left<S, M>: Deserialize<'de>,
     S::Scalar: Deserialize<'de>,
 {
     fn deserialize<R: Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
@@ -49,21 +49,21 @@ where
     }
 }
 
-impl<S: Clebsch> Clone for SavedState<S> {
+impl<S: Clebsch, M: Method<S>> Clone for SavedState<S, M> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Clebsch> Copy for SavedState<S> {}
+impl<S: Clebsch, M: Method<S>> Copy for SavedState<S, M> {}
 
-impl<S: Clebsch> Debug for SavedState<S> {
+impl<S: Clebsch, M: Method<S>> Debug for SavedState<S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_tuple("SavedState").field(&self.0).finish()
     }
 }
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state that was written, after the checks of [`state`](Self::state): the next steps have the bits that they would have had.
     ///
     /// All that a step takes from the last one is written and read back: the impulse at q, what a free motion keeps, what compensated sums have
@@ -92,7 +92,7 @@ impl<S: Clebsch> Stepper<S> {
     ///
     /// # Errors
     /// As [`state`](Self::state); [`Error::NotFinite`] for what is left of the last step, and for the time.
-    pub fn resume(&self, saved: SavedState<S>) -> Result<State<S>, Error> {
+    pub fn resume(&self, saved: SavedState<S, M>) -> Result<State<S, M>, Error> {
         let SavedState(state) = saved;
         check_configuration(&self.system, &state.configuration)?;
         check_momentum(&self.system, &state.configuration, &state.momentum())?;

@@ -10,20 +10,20 @@
 //! GreatCircle     points on large spheres in (q, w)
 //! Sites           equal sites, one after the other
 //! ```
-//! A declaration names its scheme, [`Clebsch::Scheme`], and implements the parts that this scheme calls, [`crate::parts`].
+//! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
 /// What most schemes have in common: one set of constants, and states that hold N itself.
 macro_rules! momentum_is_held {
-    () => {
+    ($method:ty) => {
         type Held = S::Momentum;
-        type Constants = S::Constants;
+        type Constants = <$method as crate::Method<S>>::Constants;
 
-        fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-            system.constants(h)
+        fn constants(system: &S, h: S::Scalar) -> Result<<$method as crate::Method<S>>::Constants, Error> {
+            <$method as crate::Method<S>>::constants(system, h)
         }
 
         #[inline(always)]
-        fn whole(constants: &S::Constants) -> &S::Constants {
+        fn whole(constants: &Self::Constants) -> &<$method as crate::Method<S>>::Constants {
             constants
         }
 
@@ -51,7 +51,7 @@ mod split;
 mod substep;
 mod unstepped;
 
-use crate::{Clebsch, Clock, Error, Space, Time};
+use crate::{Clebsch, Clock, Declared, Error, Method, Space, Time};
 use core::fmt::Debug;
 
 pub use adjoint_pair::AdjointPair;
@@ -66,16 +66,17 @@ pub use substep::{Apart, Shared};
 pub use unstepped::Unstepped;
 
 /// What a state of S holds of its momentum.
-pub type Held<S> = <<S as Clebsch>::Scheme as Scheme<S>>::Held;
+pub type Held<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Held;
 /// What one step of S leaves to the next.
-pub type Left<S> = <<S as Clebsch>::Scheme as Scheme<S>>::Left;
-/// What no step of S changes.
-pub type Constants<S> = <<S as Clebsch>::Scheme as Scheme<S>>::Constants;
+pub type Left<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Left;
+/// What no step of S by M changes.
+pub type Constants<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Constants;
 /// The parts of a state: q, what is held of N, and what the last step has left.
-pub type Parted<S, M> = (<S as Clebsch>::Configuration, <M as Scheme<S>>::Held, <M as Scheme<S>>::Left);
+pub type Parted<S, P, M = Declared> =
+    (<S as Clebsch>::Configuration, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
 
-/// How a system S is stepped.
-pub trait Scheme<S: Clebsch + ?Sized> {
+/// How a system S is stepped by the method M.
+pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     /// What a state holds of its momentum from step to step: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers
     /// in place of n(n − 1)/2.
     type Held: Space<S::Scalar>;
@@ -88,11 +89,11 @@ pub trait Scheme<S: Clebsch + ?Sized> {
     /// Checks the parameters and computes what no step of the size h changes.
     ///
     /// # Errors
-    /// Those of [`Clebsch::constants`].
+    /// Those of [`Method::constants`].
     fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error>;
 
     /// The constants of one step of the whole size.
-    fn whole(constants: &Self::Constants) -> &S::Constants;
+    fn whole(constants: &Self::Constants) -> &M::Constants;
 
     /// What a state at q with the momentum μ holds of it.
     fn held(q: &S::Configuration, mu: &S::Momentum) -> Self::Held;
@@ -139,7 +140,7 @@ pub trait Scheme<S: Clebsch + ?Sized> {
         t: S::Scalar,
         state: (&S::Configuration, &Self::Held, &Self::Left),
         u: &S::Input,
-    ) -> Result<Parted<S, Self>, Error>;
+    ) -> Result<Parted<S, Self, M>, Error>;
 
     /// The same step, into the place of another state. After an error that state is unspecified.
     ///
@@ -171,7 +172,7 @@ pub trait Scheme<S: Clebsch + ?Sized> {
         steps: usize,
         (q, held, left): (&S::Configuration, &Self::Held, &Self::Left),
         u: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         let mut state = (*q, *held, *left);
         let mut clock = Clock::at(t);
         for _ in 0..steps {

@@ -1,7 +1,7 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
 use crate::scheme::{Held, Left, Scheme};
-use crate::{Clebsch, Clock, Mask, Scalar, Space, Time};
+use crate::{Clebsch, Clock, Declared, Mask, Method, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
@@ -11,17 +11,17 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 /// The impulse at q, which two steps share, or what a free motion keeps, travels along unseen; a stepper of another step size makes its own. To go on with another
 /// *system*, make a new state of [`configuration`](Self::configuration) and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a
 /// state has its [`time`](Self::time).
-pub struct State<S: Clebsch> {
+pub struct State<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
     /// N, or what stands for it.
-    pub(crate) held: Held<S>,
-    pub(crate) left: Left<S>,
+    pub(crate) held: Held<S, M>,
+    pub(crate) left: Left<S, M>,
     /// The step size that the impulse is for.
     pub(crate) h: S::Scalar,
 }
 
-impl<S: Clebsch> State<S> {
+impl<S: Clebsch, M: Method<S>> State<S, M> {
     /// The configuration q.
     #[inline]
     pub fn configuration(&self) -> &S::Configuration {
@@ -33,7 +33,7 @@ impl<S: Clebsch> State<S> {
     /// A state of a point on a large sphere, which is turned in (q, w), makes its components here, n(n − 1)/2 of them.
     #[inline]
     pub fn momentum(&self) -> S::Momentum {
-        S::Scheme::momentum(&self.configuration, &self.held)
+        M::Scheme::momentum(&self.configuration, &self.held)
     }
 
     /// (q, N)
@@ -76,7 +76,7 @@ pub type Body<S> = (
     <<S as Clebsch>::Momentum as Space<<S as Clebsch>::Scalar>>::Lane,
 );
 
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> State<S> {
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> State<S, M> {
     /// The time t of the configuration, in the unit of the step size.
     #[inline]
     pub fn time(&self) -> S::Scalar {
@@ -84,22 +84,22 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> State<S> {
     }
 }
 
-impl<S: Clebsch> Copy for State<S> {}
+impl<S: Clebsch, M: Method<S>> Copy for State<S, M> {}
 
-impl<S: Clebsch> Clone for State<S> {
+impl<S: Clebsch, M: Method<S>> Clone for State<S, M> {
     #[inline]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Clebsch> PartialEq for State<S> {
+impl<S: Clebsch, M: Method<S>> PartialEq for State<S, M> {
     fn eq(&self, other: &Self) -> bool {
         self.time == other.time && self.configuration == other.configuration && self.held == other.held
     }
 }
 
-impl<S: Clebsch> Debug for State<S> {
+impl<S: Clebsch, M: Method<S>> Debug for State<S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut state = f.debug_struct("State");
         show_time::<S>(&mut state, &self.time);

@@ -5,6 +5,7 @@ mod stepping;
 
 mod reading;
 
+mod conversion;
 mod each;
 mod formulas;
 mod refusal;
@@ -14,27 +15,41 @@ mod symmetric;
 
 use crate::scheme::{Constants, Scheme};
 use crate::space::check_lanes;
-use crate::{Clebsch, Error, Scalar, Space};
+use crate::{Clebsch, Declared, Error, Method, Scalar, Space};
+use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
 
 /// A system, a step size and what no step changes, computed once.
 ///
-/// Made by [`Clebsch::stepper`]. Nothing in it changes from step to step: one stepper can serve any number of states.
-#[derive(Clone, Debug)]
-pub struct Stepper<S: Clebsch> {
+/// Made by [`Clebsch::stepper`], or by [`Clebsch::stepper_by`] for a [`Method`] with a name. Nothing in it changes from step to step: one stepper can serve any number of states.
+pub struct Stepper<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) system: S,
     pub(crate) h: S::Scalar,
-    pub(crate) constants: Constants<S>,
+    pub(crate) constants: Constants<S, M>,
 }
 
-impl<S: Clebsch> Stepper<S> {
+// derived ones would ask for methods that are `Clone` and `Debug`
+impl<S: Clebsch + Clone, M: Method<S>> Clone for Stepper<S, M> {
+    fn clone(&self) -> Self {
+        Self { system: self.system.clone(), h: self.h, constants: self.constants.clone() }
+    }
+}
+
+impl<S: Clebsch + Debug, M: Method<S>> Debug for Stepper<S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { system, h, constants } = self;
+        f.debug_struct("Stepper").field("system", system).field("h", h).field("constants", constants).finish()
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
         check_lanes::<S::Scalar>(|lane| match h.lane(lane) {
             h if h.is_finite() && h != Zero::zero() => Ok(()),
             h => Err(Error::StepSize { value: h.to_f64() }),
         })?;
-        let constants = S::Scheme::constants(&system, h)?;
+        let constants = M::Scheme::constants(&system, h)?;
         Ok(Self { system, h, constants })
     }
 

@@ -1,7 +1,7 @@
 //! The trait that the derive macro implements.
 
 use crate::scheme::Scheme;
-use crate::{Error, Scalar, Space, Stepper, Time};
+use crate::{Error, Method, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
 use num_traits::Zero;
 
@@ -15,7 +15,8 @@ use num_traits::Zero;
 /// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere it is that of the
 /// configuration. An autonomous system takes no notice of it.
 ///
-/// People use it through a [`Stepper`], which holds h and the [`Constants`](Self::Constants).
+/// People use it through a [`Stepper`], which holds h and the [`Constants`](Self::Constants). What depends on how it is stepped is that of the declared dials
+/// here; the same of other methods is in [`Method`].
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
 pub trait Clebsch {
@@ -31,9 +32,9 @@ pub trait Clebsch {
     type MomentumMatrix: Space<Self::Scalar>;
     /// What forces take from outside during a step, `()` where they take nothing; the `u` of `force`.
     type Input: Space<Self::Scalar>;
-    /// What no step of one size changes: computed once per stepper.
+    /// What no step of one size by the declared dials changes: computed once per stepper.
     type Constants: Clone + Debug;
-    /// How it is stepped.
+    /// How it is stepped by the declared dials.
     #[doc(hidden)]
     type Scheme: Scheme<Self>;
     /// What a state knows of the time: `()` for an autonomous system, [`Clock`](crate::Clock) where the cost or the potential
@@ -158,6 +159,28 @@ pub trait Clebsch {
     /// # Errors
     /// [`Error::StepSize`], and those of [`constants`](Self::constants).
     fn into_stepper(self, h: Self::Scalar) -> Result<Stepper<Self>, Error>
+    where
+        Self: Sized,
+    {
+        Stepper::new(self, h)
+    }
+
+    /// A stepper of step size `h` by the method M, on a copy of this system; [`stepper`](Self::stepper) is that by the declared dials.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], and those of [`Method::constants`].
+    fn stepper_by<M: Method<Self>>(&self, h: Self::Scalar) -> Result<Stepper<Self, M>, Error>
+    where
+        Self: Clone,
+    {
+        self.clone().into_stepper_by(h)
+    }
+
+    /// A stepper of step size `h` by the method M that owns this system.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], and those of [`Method::constants`].
+    fn into_stepper_by<M: Method<Self>>(self, h: Self::Scalar) -> Result<Stepper<Self, M>, Error>
     where
         Self: Sized,
     {

@@ -1,33 +1,33 @@
 //! Step after step as an iterator.
 
-use crate::{Clebsch, Error, State, Stepper};
+use crate::{Clebsch, Declared, Error, Method, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 use core::iter::FusedIterator;
 
 /// The states q_0, q_1, … of a [`Stepper`], the start first. Endless; after an error it yields nothing more.
 ///
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
-pub struct Trajectory<'a, S: Clebsch> {
-    stepper: &'a Stepper<S>,
-    cursor: Cursor<S>,
+pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
+    stepper: &'a Stepper<S, M>,
+    cursor: Cursor<S, M>,
 }
 
 /// Where the iterator stands.
-enum Cursor<S: Clebsch> {
-    Start(State<S>),
-    After(State<S>),
+enum Cursor<S: Clebsch, M: Method<S>> {
+    Start(State<S, M>),
+    After(State<S, M>),
     End,
 }
 
-impl<'a, S: Clebsch> Trajectory<'a, S> {
+impl<'a, S: Clebsch, M: Method<S>> Trajectory<'a, S, M> {
     #[inline]
-    pub(crate) fn new(stepper: &'a Stepper<S>, start: State<S>) -> Self {
+    pub(crate) fn new(stepper: &'a Stepper<S, M>, start: State<S, M>) -> Self {
         Self { stepper, cursor: Cursor::Start(start) }
     }
 }
 
-impl<S: Clebsch> Iterator for Trajectory<'_, S> {
-    type Item = Result<State<S>, Error>;
+impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
+    type Item = Result<State<S, M>, Error>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
@@ -44,9 +44,9 @@ impl<S: Clebsch> Iterator for Trajectory<'_, S> {
     }
 }
 
-impl<S: Clebsch> FusedIterator for Trajectory<'_, S> {}
+impl<S: Clebsch, M: Method<S>> FusedIterator for Trajectory<'_, S, M> {}
 
-impl<S: Clebsch> Clone for Trajectory<'_, S> {
+impl<S: Clebsch, M: Method<S>> Clone for Trajectory<'_, S, M> {
     fn clone(&self) -> Self {
         let cursor = match &self.cursor {
             Cursor::Start(state) => Cursor::Start(*state),
@@ -57,7 +57,7 @@ impl<S: Clebsch> Clone for Trajectory<'_, S> {
     }
 }
 
-impl<S: Clebsch> Debug for Trajectory<'_, S> {
+impl<S: Clebsch, M: Method<S>> Debug for Trajectory<'_, S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match &self.cursor {
             Cursor::Start(state) => f.debug_tuple("Trajectory from").field(state).finish(),

@@ -13,6 +13,9 @@ fn main() {
     let file = syn::parse_file(&source).expect("Rust source");
     for item in file.items {
         let syn::Item::Struct(item) = item else { continue };
+        if !item.attrs.iter().any(|attribute| attribute.path().is_ident("clebsch")) {
+            continue;
+        }
         if let Err(errors) = show(&stage, item.to_token_stream()) {
             println!("{errors}");
         }
@@ -28,7 +31,7 @@ fn show(stage: &str, item: TokenStream) -> Result<(), Diagnostics> {
         "formulas" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?),
         "latex" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?.latex()),
         "program" => println!("{}", compile(&graph, item)?),
-        "derivation" => println!("{}", emit::derivation(&compile(&graph, item)?)),
+        "derivation" => println!("{}", emit::derivations(&compile(&graph, item)?)),
         _ => println!("{}", emit::generated(&compile(&graph, item)?)),
     }
     Ok(())

@@ -12,6 +12,7 @@ pub mod derive;
 pub mod diagnostic;
 pub mod emit;
 pub mod lower;
+mod methods;
 pub mod model;
 pub mod parse;
 
@@ -26,6 +27,7 @@ use clebsch_symbolic::work;
 use crate::budget::Stage;
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
+pub use crate::methods::Method;
 use crate::parse::Declaration;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
@@ -69,7 +71,29 @@ pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnost
     budget::within(&declaration, |stage| program(graph, &declaration, stage))
 }
 
+/// The program of a declaration with those of its methods, which have the same system and other dials.
 fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Cell<Stage>) -> Result<Program<'g>, Diagnostics> {
+    let mut program = program_of_steps(graph, declaration, stage)?;
+    let mut diagnostics = Diagnostics::new();
+    // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
+    let graphs = std::iter::successors(Some(graph), |graph| Some(graph.another())).skip(1);
+    for (method, graph) in declaration.methods.iter().zip(graphs) {
+        let found = program_of_steps(graph, &declaration.by(method), stage);
+        match found.and_then(|steps| Method::new(&method.name, steps, &program)) {
+            Ok(found) => program.methods.push(found),
+            Err(errors) => errors.into_vec().into_iter().for_each(|error| diagnostics.push(error)),
+        }
+    }
+    diagnostics.propagate(program)
+}
+
+/// The program of a declaration as its own dials step it.
+fn program_of_steps<'g>(
+    graph: &'g Graph,
+    declaration: &Declaration,
+    stage: &Cell<Stage>,
+) -> Result<Program<'g>, Diagnostics> {
+    stage.set(Stage::Model);
     let model = model::model(graph, declaration)?;
     stage.set(Stage::Derive);
     let formulas = derive::derive(model)?;

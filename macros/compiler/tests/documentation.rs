@@ -6,7 +6,7 @@ use clebsch_compiler::derive::{Formula, Formulas};
 use clebsch_compiler::lower::Program;
 use clebsch_compiler::{Graph, compile, emit};
 use quote::ToTokens;
-use syn::{Attribute, Expr, ImplItem, Item, ItemImpl, Lit, Meta, PathArguments, Type};
+use syn::{Attribute, Expr, ImplItem, Item, ItemImpl, Lit, Meta, PathArguments, Stmt, Type};
 
 /// A method or type of generated code with its documentation.
 struct Documented {
@@ -80,13 +80,35 @@ fn documentation(attributes: &[Attribute]) -> Vec<String> {
     attributes.iter().filter_map(line).collect()
 }
 
-/// All methods and types of the generated code of a program.
-fn documented(program: &Program<'_>) -> Vec<Documented> {
+/// The items of the generated code of a program.
+fn items(program: &Program<'_>) -> Vec<Item> {
+    syn::parse_file(&emit::generated(program)).expect("generated Rust").items
+}
+
+/// The items of the block of each method.
+fn items_of_methods(items: &[Item]) -> Vec<Vec<Item>> {
+    let block = |item: &Item| match item {
+        Item::Const(block) => match &*block.expr {
+            Expr::Block(block) => {
+                Some(&block.block.stmts).map(|statements| statements.iter().filter_map(item_of).collect())
+            }
+            _ => None,
+        },
+        _ => None,
+    };
+    items.iter().filter_map(block).collect()
+}
+
+fn item_of(statement: &Stmt) -> Option<Item> {
+    if let Stmt::Item(item) = statement { Some(item.clone()) } else { None }
+}
+
+/// All methods and types among the items of a program.
+fn documented(program: &Program<'_>, items: Vec<Item>) -> Vec<Documented> {
     let formulas = &program.formulas;
-    let file = syn::parse_file(&emit::generated(program)).expect("generated Rust");
     let is_power = |owner: &str| formulas.model.power.as_ref().is_some_and(|power| power.item.ident == owner);
     let mut all = Vec::new();
-    for item in file.items {
+    for item in items {
         match item {
             Item::Struct(item) => {
                 let place = of_equation(formulas, &item.ident.to_string());
@@ -120,9 +142,9 @@ fn documented(program: &Program<'_>) -> Vec<Documented> {
 }
 
 /// What the documentation of a program shows and the table does not say, or the other way round.
-fn differences(program: &Program<'_>) -> Vec<String> {
+fn differences(program: &Program<'_>, items: Vec<Item>) -> Vec<String> {
     let mut found = Vec::new();
-    for item in documented(program) {
+    for item in documented(program, items) {
         let rows: Vec<_> = program.formulas.table().iter().filter(|row| item.shows(row)).collect();
         let expected: Vec<String> = rows.iter().map(|row| row.equation()).collect();
         let source = rows.first().and_then(|row| row.source).map(|source| format!("Source: {source}."));
@@ -144,9 +166,17 @@ fn methods_show_the_formulas_that_they_compute() {
         let file = syn::parse_file(&source).expect("Rust source");
         for item in file.items {
             let Item::Struct(item) = item else { continue };
+            if !item.attrs.iter().any(|attribute| attribute.path().is_ident("clebsch")) {
+                continue;
+            }
             let graph = Graph::new();
             let program = compile(&graph, item.to_token_stream()).unwrap_or_else(|errors| panic!("{errors}"));
-            let found = differences(&program);
+            let items = items(&program);
+            let blocks = items_of_methods(&items);
+            assert_eq!(blocks.len(), program.methods.len(), "{}", path.display());
+            let methods = program.methods.iter().zip(blocks);
+            let of_methods = methods.flat_map(|(method, items)| differences(&method.program, items));
+            let found: Vec<String> = of_methods.chain(differences(&program, items)).collect();
             different.extend(found.into_iter().map(|difference| format!("{}: {difference}", path.display())));
             count += 1;
         }

@@ -1,6 +1,6 @@
 //! The arena of expressions: each distinct expression exists once, so equality is a comparison of indices.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
 use num_traits::{One, Zero};
@@ -25,12 +25,18 @@ pub struct Graph {
     pub(crate) expanded: Images,
     pub(crate) maps: Maps,
     pub(crate) evaluated: Evaluated,
+    another: OnceCell<Box<Graph>>,
 }
 
 impl Graph {
     /// An empty graph.
     pub fn new() -> Graph {
         Graph::default()
+    }
+
+    /// A graph that lives as long and is empty when it is first asked for: what is made there does not depend on what is made here.
+    pub fn another(&self) -> &Graph {
+        self.another.get_or_init(Box::default)
     }
 
     /// The number of distinct expressions made so far.

@@ -5,11 +5,11 @@ mod chunk;
 mod threads;
 
 use super::Drive;
-use crate::{Body, Clebsch, Clock, Conserved, Conserves, Error, Scalar, Stepper, Time};
+use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Stepper, Time};
 use alloc::vec::Vec;
 use chunk::Chunk;
 use core::convert::Infallible;
-use core::fmt::{self, Display, Formatter};
+use core::fmt::{self, Debug, Display, Formatter};
 
 /// Many bodies of one declaration, as many side by side as its scalar has lanes.
 ///
@@ -44,11 +44,10 @@ use core::fmt::{self, Display, Formatter};
 /// ```
 ///
 /// Needs the feature `alloc`; the lanes need `lanes`. With the scalar `f64` bodies are stepped one by one.
-#[derive(Debug)]
-pub struct Ensemble<S: Clebsch> {
+pub struct Ensemble<S: Clebsch, M: Method<S> = Declared> {
     /// One for all chunks, or one for each.
-    steppers: Vec<Stepper<S>>,
-    chunks: Vec<Chunk<S>>,
+    steppers: Vec<Stepper<S, M>>,
+    chunks: Vec<Chunk<S, M>>,
     bodies: usize,
     steps: u64,
 }
@@ -72,18 +71,31 @@ impl Display for Failure {
 
 impl core::error::Error for Failure {}
 
-impl<S: Clebsch> Stepper<S> {
+// a derived one would ask for methods that are `Debug`
+impl<S: Clebsch + Debug, M: Method<S>> Debug for Ensemble<S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { steppers, chunks, bodies, steps } = self;
+        f.debug_struct("Ensemble")
+            .field("steppers", steppers)
+            .field("chunks", chunks)
+            .field("bodies", bodies)
+            .field("steps", steps)
+            .finish()
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// This stepper with bodies at (q, N): stepped in place. All have its parameters and step size, which may differ between lanes: body i is in
     /// lane i mod [`LANES`](Scalar::LANES).
     ///
     /// # Errors
     /// The first body that [`state`](Self::state) refuses, and why.
-    pub fn ensemble(self, bodies: impl IntoIterator<Item = Body<S>>) -> Result<Ensemble<S>, Failure> {
+    pub fn ensemble(self, bodies: impl IntoIterator<Item = Body<S>>) -> Result<Ensemble<S, M>, Failure> {
         Ensemble::gathered(Vec::from([self]), &bodies.into_iter().collect::<Vec<_>>())
     }
 }
 
-impl<S: Clebsch> Ensemble<S> {
+impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
     /// Bodies at (q, N) with parameters of their own: `stepper` makes that of the bodies whose numbers it is given, one for each lane.
     ///
     /// ```
@@ -109,7 +121,7 @@ impl<S: Clebsch> Ensemble<S> {
     /// As [`Stepper::ensemble`], and those of `stepper`, with the first body of the lanes.
     pub fn with_parameters(
         bodies: impl IntoIterator<Item = Body<S>>,
-        mut stepper: impl FnMut(&[usize]) -> Result<Stepper<S>, Error>,
+        mut stepper: impl FnMut(&[usize]) -> Result<Stepper<S, M>, Error>,
     ) -> Result<Self, Failure> {
         let bodies: Vec<_> = bodies.into_iter().collect();
         let mut steppers = Vec::new();
@@ -120,7 +132,7 @@ impl<S: Clebsch> Ensemble<S> {
         Self::gathered(steppers, &bodies)
     }
 
-    fn gathered(steppers: Vec<Stepper<S>>, bodies: &[Body<S>]) -> Result<Self, Failure> {
+    fn gathered(steppers: Vec<Stepper<S, M>>, bodies: &[Body<S>]) -> Result<Self, Failure> {
         let mut chunks = Vec::new();
         for (number, chunk) in bodies.chunks(S::Scalar::LANES).enumerate() {
             let Some(stepper) = from(&steppers, number).first() else { break };
@@ -164,7 +176,7 @@ impl<S: Clebsch> Ensemble<S> {
     }
 
     /// (q, N) of all bodies.
-    pub fn bodies(&self) -> Bodies<'_, S> {
+    pub fn bodies(&self) -> Bodies<'_, S, M> {
         Bodies { ensemble: self, next: 0 }
     }
 
@@ -205,21 +217,35 @@ impl<S: Clebsch> Ensemble<S> {
     }
 
     /// Where a body is.
-    fn at(&self, body: usize) -> Option<(&Stepper<S>, &Chunk<S>, usize)> {
+    fn at(&self, body: usize) -> Option<Place<'_, S, M>> {
         let number = body / S::Scalar::LANES;
         let chunk = self.chunks.get(number).filter(|_| body < self.bodies)?;
         Some((from(&self.steppers, number).first()?, chunk, body % S::Scalar::LANES))
     }
 }
 
+/// The stepper, the chunk and the lane of a body.
+type Place<'a, S, M> = (&'a Stepper<S, M>, &'a Chunk<S, M>, usize);
+
 /// The bodies of an [`Ensemble`], each by (q, N).
-#[derive(Clone, Debug)]
-pub struct Bodies<'a, S: Clebsch> {
-    ensemble: &'a Ensemble<S>,
+pub struct Bodies<'a, S: Clebsch, M: Method<S> = Declared> {
+    ensemble: &'a Ensemble<S, M>,
     next: usize,
 }
 
-impl<S: Clebsch> Iterator for Bodies<'_, S> {
+impl<S: Clebsch, M: Method<S>> Clone for Bodies<'_, S, M> {
+    fn clone(&self) -> Self {
+        Self { ensemble: self.ensemble, next: self.next }
+    }
+}
+
+impl<S: Clebsch + Debug, M: Method<S>> Debug for Bodies<'_, S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Bodies").field("ensemble", self.ensemble).field("next", &self.next).finish()
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Iterator for Bodies<'_, S, M> {
     type Item = Body<S>;
 
     fn next(&mut self) -> Option<Body<S>> {
@@ -230,11 +256,11 @@ impl<S: Clebsch> Iterator for Bodies<'_, S> {
 }
 
 /// A body that fails keeps no other, so that no step of all fails: [`Ensemble::failures`] tells.
-impl<S: Clebsch> Drive for Ensemble<S> {
+impl<S: Clebsch, M: Method<S>> Drive for Ensemble<S, M> {
     type State<'a>
-        = Bodies<'a, S>
+        = Bodies<'a, S, M>
     where
-        S: 'a;
+        Self: 'a;
     type Error = Infallible;
 
     fn step(&mut self) -> Result<(), Infallible> {
@@ -247,7 +273,7 @@ impl<S: Clebsch> Drive for Ensemble<S> {
         Ok(())
     }
 
-    fn state(&self) -> Bodies<'_, S> {
+    fn state(&self) -> Bodies<'_, S, M> {
         self.bodies()
     }
 
@@ -256,7 +282,7 @@ impl<S: Clebsch> Drive for Ensemble<S> {
     }
 }
 
-impl<S, const K: usize> Ensemble<S>
+impl<S, M: Method<S>, const K: usize> Ensemble<S, M>
 where
     S: Conserves<Conserved = Conserved<<S as Clebsch>::Scalar, K>>,
 {
@@ -267,7 +293,7 @@ where
     }
 }
 
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Ensemble<S> {
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Ensemble<S, M> {
     /// The time of a body, of the last state that it reached.
     pub fn time(&self, body: usize) -> Option<<S::Scalar as Scalar>::Lane> {
         let (_, chunk, lane) = self.at(body)?;
@@ -276,6 +302,6 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Ensemble<S> {
 }
 
 /// The steppers from that of chunk `number` on, or the one that all have.
-fn from<S: Clebsch>(steppers: &[Stepper<S>], number: usize) -> &[Stepper<S>] {
+fn from<S: Clebsch, M: Method<S>>(steppers: &[Stepper<S, M>], number: usize) -> &[Stepper<S, M>] {
     if steppers.len() == 1 { steppers } else { steppers.get(number..).unwrap_or_default() }
 }

@@ -1,7 +1,7 @@
 //! A stepper with one state.
 
 use super::Drive;
-use crate::{Clebsch, Error, Space, State, Stepper};
+use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 
 /// A [`Stepper`] with a state and room for the next one, which are all that steps write: for states so large that handing each on by value takes longer than
@@ -39,39 +39,38 @@ use core::fmt::{self, Debug, Formatter};
 /// assert!(pendulum.state().configuration()[100] < -0.4, "it falls");
 /// # Ok::<(), clebsch::Error>(())
 /// ```
-#[derive(Clone)]
-pub struct Integrator<S: Clebsch> {
-    stepper: Stepper<S>,
-    states: [State<S>; 2],
+pub struct Integrator<S: Clebsch, M: Method<S> = Declared> {
+    stepper: Stepper<S, M>,
+    states: [State<S, M>; 2],
     /// Which of the states is the present one.
     is_second: bool,
     steps: u64,
 }
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// This stepper with a state that it, or one of the same system, has made: stepped in place.
-    pub fn integrator(self, start: State<S>) -> Integrator<S> {
+    pub fn integrator(self, start: State<S, M>) -> Integrator<S, M> {
         Integrator { stepper: self, states: [start, start], is_second: false, steps: 0 }
     }
 }
 
-impl<S: Clebsch> Integrator<S> {
+impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
     /// The state.
     #[inline]
-    pub fn state(&self) -> &State<S> {
+    pub fn state(&self) -> &State<S, M> {
         let [first, second] = &self.states;
         if self.is_second { second } else { first }
     }
 
     /// Goes on from another state.
-    pub fn set_state(&mut self, state: State<S>) {
+    pub fn set_state(&mut self, state: State<S, M>) {
         let [first, second] = &mut self.states;
         *(if self.is_second { second } else { first }) = state;
     }
 
     /// The system with its step size.
     #[inline]
-    pub fn stepper(&self) -> &Stepper<S> {
+    pub fn stepper(&self) -> &Stepper<S, M> {
         &self.stepper
     }
 
@@ -125,11 +124,11 @@ impl<S: Clebsch> Integrator<S> {
     }
 }
 
-impl<S: Clebsch> Drive for Integrator<S> {
+impl<S: Clebsch, M: Method<S>> Drive for Integrator<S, M> {
     type State<'a>
-        = &'a State<S>
+        = &'a State<S, M>
     where
-        S: 'a;
+        Self: 'a;
     type Error = Error;
 
     #[inline]
@@ -141,7 +140,7 @@ impl<S: Clebsch> Drive for Integrator<S> {
         Self::advance(self, steps)
     }
 
-    fn state(&self) -> &State<S> {
+    fn state(&self) -> &State<S, M> {
         Self::state(self)
     }
 
@@ -150,7 +149,14 @@ impl<S: Clebsch> Drive for Integrator<S> {
     }
 }
 
-impl<S: Clebsch + Debug> Debug for Integrator<S> {
+impl<S: Clebsch + Clone, M: Method<S>> Clone for Integrator<S, M> {
+    fn clone(&self) -> Self {
+        let Self { stepper, states, is_second, steps } = self;
+        Self { stepper: stepper.clone(), states: *states, is_second: *is_second, steps: *steps }
+    }
+}
+
+impl<S: Clebsch + Debug, M: Method<S>> Debug for Integrator<S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { stepper, steps, .. } = self;
         f.debug_struct("Integrator")

@@ -5,26 +5,26 @@ use super::{Parted, Scheme};
 use crate::collocation::{GAUSS_16, collocate};
 use crate::parts::{HamiltonEquations, Substep};
 use crate::summation::Sums;
-use crate::{Error, Scalar, Space};
+use crate::{Error, Method, Scalar, Space};
 
 /// Steps of order 16 by collocation of (q, p), N numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Collocated<const N: usize>;
 
-impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Collocated<N> {
-    type Left = LeftOf<S, ()>;
+impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> Scheme<S, M> for Collocated<N> {
+    type Left = LeftOf<S, M, ()>;
 
-    momentum_is_held!();
+    momentum_is_held!(M);
 
     #[inline]
-    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
+    fn left(_: &S, _: &M::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
         S::Sums::joined((), (Space::origin(), Space::origin()))
     }
 
     #[inline]
     fn left_after(
         _: &S,
-        _: &S::Constants,
+        _: &M::Constants,
         _: S::Scalar,
         _: &S::Configuration,
         _: &S::Momentum,
@@ -37,21 +37,21 @@ impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Colloca
     #[inline]
     fn step(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
-        let (mut state, _) = Moving::<S>::start::<()>(q, mu, left);
+    ) -> Result<Parted<S, Self, M>, Error> {
+        let (mut state, _) = Moving::<S, M>::start::<()>(q, mu, left);
         let p = completed(system, constants, q, mu);
         let (dq, dp) = change(system, constants, t, q, &p, mu)?;
         let half = S::Scalar::from_ratio(1, 2);
         let middle_q = q.zip_map(&dq, |q, dq| q + half * dq);
         let middle_p = p.zip_map(&dp, |p, dp| p + half * dp);
-        let by_q = system.momentum_map(&dq, &middle_p);
+        let by_q = system.momentum(&dq, &middle_p);
         let by_q =
-            if S::IS_AFFINE { minus(by_q, &system.momentum_map(&S::Configuration::origin(), &middle_p)) } else { by_q };
-        let added = plus(by_q, &system.momentum_map(&middle_q, &dp));
+            if S::IS_AFFINE { minus(by_q, &system.momentum(&S::Configuration::origin(), &middle_p)) } else { by_q };
+        let added = plus(by_q, &system.momentum(&middle_q, &dp));
         state.shift(&dq);
         state.on_space();
         state.push(Some(added));
@@ -60,7 +60,7 @@ impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Colloca
 
     fn step_symmetric(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &S::Configuration,
         p: &S::Configuration,
@@ -68,19 +68,19 @@ impl<S: Substep<0> + HamiltonEquations<N>, const N: usize> Scheme<S> for Colloca
         if !S::HAS_COVECTORS {
             return Err(Error::NoCovector);
         }
-        let (dq, dp) = change(system, constants, t, q, p, &system.momentum_map(q, p))?;
+        let (dq, dp) = change(system, constants, t, q, p, &system.momentum(q, p))?;
         Ok((plus(*q, &dq), plus(*p, &dp)))
     }
 
     #[inline]
     fn inverse_legendre(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &S::Configuration,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
     }
 }
 
@@ -99,14 +99,14 @@ fn minus<T: Scalar, V: Space<T>>(a: V, b: &V) -> V {
 /// Where rounding has moved q off its orbit, J(q, p) misses μ by as much: added up, N would drift like the square of the steps. So what is missing is
 /// added once.
 #[inline(always)]
-fn completed<S: HamiltonEquations<N>, const N: usize>(
+fn completed<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     q: &S::Configuration,
     mu: &S::Momentum,
 ) -> S::Configuration {
     let p = system.covector(constants, q, mu);
-    let missing = system.covector(constants, q, &minus(*mu, &system.momentum_map(q, &p)));
+    let missing = system.covector(constants, q, &minus(*mu, &system.momentum(q, &p)));
     plus(p, &missing)
 }
 
@@ -115,9 +115,9 @@ fn completed<S: HamiltonEquations<N>, const N: usize>(
 /// # Errors
 /// Those of [`collocate`].
 #[inline]
-fn change<S: HamiltonEquations<N>, const N: usize>(
+fn change<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     q: &S::Configuration,
     p: &S::Configuration,
@@ -138,7 +138,7 @@ fn change<S: HamiltonEquations<N>, const N: usize>(
 
 /// (q, p) after a part of the step, moved along by the velocity of its start: on the orbit of q.
 #[inline(always)]
-fn along<S: HamiltonEquations<N>, const N: usize>(
+fn along<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
     system: &S,
     x: &S::Coordinates,
     q: &S::Configuration,

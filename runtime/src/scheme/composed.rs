@@ -10,7 +10,7 @@
 //! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
 
 use super::{Parted, Scheme};
-use crate::{Clebsch, Error, Scalar};
+use crate::{Clebsch, Error, Method, Scalar};
 use core::marker::PhantomData;
 use nalgebra::SMatrix;
 
@@ -65,7 +65,7 @@ impl Sizes<9> for OfOrderEight {
 #[derive(Clone, Copy, Debug)]
 pub struct Composed<I, Z, const K: usize>(PhantomData<(I, Z)>);
 
-impl<S: Clebsch, I: Scheme<S>, Z: Sizes<K>, const K: usize> Scheme<S> for Composed<I, Z, K> {
+impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Scheme<S, M> for Composed<I, Z, K> {
     type Held = I::Held;
     type Left = I::Left;
     type Constants = Stages<S::Scalar, I::Constants, K>;
@@ -75,7 +75,7 @@ impl<S: Clebsch, I: Scheme<S>, Z: Sizes<K>, const K: usize> Scheme<S> for Compos
     }
 
     #[inline(always)]
-    fn whole(constants: &Self::Constants) -> &S::Constants {
+    fn whole(constants: &Self::Constants) -> &M::Constants {
         I::whole(&constants.whole)
     }
 
@@ -119,11 +119,11 @@ impl<S: Clebsch, I: Scheme<S>, Z: Sizes<K>, const K: usize> Scheme<S> for Compos
         t: S::Scalar,
         (q, held, left): (&S::Configuration, &Self::Held, &Self::Left),
         u: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
-        let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self>| {
+    ) -> Result<Parted<S, Self, M>, Error> {
+        let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self, M>| {
             I::step(system, stage, t, (&q, &held, &left), u)
         };
-        let scaled = |(q, held, left): Parted<S, Self>, ratio| (q, held, I::scaled(left, ratio));
+        let scaled = |(q, held, left): Parted<S, Self, M>, ratio| (q, held, I::scaled(left, ratio));
         compose(constants, t, (*q, *held, *left), step, scaled)
     }
 

@@ -4,7 +4,7 @@ use super::composed::Sizes;
 use super::substep::{Carry, solve_before_kick};
 use super::{AdjointPair, AlongFreeMotion, Composed, FreeGreatCircle, GreatCircle, KickDriftKick, Scheme};
 use crate::parts::{Substep, Varied, VariedSubstep};
-use crate::{Carried, Clebsch, Edge, Error, Momenta};
+use crate::{Carried, Clebsch, Declared, Edge, Error, Momenta};
 use nalgebra::SMatrix;
 
 /// A scheme whose steps have edges.
@@ -70,7 +70,7 @@ impl<S: Clebsch + ?Sized, const M: usize> Visit<S, M> for Drift<'_, S> {
     where
         S: VariedSubstep<K, M>,
     {
-        let x = solve_before_kick::<S, K>(system, constants, t, self.q, self.mu, self.u)?;
+        let x = solve_before_kick::<S, Declared, K>(system, constants, t, self.q, self.mu, self.u)?;
         Ok(system.increment(&x))
     }
 }

@@ -4,7 +4,7 @@ use super::substep::{Apart, Shared, inverse_legendre};
 use super::{Parted, Scheme};
 use crate::parts::GreatCircles;
 use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
-use crate::{Clebsch, Error, Scalar, Space};
+use crate::{Clebsch, Error, Method, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::SVector;
 use num_traits::One;
@@ -22,12 +22,12 @@ pub struct FreeGreatCircle;
 type Point<S, const N: usize> = SVector<<S as Clebsch>::Scalar, N>;
 
 /// How the gradients of a step and the next are told.
-pub trait CarryGradient<S: GreatCircles, const N: usize> {
+pub trait CarryGradient<S: GreatCircles<M>, M: Method<S>, const N: usize> {
     /// What one step leaves to the next.
     type Gradient: Space<S::Scalar>;
 
     /// The gradient at q.
-    fn gradient(system: &S, constants: &S::Constants, t: S::Scalar, q: &Point<S, N>) -> Self::Gradient;
+    fn gradient(system: &S, constants: &M::Constants, t: S::Scalar, q: &Point<S, N>) -> Self::Gradient;
 
     /// That of a step that is `ratio` times as long.
     fn scaled(gradient: Self::Gradient, ratio: S::Scalar) -> Self::Gradient;
@@ -38,21 +38,21 @@ pub trait CarryGradient<S: GreatCircles, const N: usize> {
     /// Those of [`turn_great_circle`].
     fn turn(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         steps: usize,
         state: (&mut Point<S, N>, &mut Point<S, N>, &mut Self::Gradient),
     ) -> Result<(), Error>;
 }
 
-impl<S, const N: usize> CarryGradient<S, N> for Shared
+impl<S, M: Method<S>, const N: usize> CarryGradient<S, M, N> for Shared
 where
-    S: GreatCircles<Configuration = SVector<<S as Clebsch>::Scalar, N>>,
+    S: GreatCircles<M, Configuration = SVector<<S as Clebsch>::Scalar, N>>,
 {
     type Gradient = Point<S, N>;
 
     #[inline(always)]
-    fn gradient(system: &S, constants: &S::Constants, t: S::Scalar, q: &Point<S, N>) -> Point<S, N> {
+    fn gradient(system: &S, constants: &M::Constants, t: S::Scalar, q: &Point<S, N>) -> Point<S, N> {
         match system.start_gradient(constants, t, q) {
             Some(gradient) => gradient,
             None => Space::origin(),
@@ -67,7 +67,7 @@ where
     #[inline(always)]
     fn turn(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         steps: usize,
         (q, w, gradient): (&mut Point<S, N>, &mut Point<S, N>, &mut Point<S, N>),
@@ -79,25 +79,25 @@ where
         push(q, w, gradient, one);
         for _ in 1..steps {
             turn_great_circle(a, q, w)?;
-            *gradient = <Self as CarryGradient<S, N>>::gradient(system, constants, t, q);
+            *gradient = <Self as CarryGradient<S, M, N>>::gradient(system, constants, t, q);
             // between two steps both kicks are one
             push(q, w, gradient, two);
         }
         turn_great_circle(a, q, w)?;
-        *gradient = <Self as CarryGradient<S, N>>::gradient(system, constants, t, q);
+        *gradient = <Self as CarryGradient<S, M, N>>::gradient(system, constants, t, q);
         push(q, w, gradient, one);
         Ok(())
     }
 }
 
-impl<S, const N: usize> CarryGradient<S, N> for Apart
+impl<S, M: Method<S>, const N: usize> CarryGradient<S, M, N> for Apart
 where
-    S: GreatCircles<Configuration = SVector<<S as Clebsch>::Scalar, N>>,
+    S: GreatCircles<M, Configuration = SVector<<S as Clebsch>::Scalar, N>>,
 {
     type Gradient = ();
 
     #[inline(always)]
-    fn gradient(_: &S, _: &S::Constants, _: S::Scalar, _: &Point<S, N>) {}
+    fn gradient(_: &S, _: &M::Constants, _: S::Scalar, _: &Point<S, N>) {}
 
     #[inline(always)]
     fn scaled((): (), _: S::Scalar) {}
@@ -105,7 +105,7 @@ where
     #[inline(always)]
     fn turn(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         steps: usize,
         (q, w, ()): (&mut Point<S, N>, &mut Point<S, N>, &mut ()),
@@ -124,21 +124,25 @@ where
     }
 }
 
-impl<S, C, const N: usize, const M: usize> Scheme<S> for GreatCircle<C>
+impl<S, M: Method<S>, C, const N: usize, const D: usize> Scheme<S, M> for GreatCircle<C>
 where
-    S: GreatCircles<Configuration = SVector<<S as Clebsch>::Scalar, N>, Momentum = SVector<<S as Clebsch>::Scalar, M>>,
-    C: CarryGradient<S, N>,
+    S: GreatCircles<
+            M,
+            Configuration = SVector<<S as Clebsch>::Scalar, N>,
+            Momentum = SVector<<S as Clebsch>::Scalar, D>,
+        >,
+    C: CarryGradient<S, M, N>,
 {
     type Held = Point<S, N>;
     type Left = C::Gradient;
-    type Constants = S::Constants;
+    type Constants = M::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
+    fn constants(system: &S, h: S::Scalar) -> Result<M::Constants, Error> {
+        M::constants(system, h)
     }
 
     #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
+    fn whole(constants: &M::Constants) -> &M::Constants {
         constants
     }
 
@@ -153,7 +157,7 @@ where
     }
 
     #[inline]
-    fn left(system: &S, constants: &S::Constants, t: S::Scalar, q: &Point<S, N>, _: &S::Momentum) -> C::Gradient {
+    fn left(system: &S, constants: &M::Constants, t: S::Scalar, q: &Point<S, N>, _: &S::Momentum) -> C::Gradient {
         C::gradient(system, constants, t, q)
     }
 
@@ -165,11 +169,11 @@ where
     #[inline]
     fn step(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         (q, held, left): (&Point<S, N>, &Point<S, N>, &C::Gradient),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         let (mut q, mut held, mut left) = (*q, *held, *left);
         C::turn(system, constants, t, 1, (&mut q, &mut held, &mut left))?;
         Ok((q, held, left))
@@ -178,7 +182,7 @@ where
     #[inline]
     fn step_into(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         state: (&Point<S, N>, &Point<S, N>, &C::Gradient),
         _: &S::Input,
@@ -190,12 +194,12 @@ where
 
     fn steps(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         (t, _): (S::Scalar, S::Scalar),
         steps: usize,
         (q, held, left): (&Point<S, N>, &Point<S, N>, &C::Gradient),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         let (mut q, mut held, mut left) = (*q, *held, *left);
         C::turn(system, constants, t, steps, (&mut q, &mut held, &mut left))?;
         Ok((q, held, left))
@@ -203,7 +207,7 @@ where
 
     fn step_symmetric(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &Point<S, N>,
         p: &Point<S, N>,
@@ -214,29 +218,33 @@ where
     #[inline]
     fn inverse_legendre(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &Point<S, N>,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
     }
 }
 
-impl<S, const N: usize, const M: usize> Scheme<S> for FreeGreatCircle
+impl<S, M: Method<S>, const N: usize, const D: usize> Scheme<S, M> for FreeGreatCircle
 where
-    S: GreatCircles<Configuration = SVector<<S as Clebsch>::Scalar, N>, Momentum = SVector<<S as Clebsch>::Scalar, M>>,
+    S: GreatCircles<
+            M,
+            Configuration = SVector<<S as Clebsch>::Scalar, N>,
+            Momentum = SVector<<S as Clebsch>::Scalar, D>,
+        >,
 {
     type Held = (Point<S, N>, Point<S, N>);
     type Left = ();
-    type Constants = S::Constants;
+    type Constants = M::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
+    fn constants(system: &S, h: S::Scalar) -> Result<M::Constants, Error> {
+        M::constants(system, h)
     }
 
     #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
+    fn whole(constants: &M::Constants) -> &M::Constants {
         constants
     }
 
@@ -251,16 +259,16 @@ where
     }
 
     #[inline(always)]
-    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &Point<S, N>, _: &S::Momentum) {}
+    fn left(_: &S, _: &M::Constants, _: S::Scalar, _: &Point<S, N>, _: &S::Momentum) {}
 
     #[inline]
     fn step(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         (q, held, left): (&Point<S, N>, &Self::Held, &()),
         u: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         let (mut next, mut moved) = (*q, *held);
         Self::step_into(system, constants, t, (q, held, left), u, (&mut next, &mut moved, &mut ()))?;
         Ok((next, moved, ()))
@@ -269,7 +277,7 @@ where
     #[inline]
     fn step_into(
         _: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         _: S::Scalar,
         state: (&Point<S, N>, &Self::Held, &()),
         _: &S::Input,
@@ -281,12 +289,12 @@ where
 
     fn steps(
         _: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         _: (S::Scalar, S::Scalar),
         steps: usize,
         (q, held, ()): (&Point<S, N>, &Self::Held, &()),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         let (mut q, a) = (*q, S::turn(constants));
         for _ in 0..steps {
             turn_freely(a, held, &mut q)?;
@@ -296,7 +304,7 @@ where
 
     fn step_symmetric(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &Point<S, N>,
         p: &Point<S, N>,
@@ -307,12 +315,12 @@ where
     #[inline]
     fn inverse_legendre(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &Point<S, N>,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
     }
 }
 
@@ -320,15 +328,15 @@ where
 ///
 /// # Errors
 /// Those of [`turned_in_plane`].
-fn symmetric<S, const N: usize>(
+fn symmetric<S, M: Method<S>, const N: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     q: &Point<S, N>,
     p: &Point<S, N>,
 ) -> Result<(Point<S, N>, Point<S, N>), Error>
 where
-    S: GreatCircles<Configuration = SVector<<S as Clebsch>::Scalar, N>>,
+    S: GreatCircles<M, Configuration = SVector<<S as Clebsch>::Scalar, N>>,
 {
     let plus = |p: Point<S, N>, gradient: Option<Point<S, N>>| gradient.map_or(p, |gradient| p + gradient);
     let p = plus(*p, system.start_gradient(constants, t, q));

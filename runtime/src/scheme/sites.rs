@@ -2,7 +2,7 @@
 
 use super::{Parted, Scheme};
 use crate::power::{Constants, Motion, Point, Power, SiteMomentum};
-use crate::{Clebsch, Error, Space};
+use crate::{Clebsch, Declared, Error, Space};
 
 /// Half a kick, the moves, half a kick.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub struct FreeSites<const N: usize>;
 /// What the schemes of sites have in common: constants, and states that hold their momenta.
 macro_rules! of_sites {
     ($start:expr, $end:expr) => {
-        momentum_is_held!();
+        momentum_is_held!(Declared);
 
         #[inline]
         fn step(

@@ -18,7 +18,7 @@ use super::substep::{LeftOf, Moving, inverse_legendre, moved};
 use super::{Parted, Scheme};
 use crate::parts::{SplitKicks, Substep};
 use crate::summation::Sums;
-use crate::{Clock, Error, Scalar, Space, Time};
+use crate::{Clock, Error, Method, Scalar, Space, Time};
 use core::marker::PhantomData;
 use num_traits::Zero;
 
@@ -108,20 +108,20 @@ impl Kicks<10> for PlainSix {
 #[derive(Clone, Copy, Debug)]
 pub struct Split<Z, const K: usize>(PhantomData<Z>);
 
-impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Split<Z, K> {
-    type Left = LeftOf<S, ()>;
+impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize> Scheme<S, M> for Split<Z, K> {
+    type Left = LeftOf<S, M, ()>;
 
-    momentum_is_held!();
+    momentum_is_held!(M);
 
     #[inline]
-    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
+    fn left(_: &S, _: &M::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
         S::Sums::joined((), (Space::origin(), Space::origin()))
     }
 
     #[inline]
     fn left_after(
         _: &S,
-        _: &S::Constants,
+        _: &M::Constants,
         _: S::Scalar,
         _: &S::Configuration,
         _: &S::Momentum,
@@ -133,25 +133,25 @@ impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Spli
     #[inline]
     fn step(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         state: (&S::Configuration, &S::Momentum, &Self::Left),
         u: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         Self::steps(system, constants, (t, S::step_size(constants)), 1, state, u)
     }
 
     fn steps(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         (t, _): (S::Scalar, S::Scalar),
         steps: usize,
         (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
-        let (start, _) = Moving::<S>::start::<()>(q, mu, left);
+    ) -> Result<Parted<S, Self, M>, Error> {
+        let (start, _) = Moving::<S, M>::start::<()>(q, mu, left);
         let drifted = |part, state| drift(system, constants, part, state);
-        let kicked = |t, weight, gradient, mut state: Moving<S>| {
+        let kicked = |t, weight, gradient, mut state: Moving<S, M>| {
             state.push(Some(system.kick(constants, t, &state.q, weight, gradient)));
             state
         };
@@ -161,7 +161,7 @@ impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Spli
 
     fn step_symmetric(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &S::Configuration,
         p: &S::Configuration,
@@ -180,12 +180,12 @@ impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Spli
     #[inline]
     fn inverse_legendre(
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         q: &S::Configuration,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, 0>(system, constants, t, q, mu)
+        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
     }
 }
 
@@ -194,9 +194,9 @@ impl<S: Substep<0> + SplitKicks, Z: Kicks<K>, const K: usize> Scheme<S> for Spli
 /// # Errors
 /// Those of the solve.
 #[inline(always)]
-fn solve_part<S: Substep<0>>(
+fn solve_part<S: Substep<0, M>, M: Method<S>>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     part: S::Scalar,
     q: &S::Configuration,
     mu: &S::Momentum,
@@ -210,12 +210,12 @@ fn solve_part<S: Substep<0>>(
 /// # Errors
 /// Those of the solve.
 #[inline]
-fn drift<S: Substep<0>>(
+fn drift<S: Substep<0, M>, M: Method<S>>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     part: S::Scalar,
-    mut state: Moving<S>,
-) -> Result<Moving<S>, Error> {
+    mut state: Moving<S, M>,
+) -> Result<Moving<S, M>, Error> {
     let x = solve_part(system, constants, part, &state.q, &state.mu)?;
     let motion = system.motion(&x, || system.increment(&x));
     let from = state.q;
@@ -230,9 +230,9 @@ fn drift<S: Substep<0>>(
 /// # Errors
 /// Those of the solve.
 #[inline]
-fn drift_symmetric<S: Substep<0>>(
+fn drift_symmetric<S: Substep<0, M>, M: Method<S>>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     part: S::Scalar,
     q: S::Configuration,
     p: S::Configuration,

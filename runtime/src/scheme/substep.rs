@@ -2,34 +2,38 @@
 
 use crate::parts::{Parts, Substep};
 use crate::summation::{Rests, Sums};
-use crate::{Clebsch, Error, Scalar, Space};
+use crate::{Clebsch, Error, Method, Scalar, Space};
 
 /// What rounding has taken off q and N of a system.
-type RestsOf<S> =
-    Rests<<S as Parts>::Sums, <S as Clebsch>::Scalar, <S as Clebsch>::Configuration, <S as Clebsch>::Momentum>;
+type RestsOf<S, M> =
+    Rests<<S as Parts<M>>::Sums, <S as Clebsch>::Scalar, <S as Clebsch>::Configuration, <S as Clebsch>::Momentum>;
 
 /// What one step leaves to the next: an impulse I and the rests.
-pub(super) type LeftOf<S, I> = <<S as Parts>::Sums as Sums>::Left<
+pub(super) type LeftOf<S, M, I> = <<S as Parts<M>>::Sums as Sums>::Left<
     <S as Clebsch>::Scalar,
     I,
     <S as Clebsch>::Configuration,
     <S as Clebsch>::Momentum,
 >;
 
+/// The state before a step: q, N, and what the last step has left.
+pub(super) type Before<'a, S, M, I> =
+    (&'a <S as Clebsch>::Configuration, &'a <S as Clebsch>::Momentum, &'a LeftOf<S, M, I>);
+
 /// (q, N) while it moves, with what rounding has taken off.
-pub(super) struct Moving<S: Parts> {
+pub(super) struct Moving<S: Parts<M>, M: Method<S>> {
     pub q: S::Configuration,
     pub mu: S::Momentum,
-    rests: RestsOf<S>,
+    rests: RestsOf<S, M>,
 }
 
-impl<S: Parts> Moving<S> {
+impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
     /// From a state, with the impulse that its last step has left.
     #[inline(always)]
     pub fn start<'a, I: Space<S::Scalar>>(
         q: &S::Configuration,
         mu: &S::Momentum,
-        left: &'a LeftOf<S, I>,
+        left: &'a LeftOf<S, M, I>,
     ) -> (Self, &'a I) {
         let (impulse, rests) = S::Sums::parted(left);
         (Self { q: *q, mu: *mu, rests }, impulse)
@@ -37,14 +41,14 @@ impl<S: Parts> Moving<S> {
 
     /// The state, with an impulse for its next step.
     #[inline(always)]
-    pub fn end<I: Space<S::Scalar>>(mut self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, I>) {
+    pub fn end<I: Space<S::Scalar>>(mut self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, M, I>) {
         self.on_space();
         self.finish(impulse)
     }
 
     /// The same of a state that is on its space.
     #[inline(always)]
-    pub fn finish<I: Space<S::Scalar>>(self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, I>) {
+    pub fn finish<I: Space<S::Scalar>>(self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, M, I>) {
         (self.q, self.mu, S::Sums::joined(impulse, self.rests))
     }
 
@@ -91,17 +95,17 @@ impl<S: Parts> Moving<S> {
     pub fn substep<const K: usize>(
         &mut self,
         system: &S,
-        constants: &S::Constants,
+        constants: &M::Constants,
         t: S::Scalar,
         kick: Option<S::Momentum>,
         u: &S::Input,
     ) -> Result<(), Error>
     where
-        S: Substep<K>,
+        S: Substep<K, M>,
     {
         self.push(kick);
         self.push(system.start_force(constants, t, &self.q, u));
-        let x = system.solve(constants, t, &self.q, &at_rest::<S, K>(system, constants, t, &self.q, self.mu), u)?;
+        let x = system.solve(constants, t, &self.q, &at_rest::<S, M, K>(system, constants, t, &self.q, self.mu), u)?;
         let motion = system.motion(&x, || system.increment(&x));
         self.push(system.moving_force(constants, t, &self.q, &x, u));
         let from = self.q;
@@ -114,9 +118,9 @@ impl<S: Parts> Moving<S> {
 
 /// The momentum to solve for. What is solved for is M − r(I), and what the move carries is M; compensated sums keep both apart.
 #[inline(always)]
-fn at_rest<S: Substep<K>, const K: usize>(
+fn at_rest<S: Substep<K, M>, M: Method<S>, const K: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     q: &S::Configuration,
     mu: S::Momentum,
@@ -138,16 +142,16 @@ pub(super) fn plus<T: Scalar, V: Space<T>>(sum: V, part: Option<V>) -> V {
 /// # Errors
 /// Those of the solve.
 #[inline(always)]
-pub(super) fn solve_before_kick<S: Substep<K>, const K: usize>(
+pub(super) fn solve_before_kick<S: Substep<K, M>, M: Method<S>, const K: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     q: &S::Configuration,
     mu: &S::Momentum,
     u: &S::Input,
 ) -> Result<S::Coordinates, Error> {
     let mu = plus(*mu, system.start_kick(constants, t, q));
-    let mu = at_rest::<S, K>(system, constants, t, q, mu);
+    let mu = at_rest::<S, M, K>(system, constants, t, q, mu);
     let mu = plus(mu, system.start_force(constants, t, q, u));
     system.solve(constants, t, q, &mu, u)
 }
@@ -157,15 +161,15 @@ pub(super) fn solve_before_kick<S: Substep<K>, const K: usize>(
 /// # Errors
 /// Those of the solve.
 #[inline]
-pub(super) fn inverse_legendre<S: Substep<K>, const K: usize>(
+pub(super) fn inverse_legendre<S: Substep<K, M>, M: Method<S>, const K: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     q: &S::Configuration,
     mu: &S::Momentum,
 ) -> Result<S::Element, Error> {
     let mu = plus(*mu, system.start_kick(constants, t, q));
-    let mu = at_rest::<S, K>(system, constants, t, q, mu);
+    let mu = at_rest::<S, M, K>(system, constants, t, q, mu);
     let x = system.solve(constants, t, q, &mu, &S::Input::origin())?;
     Ok(S::element(&system.increment(&x)))
 }
@@ -175,9 +179,9 @@ pub(super) fn inverse_legendre<S: Substep<K>, const K: usize>(
 /// # Errors
 /// Those of the solve.
 #[inline]
-pub(super) fn symmetric<S: Substep<K>, const K: usize>(
+pub(super) fn symmetric<S: Substep<K, M>, M: Method<S>, const K: usize>(
     system: &S,
-    constants: &S::Constants,
+    constants: &M::Constants,
     t: S::Scalar,
     (q, p): (S::Configuration, S::Configuration),
 ) -> Result<(S::Configuration, S::Configuration), Error> {
@@ -194,7 +198,7 @@ pub(super) fn symmetric<S: Substep<K>, const K: usize>(
 
 /// q⁺ without a look at rounding: the step on T*Q is symplectic in all directions of T*Rⁿ.
 #[inline(always)]
-pub(super) fn moved<S: Parts>(
+pub(super) fn moved<S: Parts<M>, M: Method<S>>(
     system: &S,
     q: &S::Configuration,
     x: &S::Coordinates,

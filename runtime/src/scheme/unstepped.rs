@@ -1,7 +1,7 @@
 //! What stands where a declaration has an error.
 
 use super::{Parted, Scheme};
-use crate::{Clebsch, Error};
+use crate::{Clebsch, Error, Method};
 
 /// No scheme: of a declaration with an error, so that nothing else is reported. It is never called.
 #[derive(Clone, Copy, Debug)]
@@ -10,13 +10,13 @@ pub struct Unstepped;
 /// What it would say.
 const UNSTEPPED: Error = Error::NoCovector;
 
-impl<S: Clebsch<Constants = ()>> Scheme<S> for Unstepped {
+impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
     type Held = S::Momentum;
     type Left = ();
     type Constants = ();
 
     fn constants(system: &S, h: S::Scalar) -> Result<(), Error> {
-        system.constants(h)
+        M::constants(system, h)
     }
 
     fn whole(constants: &()) -> &() {
@@ -39,7 +39,7 @@ impl<S: Clebsch<Constants = ()>> Scheme<S> for Unstepped {
         _: S::Scalar,
         _: (&S::Configuration, &S::Momentum, &()),
         _: &S::Input,
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Result<Parted<S, Self, M>, Error> {
         Err(UNSTEPPED)
     }
 

@@ -3,10 +3,10 @@
 use super::Stepper;
 use super::whole_or_lane;
 use crate::scheme::Scheme;
-use crate::{Clebsch, Error, Mask, Scalar, Space};
+use crate::{Clebsch, Error, Mask, Method, Scalar, Space};
 use num_traits::Zero;
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The potential V(t, q).
     #[inline]
     pub fn potential_at(&self, t: S::Scalar, q: &S::Configuration) -> S::Scalar {
@@ -16,13 +16,13 @@ impl<S: Clebsch> Stepper<S> {
     /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that starts at the time t and moves q by F.
     #[inline]
     pub fn legendre_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
-        self.system.legendre(self.h, t, q, f)
+        M::legendre(&self.system, self.h, t, q, f)
     }
 
     /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that starts at the time t and moves q by F.
     #[inline]
     pub fn legendre_next_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
-        self.system.legendre_next(self.h, t, q, f)
+        M::legendre_next(&self.system, self.h, t, q, f)
     }
 
     /// The group element F of the step that starts at (q, N) and the time t: the implicit solve.
@@ -43,7 +43,7 @@ impl<S: Clebsch> Stepper<S> {
                 return Err(Error::NotFinite { name });
             }
         }
-        match S::Scheme::inverse_legendre(&self.system, &self.constants, t, q, mu) {
+        match M::Scheme::inverse_legendre(&self.system, &self.constants, t, q, mu) {
             Ok(element) if element.is_finite() => Ok(element),
             Ok(element) => {
                 let finite = element.finite();
@@ -87,7 +87,7 @@ impl<S: Clebsch> Stepper<S> {
 }
 
 /// For autonomous systems; the others have the same methods with `_at` in their names and the time as the first argument.
-impl<S: Clebsch<Time = ()>> Stepper<S> {
+impl<S: Clebsch<Time = ()>, M: Method<S>> Stepper<S, M> {
     /// The potential V(q).
     #[inline]
     pub fn potential(&self, q: &S::Configuration) -> S::Scalar {

@@ -2,23 +2,23 @@
 
 use super::Stepper;
 use crate::scheme::{Constants, Scheme};
-use crate::{Clebsch, Conserves, Error, Space, State, Time};
+use crate::{Clebsch, Conserves, Error, Method, Space, State, Time};
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Kinetic energy plus potential, at the time of the state.
     ///
     /// Nearly constant for an autonomous system: its oscillation shrinks with the order.
     #[inline]
-    pub fn energy(&self, state: &State<S>) -> S::Scalar {
+    pub fn energy(&self, state: &State<S, M>) -> S::Scalar {
         self.kinetic_energy(state) + self.system.potential(state.time.now(), &state.configuration)
     }
 
     /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity ξ with the momentum N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N where ℓ is quadratic with the
     /// Hessian Σ; +∞ where no velocity has this momentum.
     #[inline]
-    pub fn kinetic_energy(&self, state: &State<S>) -> S::Scalar {
-        let constants = S::Scheme::whole(&self.constants);
-        self.system.kinetic_energy(constants, state.time.now(), &state.configuration, &state.momentum())
+    pub fn kinetic_energy(&self, state: &State<S, M>) -> S::Scalar {
+        let constants = M::Scheme::whole(&self.constants);
+        M::kinetic_energy(&self.system, constants, state.time.now(), &state.configuration, &state.momentum())
     }
 
     /// The step size h, seconds in SI units.
@@ -50,16 +50,16 @@ impl<S: Clebsch> Stepper<S> {
 
     /// What no step changes.
     #[inline]
-    pub(crate) fn constants(&self) -> &Constants<S> {
+    pub(crate) fn constants(&self) -> &Constants<S, M> {
         &self.constants
     }
 }
 
 /// Where conserved momenta were found.
-impl<S: Conserves> Stepper<S> {
+impl<S: Conserves, M: Method<S>> Stepper<S, M> {
     /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
     #[inline]
-    pub fn conserved(&self, state: &State<S>) -> S::Conserved {
+    pub fn conserved(&self, state: &State<S, M>) -> S::Conserved {
         self.system.conserved(&state.configuration, &state.momentum())
     }
 }

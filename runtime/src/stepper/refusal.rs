@@ -2,7 +2,7 @@
 
 use super::Stepper;
 use crate::scheme::{Constants, Scheme};
-use crate::{Clebsch, CotangentState, Error, Mask, Scalar, Space, State, Time};
+use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, State, Time};
 
 /// Step sizes that are tried to find the longest one that can be solved, at most.
 const TRIALS: usize = 32;
@@ -17,16 +17,16 @@ const CONSTANTS: usize = 2048;
 /// What solvers call the momentum that they are given.
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The error of a step from `state`, which is finite, in this lane.
     #[cold]
     #[inline(never)]
-    pub(crate) fn refusal(&self, state: &State<S>, u: &S::Input, lane: usize, error: Error) -> Error {
+    pub(crate) fn refusal(&self, state: &State<S, M>, u: &S::Input, lane: usize, error: Error) -> Error {
         let State { time, configuration, held, left, .. } = state;
         self.explained(lane, error, |constants| {
             let t = time.now();
-            let left = S::Scheme::left_after(&self.system, constants, t, configuration, &state.momentum(), left);
-            let (q, mu, _) = S::Scheme::step(&self.system, constants, t, (configuration, held, &left), u)?;
+            let left = M::Scheme::left_after(&self.system, constants, t, configuration, &state.momentum(), left);
+            let (q, mu, _) = M::Scheme::step(&self.system, constants, t, (configuration, held, &left), u)?;
             Ok((q.finite() & mu.finite()).lane(lane))
         })
     }
@@ -37,7 +37,7 @@ impl<S: Clebsch> Stepper<S> {
     pub(super) fn refusal_of_covector(&self, state: &CotangentState<S>, error: Error) -> Error {
         let CotangentState { time, configuration, covector } = state;
         self.explained(0, error, |constants| {
-            let (q, p) = S::Scheme::step_symmetric(&self.system, constants, time.now(), configuration, covector)?;
+            let (q, p) = M::Scheme::step_symmetric(&self.system, constants, time.now(), configuration, covector)?;
             Ok((q.finite() & p.finite()).lane(0))
         })
     }
@@ -53,22 +53,22 @@ impl<S: Clebsch> Stepper<S> {
         error: Error,
     ) -> Error {
         self.explained(0, error, |constants| {
-            Ok(S::Scheme::inverse_legendre(&self.system, constants, t, q, mu)?.finite().lane(0))
+            Ok(M::Scheme::inverse_legendre(&self.system, constants, t, q, mu)?.finite().lane(0))
         })
     }
 
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
-    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S>) -> Result<bool, Error>) -> Error {
+    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
             Error::Unsolvable { solvable_fraction, .. } => {
                 let h = self.h.lane(lane).to_f64();
-                if S::IS_FREE_MOTION || size_of::<Constants<S>>() > CONSTANTS * S::Scalar::LANES {
-                    let solvable_step = S::IS_FREE_MOTION.then_some(h * solvable_fraction);
+                if M::IS_FREE_MOTION || size_of::<Constants<S, M>>() > CONSTANTS * S::Scalar::LANES {
+                    let solvable_step = M::IS_FREE_MOTION.then_some(h * solvable_fraction);
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };
                 }
-                let tried = |h: f64| match S::Scheme::constants(&self.system, S::Scalar::from_f64(h)) {
+                let tried = |h: f64| match M::Scheme::constants(&self.system, S::Scalar::from_f64(h)) {
                     Ok(constants) => stepped(&constants),
                     Err(error) => Err(error),
                 };
@@ -85,7 +85,7 @@ impl<S: Clebsch> Stepper<S> {
     /// The error of a step to a state that is not finite in this lane.
     #[cold]
     #[inline(never)]
-    pub(crate) fn overflow(&self, next: &State<S>, lane: usize) -> Error {
+    pub(crate) fn overflow(&self, next: &State<S, M>, lane: usize) -> Error {
         let State { time, configuration, .. } = next;
         let name = if !configuration.finite().lane(lane) {
             "the configuration after the step"
@@ -101,7 +101,7 @@ impl<S: Clebsch> Stepper<S> {
 
     /// Whether the impulse at q, without momentum, is finite: that of the potential.
     pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
-        S::Scheme::left(&self.system, &self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
+        M::Scheme::left(&self.system, &self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::{Stepper, check_gradient, check_momentum, check_time};
 use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, Error, Space, State, Time};
+use crate::{Clebsch, Clock, Error, Method, Space, State, Time};
 use num_traits::Zero;
 
 /// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The momentum that belongs to the configuration of a state, π: with `order = 1` N before the second half of its kick,
     /// ```text
     /// π = N − ½ J(q, ∂(U₁ − U₀)) = N + h/2 J(q, ∂V(t, q))
@@ -50,18 +50,18 @@ impl<S: Clebsch> Stepper<S> {
     /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §I.1.4 (the staggered form of the Störmer–Verlet method)
     /// and §V.3.3 (processing: methods that are conjugate to one of higher order).
     #[inline]
-    pub fn synchronized(&self, state: &State<S>) -> S::Momentum {
-        let ahead = self.system.stagger(self.h, state.time.now(), &state.configuration);
+    pub fn synchronized(&self, state: &State<S, M>) -> S::Momentum {
+        let ahead = M::stagger(&self.system, self.h, state.time.now(), &state.configuration);
         state.momentum().zip_map(&ahead, |momentum, ahead| momentum - ahead)
     }
 
     /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order
     /// of π, where that of [`energy`](Self::energy) is of h; with every other order both are the same.
     #[inline]
-    pub fn synchronized_energy(&self, state: &State<S>) -> S::Scalar {
+    pub fn synchronized_energy(&self, state: &State<S, M>) -> S::Scalar {
         let (t, q) = (state.time.now(), &state.configuration);
-        let constants = S::Scheme::whole(&self.constants);
-        self.system.kinetic_energy(constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
+        let constants = M::Scheme::whole(&self.constants);
+        M::kinetic_energy(&self.system, constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
     }
 
     /// The state of a body at q whose momentum there is π, after the checks of [`state`](Self::state): with `order = 1` its momentum N is ahead of π by
@@ -70,14 +70,19 @@ impl<S: Clebsch> Stepper<S> {
     ///
     /// # Errors
     /// As [`state`](Self::state), for π.
-    pub fn staggered_state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    pub fn staggered_state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.checked_staggered_state(S::Scalar::zero(), q, mu)
     }
 
-    fn checked_staggered_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    pub(super) fn checked_staggered_state(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error> {
         self.check_configuration(&q)?;
         check_momentum(&self.system, &q, &mu)?;
-        let stagger = self.system.stagger(self.h, t, &q);
+        let stagger = M::stagger(&self.system, self.h, t, &q);
         check_gradient(&stagger)?;
         let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);
         if !staggered.is_finite() {
@@ -88,12 +93,12 @@ impl<S: Clebsch> Stepper<S> {
 }
 
 /// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
     /// The state at the time t, made as by [`staggered_state`](Self::staggered_state).
     ///
     /// # Errors
     /// As [`staggered_state`](Self::staggered_state); [`Error::NotFinite`] for the time too.
-    pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         check_time(t)?;
         self.checked_staggered_state(t, q, mu)
     }

@@ -1,7 +1,7 @@
 //! The step size that a wished error asks for.
 
 use crate::space::larger;
-use crate::{Clebsch, Error, Real, Scalar, Space, State, Stepper};
+use crate::{Clebsch, Error, Method, Real, Scalar, Space, State, Stepper};
 use num_traits::{One, Zero};
 
 /// Steps of the stepper's own size that the probing run goes over.
@@ -17,7 +17,7 @@ const FAR: i64 = 8;
 /// A difference of the two runs of no more than so many ε √steps may be rounding.
 const ROUNDINGS: i64 = 64;
 
-impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
+impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// A step size with which the motion from `start` is wrong by about `error` after `duration`.
     ///
     /// A probing run over t = 64 h, with h this stepper's own step size, is made with steps of h and of h/2. Their difference d gives the
@@ -68,7 +68,7 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
     /// duration, and those of the steps where no step size served.
     pub fn suggest_step_size(
         &self,
-        start: &State<S>,
+        start: &State<S, M>,
         error: S::Scalar,
         duration: S::Scalar,
     ) -> Result<S::Scalar, Error> {
@@ -86,8 +86,8 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
     }
 
     /// The step size whose error grows at this rate, by probing runs over this time.
-    fn search(&self, start: &State<S>, rate: S::Scalar, time: S::Scalar) -> Result<S::Scalar, Error> {
-        let power = number::<S::Scalar>(i64::from(S::ORDER)).recip();
+    fn search(&self, start: &State<S, M>, rate: S::Scalar, time: S::Scalar) -> Result<S::Scalar, Error> {
+        let power = number::<S::Scalar>(i64::from(M::ORDER)).recip();
         let mut longest = time / number(STEPS[0]);
         let (mut h, mut answer, mut refused) = (least(self.h.abs(), longest), None, Error::StepSize { value: 0.0 });
         for _ in 0..RUNS {
@@ -115,9 +115,9 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
     }
 
     /// How fast the error with steps of h grows, by steps of h and of h/2 side by side; `None` where rounding hides it.
-    fn probe(&self, start: &State<S>, h: S::Scalar, time: S::Scalar) -> Result<Option<S::Scalar>, Error> {
+    fn probe(&self, start: &State<S, M>, h: S::Scalar, time: S::Scalar) -> Result<Option<S::Scalar>, Error> {
         let signed = if self.h < S::Scalar::zero() { -h } else { h };
-        let (whole, half) = (self.system.stepper(signed)?, self.system.stepper(signed / number(2))?);
+        let (whole, half) = (self.system.stepper_by::<M>(signed)?, self.system.stepper_by::<M>(signed / number(2))?);
         let (mut a, mut b) = (*start, *start);
         let (mut steps, mut difference, mut size) = (0, S::Scalar::zero(), start.held.max_abs());
         while steps < STEPS[1] && number::<S::Scalar>(steps) * h < time {
@@ -132,13 +132,13 @@ impl<S: Clebsch<Scalar: Real> + Clone> Stepper<S> {
         {
             return Ok(None);
         }
-        let rest = S::Scalar::one() - number::<S::Scalar>(2).powi(-(S::ORDER as i32));
+        let rest = S::Scalar::one() - number::<S::Scalar>(2).powi(-(M::ORDER as i32));
         Ok(Some(difference / (rest * number::<S::Scalar>(steps) * h)))
     }
 }
 
 /// The larger one of |Δq| and |Δμ| over the size of momenta.
-fn apart<S: Clebsch<Scalar: Real>>(a: &State<S>, b: &State<S>, size: S::Scalar) -> S::Scalar {
+fn apart<S: Clebsch<Scalar: Real>, M: Method<S>>(a: &State<S, M>, b: &State<S, M>, size: S::Scalar) -> S::Scalar {
     let turned = a.configuration.distance_squared(&b.configuration).sqrt();
     let pushed = a.held.distance_squared(&b.held).sqrt();
     larger(turned, if size > S::Scalar::zero() { pushed / size } else { pushed })

@@ -2,10 +2,10 @@
 
 use super::{GRADIENT, Stepper, check_momentum, check_time, whole_or_lane};
 use crate::scheme::{Left, Scheme};
-use crate::{Clebsch, Clock, Error, Mask, Scalar, Space, State, Time, Trajectory};
+use crate::{Clebsch, Clock, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state (q, N), after checks: finite, q on its orbit, N in 𝔤_q^⊥, the momenta that motions of q can have.
     ///
     /// What is accepted as round-off of the input is √ε: 1.5e-8 for `f64`, 3.5e-4 for `f32`; for N relative to its largest
@@ -13,7 +13,7 @@ impl<S: Clebsch> Stepper<S> {
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::OutsideMomentumSpace`].
-    pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.checked_state(S::Scalar::zero(), q, mu)
     }
 
@@ -24,7 +24,7 @@ impl<S: Clebsch> Stepper<S> {
     /// NaN or numbers overflowed, [`Error::NotConverged`]. Where the scalar has lanes: [`Error::InLane`].
     // a call hands states through memory, which costs as much as half of a short step; long ones stay calls within
     #[inline(always)]
-    pub fn step(&self, state: &State<S>) -> Result<State<S>, Error> {
+    pub fn step(&self, state: &State<S, M>) -> Result<State<S, M>, Error> {
         self.step_with(state, &S::Input::origin())
     }
 
@@ -36,12 +36,12 @@ impl<S: Clebsch> Stepper<S> {
     /// As [`step`](Self::step), at whichever step; `state` is untouched. Where the scalar has lanes, [`Error::InLane`] names one of those that fail:
     /// take the lanes one by one, or step after step, to know the others and how far each came.
     #[inline]
-    pub fn advance(&self, state: &State<S>, steps: usize) -> Result<State<S>, Error> {
+    pub fn advance(&self, state: &State<S, M>, steps: usize) -> Result<State<S, M>, Error> {
         let State { time, configuration, held, .. } = state;
         let left = self.left_of(state);
         let start = (configuration, held, &left);
         let none = S::Input::origin();
-        let advanced = S::Scheme::steps(&self.system, &self.constants, (time.now(), self.h), steps, start, &none);
+        let advanced = M::Scheme::steps(&self.system, &self.constants, (time.now(), self.h), steps, start, &none);
         let (configuration, held, left) = match advanced {
             Ok(next) => next,
             Err(error) => return Err(self.refused_after(state, steps, error)),
@@ -57,7 +57,7 @@ impl<S: Clebsch> Stepper<S> {
 
     /// The states of all steps, `start` first; ends after the first error.
     #[inline]
-    pub fn trajectory(&self, start: State<S>) -> Trajectory<'_, S> {
+    pub fn trajectory(&self, start: State<S, M>) -> Trajectory<'_, S, M> {
         Trajectory::new(self, start)
     }
 
@@ -69,7 +69,7 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
     #[inline(always)]
-    pub fn step_with(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+    pub fn step_with(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
@@ -91,17 +91,17 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Those of [`step_with`](Self::step_with).
     #[inline]
-    pub(crate) fn step_into(&self, state: &State<S>, u: &S::Input, next: &mut State<S>) -> Result<(), Error> {
+    pub(crate) fn step_into(&self, state: &State<S, M>, u: &S::Input, next: &mut State<S, M>) -> Result<(), Error> {
         if size_of::<S::Input>() > 0 && !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
         let State { configuration: q, held, left, .. } = state;
         let t = state.time.now();
         let into = (&mut next.configuration, &mut next.held, &mut next.left);
-        let stepped = if size_of::<Left<S>>() == 0 || state.h == self.h {
-            S::Scheme::step_into(&self.system, &self.constants, t, (q, held, left), u, into)
+        let stepped = if size_of::<Left<S, M>>() == 0 || state.h == self.h {
+            M::Scheme::step_into(&self.system, &self.constants, t, (q, held, left), u, into)
         } else {
-            S::Scheme::step_into(&self.system, &self.constants, t, (q, held, &self.left_of(state)), u, into)
+            M::Scheme::step_into(&self.system, &self.constants, t, (q, held, &self.left_of(state)), u, into)
         };
         if stepped.is_err() {
             return Err(self.refused(state, u));
@@ -112,33 +112,33 @@ impl<S: Clebsch> Stepper<S> {
 }
 
 /// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
     /// The state (q, N) at the time t, checked as by [`state`](Self::state).
     ///
     /// # Errors
     /// As [`state`](Self::state); [`Error::NotFinite`] for the time too.
-    pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         check_time(t)?;
         self.checked_state(t, q, mu)
     }
 }
 
-impl<S: Clebsch> Stepper<S> {
-    fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
+    fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.check_configuration(&q)?;
         check_momentum(&self.system, &q, &mu)?;
         self.made_state(t, q, mu)
     }
 
     /// The state (q, N) with what its first step takes.
-    pub(super) fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
-        let left = S::Scheme::left(&self.system, &self.constants, t, &q, &mu);
+    pub(super) fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+        let left = M::Scheme::left(&self.system, &self.constants, t, &q, &mu);
         if !left.is_finite() {
             let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
             let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
             return Err(Error::NotFinite { name });
         }
-        let held = S::Scheme::held(&q, &mu);
+        let held = M::Scheme::held(&q, &mu);
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
     }
 
@@ -147,7 +147,7 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Where no lane has a solution, the error of the first whose momentum is finite.
     #[inline(always)]
-    pub(super) fn attempt(&self, state: &State<S>, u: &S::Input) -> Result<State<S>, Error> {
+    pub(super) fn attempt(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
         self.attempt_with(state, &self.left_of(state), u)
     }
 
@@ -156,9 +156,14 @@ impl<S: Clebsch> Stepper<S> {
     /// # Errors
     /// Those of [`attempt`](Self::attempt).
     #[inline(always)]
-    pub(crate) fn attempt_with(&self, state: &State<S>, left: &Left<S>, u: &S::Input) -> Result<State<S>, Error> {
+    pub(crate) fn attempt_with(
+        &self,
+        state: &State<S, M>,
+        left: &Left<S, M>,
+        u: &S::Input,
+    ) -> Result<State<S, M>, Error> {
         let State { time, configuration, held, .. } = state;
-        match S::Scheme::step(&self.system, &self.constants, time.now(), (configuration, held, left), u) {
+        match M::Scheme::step(&self.system, &self.constants, time.now(), (configuration, held, left), u) {
             Ok((configuration, held, left)) => {
                 Ok(State { time: time.after_step(self.h), configuration, held, left, h: self.h })
             }
@@ -168,20 +173,20 @@ impl<S: Clebsch> Stepper<S> {
 
     /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
     #[inline]
-    fn left_of(&self, state: &State<S>) -> Left<S> {
-        if size_of::<Left<S>>() == 0 || state.h == self.h {
+    fn left_of(&self, state: &State<S, M>) -> Left<S, M> {
+        if size_of::<Left<S, M>>() == 0 || state.h == self.h {
             return state.left;
         }
         let State { time, configuration, left, .. } = state;
         let (system, constants) = (&self.system, &self.constants);
-        let anew = S::Scheme::left_after(system, constants, time.now(), configuration, &state.momentum(), left);
+        let anew = M::Scheme::left_after(system, constants, time.now(), configuration, &state.momentum(), left);
         if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, left, state.h.equals(self.h)) }
     }
 
     /// The error of a step that no lane can make, which is tried once more for it.
     #[cold]
     #[inline(never)]
-    fn refused(&self, state: &State<S>, u: &S::Input) -> Error {
+    fn refused(&self, state: &State<S, M>, u: &S::Input) -> Error {
         match self.attempt(state, u) {
             Err(error) if S::Scalar::LANES == 1 => self.refusal(state, u, 0, error),
             // by construction an error: the same step has the same result
@@ -192,7 +197,7 @@ impl<S: Clebsch> Stepper<S> {
     /// The error of the first of so many steps that fails, each made by itself; `known` where none does.
     #[cold]
     #[inline(never)]
-    fn refused_after(&self, start: &State<S>, steps: usize, known: Error) -> Error {
+    fn refused_after(&self, start: &State<S, M>, steps: usize, known: Error) -> Error {
         let mut state = *start;
         for _ in 0..steps {
             match self.step(&state) {
@@ -205,7 +210,7 @@ impl<S: Clebsch> Stepper<S> {
 
     /// The error of a step whose state is not finite in some lane.
     #[cold]
-    fn beyond(&self, next: &State<S>) -> Error {
+    fn beyond(&self, next: &State<S, M>) -> Error {
         let finite = next.finite();
         let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
         whole_or_lane::<S::Scalar>(lane, self.overflow(next, lane))

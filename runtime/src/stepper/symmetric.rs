@@ -2,10 +2,10 @@
 
 use super::{Stepper, check_time, whole_or_lane};
 use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, CotangentState, Error, Mask, Scalar, Space, Time};
+use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Space, Time};
 use num_traits::Zero;
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state (q, p) on T*Q, after checks: finite, q on its orbit. Where the time matters it starts at 0.
     ///
     /// # Errors
@@ -22,7 +22,7 @@ impl<S: Clebsch> Stepper<S> {
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let CotangentState { time, configuration, covector } = state;
         let (configuration, covector) =
-            match S::Scheme::step_symmetric(&self.system, &self.constants, time.now(), configuration, covector) {
+            match M::Scheme::step_symmetric(&self.system, &self.constants, time.now(), configuration, covector) {
                 Ok(next) => next,
                 Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
                 Err(error) => return Err(self.refusal_of_covector(state, error)),
@@ -50,7 +50,7 @@ impl<S: Clebsch> Stepper<S> {
 }
 
 /// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> Stepper<S> {
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
     /// The state (q, p) on T*Q at the time t, checked as by [`cotangent_state`](Self::cotangent_state).
     ///
     /// # Errors

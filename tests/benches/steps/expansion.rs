@@ -37,7 +37,10 @@ pub fn all() -> Vec<Expansion> {
 
 fn structs(source: &str) -> Vec<syn::ItemStruct> {
     let items = syn::parse_file(source).expect("Rust source").items;
-    items.into_iter().filter_map(|item| if let syn::Item::Struct(item) = item { Some(item) } else { None }).collect()
+    let structs =
+        items.into_iter().filter_map(|item| if let syn::Item::Struct(item) = item { Some(item) } else { None });
+    let is_declared = |attribute: &syn::Attribute| attribute.path().is_ident("clebsch");
+    structs.filter(|item| item.attrs.iter().any(is_declared)).collect()
 }
 
 fn expansion(item: syn::ItemStruct) -> Expansion {

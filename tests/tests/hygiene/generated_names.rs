@@ -3,6 +3,12 @@
 use clebsch::Clebsch;
 use nalgebra::{Matrix3, Vector3};
 
+/// A method with the name of a generated type.
+pub struct Mu;
+
+/// A method with the name of the scalar.
+pub struct T;
+
 macro_rules! bodies {
     ($($name:ident)*) => {$(
         /// A body with a name that the expansion uses too.
@@ -11,6 +17,8 @@ macro_rules! bodies {
             action     = |F: SO<3>, R: SO<3>| R * F,
             lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
             discretization = moser_veselov,
+            method Mu = (order = 1, discretization = cayley),
+            method T = (discretization = exact),
         )]
         pub struct $name {
             /// In kg·m².

@@ -12,12 +12,17 @@ mod named;
 mod no_prelude;
 mod reexported;
 
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared, Method};
 use nalgebra::{Matrix3, Vector3};
 
 /// A step of a system that starts at rest.
 fn steps<S: Clebsch<Scalar = f64> + Clone>(system: &S, q: S::Configuration, mu: S::Momentum) {
-    let stepper = system.stepper(0.01).expect("good parameters");
+    steps_by::<S, Declared>(system, q, mu);
+}
+
+/// A step by a method.
+fn steps_by<S: Clebsch<Scalar = f64> + Clone, M: Method<S>>(system: &S, q: S::Configuration, mu: S::Momentum) {
+    let stepper = system.stepper_by::<M>(0.01).expect("good parameters");
     let start = stepper.state(q, mu).expect("a good state");
     stepper.step(&start).expect("a small step");
 }
@@ -26,13 +31,16 @@ macro_rules! all_of {
     ($($module:ident)*) => {$(
         #[test]
         fn $module() {
-            use $module::{Body, Lopsided, Pair, Pendulum, Sites, Top};
+            use $module::{Body, Composed, Fine, Lopsided, Pair, Pendulum, Sites, Top};
             let (z, zero) = (Vector3::z(), Vector3::zeros());
             let top = Top { mass_matrix: Matrix3::identity(), weight: 1.0, center: z };
             steps(&top, Matrix3::identity(), zero);
             assert!(Top::GENERATED.contains("linearize"));
             assert!(Top::DERIVATION_LATEX.starts_with("\\begin{align*}"));
-            steps(&Body { inertia: Matrix3::identity() }, Matrix3::identity(), zero);
+            let body = Body { inertia: Matrix3::identity() };
+            steps(&body, Matrix3::identity(), zero);
+            steps_by::<_, Fine>(&body, Matrix3::identity(), z);
+            steps_by::<_, Composed>(&body, Matrix3::identity(), z);
             steps(&Pair { mass: [1.0, 2.0], coupling: 3.0 }, ([z, z], zero), nalgebra::SVector::zeros());
             steps(&Pendulum(1.0, 2.0), nalgebra::Vector2::y(), nalgebra::Vector1::zeros());
             steps(&Lopsided { gravity: 9.81 }, z, zero);

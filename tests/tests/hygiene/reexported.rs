@@ -10,7 +10,7 @@ mod library {
 use library::inner::runtime::Clebsch;
 use nalgebra::Matrix3;
 
-pub use crate::no_prelude::{Body, Lopsided, Pair, Pendulum, Sites};
+pub use crate::no_prelude::{Body, Composed, Fine, Lopsided, Pair, Pendulum, Sites};
 
 /// By the path of its re-export.
 #[derive(Clebsch, Clone, Debug)]

@@ -18,12 +18,20 @@ pub struct Top {
     pub center: ::nalgebra::Vector3<f64>,
 }
 
-/// Generic, by its Lagrangian.
+/// Along free motions.
+pub struct Fine;
+
+/// Composed, of steps that are solved.
+pub struct Composed;
+
+/// Generic, by its Lagrangian, with methods.
 #[derive(::clebsch::Clebsch, ::core::clone::Clone, ::core::fmt::Debug)]
 #[clebsch(
     action         = |F: SO<3>, R: SO<3>| R * F,
     lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
     discretization = moser_veselov,
+    method Fine     = (discretization = exact),
+    method Composed = (order = 4, tolerance = 1e-9, summation = compensated),
 )]
 pub struct Body<T: ::clebsch::Scalar> {
     /// In kg·m².

@@ -29,16 +29,23 @@ fn every_stage_of_every_accepted_fixture() {
 fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
     let formulas = &program.formulas;
     assert_snapshot!(format!("{name}.1_declaration"), declaration);
-    assert_snapshot!(format!("{name}.2_model"), formulas.model);
-    assert_snapshot!(format!("{name}.3_formulas"), formulas);
+    assert_snapshot!(format!("{name}.2_model"), with_methods(program, |program| program.formulas.model.to_string()));
+    assert_snapshot!(format!("{name}.3_formulas"), with_methods(program, |program| program.formulas.to_string()));
     if IN_LATEX.contains(&name) {
         assert_snapshot!(format!("{name}.3_formulas_latex"), formulas.latex());
     }
     assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
-    assert_snapshot!(format!("{name}.5_derivation"), emit::derivation(program));
+    assert_snapshot!(format!("{name}.5_derivation"), emit::derivations(program));
     if GENERATED.contains(&name) {
         assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
     }
+}
+
+/// A stage with the same of each method behind it.
+fn with_methods(program: &Program<'_>, print: impl Fn(&Program<'_>) -> String) -> String {
+    let methods = program.methods.iter();
+    let methods = methods.map(|method| format!("\nmethod {}\n{}", method.name, print(&method.program)));
+    methods.fold(print(program), |text, method| text + &method)
 }
 
 /// The code of all kernels, or their operation counts where that is long.

@@ -14,8 +14,13 @@ impl Emitter<'_, '_> {
         let numbers = self.numbers_of_pair();
         let (dials, size) = (self.dials_of_sweeps(), self.size_of_step());
         let (slope, covector, guess) = (self.slope(kernels), self.covector(kernels), self.guess(kernels));
+        let momentum = self.momentum_of_step();
         let pair = self.pair();
-        self.implementation(quote!(HamiltonEquations<#numbers>), quote!(#dials #size #slope #covector #guess #pair))
+        self.implementation(
+            "HamiltonEquations",
+            &[&numbers],
+            quote!(#dials #size #slope #covector #momentum #guess #pair),
+        )
     }
 
     /// Where sweeps end, and whether J is affine in q.
@@ -46,8 +51,7 @@ impl Emitter<'_, '_> {
             formulas,
             Some(&kernels.slope),
         );
-        let private = &self.paths.private;
-        let numbers_of_pair = self.numbers_of_pair();
+        let equations = self.trait_of_parts("HamiltonEquations", &[&self.numbers_of_pair()]);
         let scope = self.scope_of_step();
         let locals = code::locals(&scope, &kernels.slope);
         let entries = kernels.slope.outputs.iter().flat_map(|(_, entries)| entries);
@@ -56,7 +60,7 @@ impl Emitter<'_, '_> {
             #documentation
             #[inline(always)]
             fn slope(&self, c: &#constants, t: #scalar, y: &#numbers) -> #numbers {
-                let (q, p) = <Self as #private::HamiltonEquations<#numbers_of_pair>>::parted(y);
+                let (q, p) = <Self as #equations>::parted(y);
                 #locals
                 [#(#entries),*]
             }
@@ -74,6 +78,13 @@ impl Emitter<'_, '_> {
             &kernels.lift,
             Some(Nesting::Configuration),
         )
+    }
+
+    fn momentum_of_step(&self) -> Option<TokenStream> {
+        let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
+        let signature = quote!(momentum(&self, q: &#configuration, p: &#configuration) -> #momentum);
+        let kernel = self.program.momentum_of_step.as_ref()?;
+        Some(self.part("J(q, p), entry by entry.", &[], signature, kernel, None))
     }
 
     /// Where the motion with the velocity of the start leads.

@@ -197,6 +197,7 @@ impl Emitter<'_, '_> {
             &[],
             Some(&self.program.constants),
         );
+        let receiver = self.receiver_parameter();
         let body = quote! {
             #inertia
             #locals
@@ -210,7 +211,7 @@ impl Emitter<'_, '_> {
         };
         quote! {
             #documentation
-            fn constants(&self, h: #scalar) -> #private::Result<Self::Constants, #private::Error> {
+            fn constants(#receiver, h: #scalar) -> #private::Result<Self::Constants, #private::Error> {
                 #checks
                 #body
             }
@@ -219,7 +220,7 @@ impl Emitter<'_, '_> {
 
     /// Checks of every field that a closure reads: finite, and what the user promises.
     pub(super) fn checks(&self) -> TokenStream {
-        let private = &self.paths.private;
+        let (private, system) = (&self.paths.private, self.receiver());
         let checks = self.model.parameters.iter().map(|parameter| {
             let (field, name) = (&parameter.field, &parameter.name);
             let promises = parameter
@@ -227,12 +228,12 @@ impl Emitter<'_, '_> {
                 .into_iter()
                 .flat_map(|promise| parameter.leaves.iter().map(move |leaf| (promise, code::accessor(&leaf.accessor))));
             let promises = promises.map(|(promise, access)| match promise {
-                Promise::Symmetric => quote!(#private::check_symmetric(#name, &self.#field #access)?;),
-                Promise::Diagonal => quote!(#private::check_diagonal(#name, &self.#field #access)?;),
-                Promise::Unit => quote!(#private::check_unit(#name, &self.#field #access)?;),
+                Promise::Symmetric => quote!(#private::check_symmetric(#name, &#system.#field #access)?;),
+                Promise::Diagonal => quote!(#private::check_diagonal(#name, &#system.#field #access)?;),
+                Promise::Unit => quote!(#private::check_unit(#name, &#system.#field #access)?;),
             });
             quote! {
-                #private::check_finite(#name, &self.#field)?;
+                #private::check_finite(#name, &#system.#field)?;
                 #(#promises)*
             }
         });

@@ -79,7 +79,8 @@ impl Emitter<'_, '_> {
         });
         let followed = self.followed();
         self.implementation(
-            quote!(FreeMotion),
+            "FreeMotion",
+            &[],
             quote! {
                 type Kept = [#private::#kept<#scalar>; #count];
 
@@ -137,6 +138,6 @@ impl Emitter<'_, '_> {
             &splitting.gradient,
             Some(Nesting::Configuration),
         );
-        self.implementation(quote!(SplitKicks), quote!(#size #kick #kick_gradient))
+        self.implementation("SplitKicks", &[], quote!(#size #kick #kick_gradient))
     }
 }

@@ -10,6 +10,7 @@ mod equation;
 mod exact;
 mod jacobian;
 mod matrices;
+mod methods;
 mod names;
 mod opaque;
 mod parts;
@@ -24,6 +25,7 @@ use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use crate::Method;
 use crate::lower::Program;
 use crate::model::{Item, Model};
 use code::{Scope, Spelled, nested_type};
@@ -62,6 +64,13 @@ pub fn derivation(program: &Program<'_>) -> String {
     program.derivation()
 }
 
+/// The texts of `DERIVATION` of a program and of its methods, one after the other.
+pub fn derivations(program: &Program<'_>) -> String {
+    let methods = program.methods.iter();
+    let methods = methods.map(|method| format!("\n{}", method.program.derivation_by(&method.name)));
+    methods.fold(program.derivation(), |text, method| text + &method)
+}
+
 /// The generated code of a program as text.
 pub fn generated(program: &Program<'_>) -> String {
     pretty(&Emitter::new(program).items())
@@ -79,6 +88,8 @@ fn pretty(items: &TokenStream) -> String {
 struct Emitter<'a, 'g> {
     program: &'a Program<'g>,
     model: &'a Model<'g>,
+    /// The method that is emitted, where it is not that of the declared dials.
+    method: Option<&'a Ident>,
     /// Paths of the runtime, as they are spelled where no name of the expansion is in scope.
     spelled: Paths,
     paths: Paths,
@@ -137,10 +148,16 @@ impl Generics {
 impl<'a, 'g> Emitter<'a, 'g> {
     fn new(program: &'a Program<'g>) -> Emitter<'a, 'g> {
         let model = &program.formulas.model;
-        let (spelled, names) = (Paths::new(&model.item), Names::new(model));
+        let (spelled, names) = (Paths::new(&model.item), Names::new(model, methods::names(&program.methods)));
         let paths = spelled.named(&model.item, &names);
         let generics = Generics::of(&model.item, &spelled);
-        Emitter { program, model, spelled, paths, generics, names }
+        Emitter { program, model, method: None, spelled, paths, generics, names }
+    }
+
+    /// The emitter of a method, which has the names of that of the declared dials.
+    fn of_method(declared: &'a Program<'g>, method: &'a Method<'g>) -> Emitter<'a, 'g> {
+        let model = &method.program.formulas.model;
+        Emitter { program: &method.program, model, method: Some(&method.name), ..Emitter::new(declared) }
     }
 
     fn items(&self) -> TokenStream {
@@ -157,8 +174,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let parts = self.parts();
         let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
-        let aliases = self.aliases();
-        quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity)
+        let (aliases, methods) = (self.aliases(), self.methods());
+        quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -191,7 +208,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// The scope of a method of the user's struct.
     fn scope_of_system(&self) -> Scope<'_, 'g> {
-        self.scope(quote!(self), None)
+        self.scope(self.receiver(), None)
     }
 
     /// The scope of a part of a step.

@@ -30,8 +30,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names for a model.
-    pub fn new(model: &Model<'_>) -> Names {
+    /// The names for a model and its methods.
+    pub fn new<'a>(model: &Model<'_>, methods: impl Iterator<Item = &'a Ident>) -> Names {
         let mut taken = BTreeSet::new();
         // of a power the user's struct is another item than that of a site
         for item in [&model.item].into_iter().chain(model.power.as_ref().map(|power| &power.item)) {
@@ -39,6 +39,7 @@ impl Names {
             collect(item.generics.to_token_stream(), &mut taken);
             collect(item.generics.where_clause.to_token_stream(), &mut taken);
         }
+        taken.extend(methods.map(Ident::to_string));
         model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
         if let Some(opaque) = &model.opaque {
             collect(opaque.value.to_token_stream(), &mut taken);

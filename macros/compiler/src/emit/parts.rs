@@ -34,11 +34,11 @@ impl Emitter<'_, '_> {
     }
 
     /// An implementation of a hidden trait of the runtime.
-    pub(super) fn implementation(&self, of: TokenStream, items: TokenStream) -> TokenStream {
+    pub(super) fn implementation(&self, name: &str, sizes: &[&Literal], items: TokenStream) -> TokenStream {
         let super::Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, private) = (&self.model.item.ident, &self.paths.private);
+        let (ident, of) = (&self.model.item.ident, self.trait_of_parts(name, sizes));
         quote! {
-            impl<#parameters> #private::#of for #ident<#arguments> #predicates {
+            impl<#parameters> #of for #ident<#arguments> #predicates {
                 #items
             }
         }
@@ -158,7 +158,8 @@ impl Emitter<'_, '_> {
         let lift = has_covectors.then(|| self.lift());
         let on_space = self.on_space();
         self.implementation(
-            quote!(Parts),
+            "Parts",
+            &[],
             quote! {
                 type Sums = #private::#sums;
                 type Coordinates = #coordinates;
@@ -322,10 +323,7 @@ impl Emitter<'_, '_> {
                 const ENDS_AS_IT_STARTS: ::core::primitive::bool = true;
             )
         });
-        self.implementation(
-            quote!(Substep<#number>),
-            quote!(#ends_as_it_starts #kicks #forces #gradients #solve #update),
-        )
+        self.implementation("Substep", &[&number], quote!(#ends_as_it_starts #kicks #forces #gradients #solve #update))
     }
 
     /// Whether a step ends with a kick of its own.
@@ -380,11 +378,12 @@ impl Emitter<'_, '_> {
         let first = Literal::usize_unsuffixed(first);
         let title = "The kick at the end of a step is that at the start of the next.";
         let documentation = docs::formulas(title, self.program.formulas.titled(Id::EndKick(index)), None);
+        let substep = self.call_of_parts("Substep", &[&first]);
         quote! {
             #documentation
             #[inline]
             fn end_kick(&self, c: &#constants, t: #scalar, q: &#configuration) -> #private::Option<#momentum> {
-                #private::Substep::<#first>::start_kick(self, c, t, q)
+                #substep::start_kick(self, c, t, q)
             }
         }
     }
@@ -454,8 +453,9 @@ impl Emitter<'_, '_> {
         let (configuration, momentum, input) = (self.configuration_type(), self.momentum_type(), self.input_type());
         let coordinates = self.coordinates_type();
         let (title, body) = if self.program.formulas.turns_whole() {
-            let kept = quote!(#private::FreeMotion::kept(self, c, mu));
-            let followed = quote!(#private::FreeMotion::follow(self, c, &#kept, mu).map(|(d, _)| d));
+            let free_motion = self.call_of_parts("FreeMotion", &[]);
+            let kept = quote!(#free_motion::kept(self, c, mu));
+            let followed = quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d));
             (" F − I of the group element whose momentum is μ.", followed)
         } else {
             (" The chart coordinates x of the group element whose momentum is μ.", self.coordinates_of(index, step))

@@ -67,7 +67,7 @@ impl Emitter<'_, '_> {
                     c.step_size * c.inertia_inverse
                 }
             };
-            return self.implementation(quote!(GreatCircles), turn);
+            return self.implementation("GreatCircles", &[], turn);
         }
         if self.keeps_motions() { self.free_motion() } else { TokenStream::new() }
     }

@@ -3,7 +3,7 @@
 
 use clebsch_symbolic::Group;
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::code::nested_type;
 use crate::model::{Outline, ScalarType};
@@ -66,7 +66,8 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     if declaration.kinetic.is_steered() {
         return quote!(#controlled);
     }
-    let methods = methods(&krate, &scalar);
+    let formulas = formulas(&krate, &scalar);
+    let methods = methods(&krate, declaration, &scalar, &bound);
     quote! {
         #controlled
         #[automatically_derived]
@@ -84,13 +85,52 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             const NAME: &'static ::core::primitive::str = #name;
             const ORDER: ::core::primitive::u32 = 0;
             const DERIVATION: &'static ::core::primitive::str = "";
-            #methods
+            #formulas
         }
+        #methods
     }
 }
 
+/// The declared methods, as the unit structs of the user implement them.
+fn methods(
+    krate: &TokenStream,
+    declaration: &Declaration,
+    scalar: &TokenStream,
+    bound: &Option<TokenStream>,
+) -> TokenStream {
+    let (parameters, arguments, predicates) = declaration.generics.split_for_impl();
+    let predicates: Vec<_> = predicates.map(|clause| &clause.predicates).into_iter().flatten().collect();
+    let ident = &declaration.ident;
+    let system = quote!(#ident #arguments);
+    let [configuration, element, momentum] = ["Configuration", "Element", "Momentum"].map(|name| {
+        let name = format_ident!("{name}");
+        quote!(<#system as #krate::Clebsch>::#name)
+    });
+    let signatures = [
+        quote!(constants(system: &#system, h: #scalar) -> ::core::result::Result<(), #krate::Error>),
+        quote!(legendre(system: &#system, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
+        quote!(legendre_next(system: &#system, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
+        quote!(kinetic_energy(system: &#system, constants: &(), t: #scalar, q: &#configuration, mu: &#momentum) -> #scalar),
+    ];
+    let methods = declaration.methods.iter().map(|method| {
+        let name = &method.name;
+        quote! {
+            #[automatically_derived]
+            #[allow(unused_variables, reason = "no body reads its arguments")]
+            impl #parameters #krate::Method<#system> for #name where #(#predicates,)* #bound {
+                type Constants = ();
+                type Scheme = #krate::__private::Unstepped;
+                const ORDER: ::core::primitive::u32 = 0;
+                const DERIVATION: &'static ::core::primitive::str = "";
+                #(fn #signatures { ::core::unreachable!("the declaration has an error") })*
+            }
+        }
+    });
+    quote!(#(#methods)*)
+}
+
 /// All methods of the trait, none of which is ever called.
-fn methods(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
+fn formulas(krate: &TokenStream, scalar: &TokenStream) -> TokenStream {
     let configuration = quote!(Self::Configuration);
     let result = |value: TokenStream| quote!(::core::result::Result<#value, #krate::Error>);
     let constants = result(quote!(()));

@@ -22,11 +22,7 @@ impl Emitter<'_, '_> {
         let (input, private) = (self.input_type(), &self.paths.private);
         let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
-        let free_motion = self.program.formulas.is_exact.then(|| {
-            quote!(
-                const IS_FREE_MOTION: ::core::primitive::bool = true;
-            )
-        });
+        let free_motion = self.is_free_motion();
         let (constants_type, scheme) = (self.constants_of_step(), self.scheme());
         let derivation = super::derivation(self.program);
         let (constants, formulas, checks) = (self.constants(), self.formulas(), self.space_checks());
@@ -53,6 +49,15 @@ impl Emitter<'_, '_> {
                 #checks
             }
         }
+    }
+
+    /// The constant that says so where a step is the free motion itself.
+    pub(super) fn is_free_motion(&self) -> Option<TokenStream> {
+        self.program.formulas.is_exact.then(|| {
+            quote!(
+                const IS_FREE_MOTION: ::core::primitive::bool = true;
+            )
+        })
     }
 
     /// The implementation of `Conserves`, where something is conserved.
@@ -171,10 +176,9 @@ impl Emitter<'_, '_> {
     }
 
     fn formulas(&self) -> TokenStream {
-        let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
+        let (program, formulas) = (self.program, &self.program.formulas);
         let [configuration, element, momentum] = self.names_of_types();
-        let free = self.free_momenta();
-        let methods = [
+        let mechanics = [
             self.method(
                 ("The action.", formulas.titled(Id::Action)),
                 quote!(act(&self, f: &#element, q: &#configuration) -> #configuration),
@@ -196,26 +200,8 @@ impl Emitter<'_, '_> {
                 &program.coadjoint,
                 None,
             ),
-            self.method_after(
-                free.as_ref(),
-                (
-                    "The discrete Legendre transform: the momentum N before the step that moves q by F.",
-                    formulas.titled(Id::Legendre),
-                ),
-                quote!(legendre(&self, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
-                &program.legendre,
-                None,
-            ),
-            self.method_after(
-                free.as_ref(),
-                (
-                    "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
-                    formulas.titled(Id::LegendreNext),
-                ),
-                quote!(legendre_next(&self, h: #scalar, t: #scalar, q: &#configuration, f: &#element) -> #momentum),
-                &program.legendre_next,
-                None,
-            ),
+        ];
+        let matrices = [
             self.method(
                 ("The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.", &[]),
                 quote!(momentum_matrix(mu: &#momentum) -> #element),
@@ -229,13 +215,42 @@ impl Emitter<'_, '_> {
                 None,
             ),
         ];
-        let (stagger, potential) = (self.stagger(), self.potential());
-        quote!(#(#methods)* #stagger #potential)
+        let (legendre, stagger) = (self.legendre_transforms(), self.stagger());
+        let (potential, kinetic_energy) = (self.potential(), self.kinetic_energy_of_momentum());
+        quote!(#(#mechanics)* #legendre #(#matrices)* #stagger #potential #kinetic_energy)
+    }
+
+    /// Both discrete Legendre transforms.
+    pub(super) fn legendre_transforms(&self) -> TokenStream {
+        let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
+        let (free, receiver) = (self.free_momenta(), self.receiver_parameter());
+        let [configuration, element, momentum] = self.names_of_types();
+        let arguments = quote!(#receiver, h: #scalar, t: #scalar, q: &#configuration, f: &#element);
+        let legendre = self.method_after(
+            free.as_ref(),
+            (
+                "The discrete Legendre transform: the momentum N before the step that moves q by F.",
+                formulas.titled(Id::Legendre),
+            ),
+            quote!(legendre(#arguments) -> #momentum),
+            &program.legendre,
+            None,
+        );
+        let legendre_next = self.method_after(
+            free.as_ref(),
+            (
+                "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
+                formulas.titled(Id::LegendreNext),
+            ),
+            quote!(legendre_next(#arguments) -> #momentum),
+            &program.legendre_next,
+            None,
+        );
+        quote!(#legendre #legendre_next)
     }
 
     fn potential(&self) -> TokenStream {
-        let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
-        let [configuration, _, momentum] = self.names_of_types();
+        let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
         let formulas = &self.program.formulas;
         let scope = self.scope_of_system();
         let locals = code::locals(&scope, &self.program.potential);
@@ -245,16 +260,25 @@ impl Emitter<'_, '_> {
             formulas.titled(Id::PotentialEnergy),
             Some(&self.program.potential),
         );
-        let kinetic = docs::formulas("The kinetic energy.", formulas.titled(Id::KineticEnergyOfMomentum), None);
-        let energy = self.kinetic_energy();
         quote! {
             #potential
             fn potential(&self, t: #scalar, q: &#configuration) -> #scalar {
                 #locals
                 #value
             }
-            #kinetic
-            fn kinetic_energy(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #scalar {
+        }
+    }
+
+    /// The kinetic energy of a momentum.
+    pub(super) fn kinetic_energy_of_momentum(&self) -> TokenStream {
+        let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
+        let [configuration, _, momentum] = self.names_of_types();
+        let formulas = self.program.formulas.titled(Id::KineticEnergyOfMomentum);
+        let documentation = docs::formulas("The kinetic energy.", formulas, None);
+        let (energy, receiver) = (self.kinetic_energy(), self.receiver_parameter());
+        quote! {
+            #documentation
+            fn kinetic_energy(#receiver, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #scalar {
                 #energy
             }
         }
@@ -264,8 +288,8 @@ impl Emitter<'_, '_> {
     fn kinetic_energy(&self) -> TokenStream {
         let private = &self.paths.private;
         if self.program.velocity.is_some() {
-            let velocity = &self.names.velocity;
-            return quote!(#private::legendre_fenchel(&#velocity { system: self, t, q }, mu));
+            let (velocity, system) = (&self.names.velocity, self.receiver());
+            return quote!(#private::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
         }
         let scope = self.scope_of_system();
         let (shift, mu) = match &self.program.gyroscopic {
@@ -329,13 +353,13 @@ impl Emitter<'_, '_> {
     }
 
     /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
-    fn stagger(&self) -> Option<TokenStream> {
-        let [configuration, _, momentum] = self.names_of_types();
+    pub(super) fn stagger(&self) -> Option<TokenStream> {
+        let (receiver, [configuration, _, momentum]) = (self.receiver_parameter(), self.names_of_types());
         let (kernel, scalar) = (self.program.stagger.as_ref()?, &self.paths.scalar);
         let formulas = self.program.formulas.titled(Id::SynchronizedMomentum);
         Some(self.method(
             ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", formulas),
-            quote!(stagger(&self, h: #scalar, t: #scalar, q: &#configuration) -> #momentum),
+            quote!(stagger(#receiver, h: #scalar, t: #scalar, q: &#configuration) -> #momentum),
             kernel,
             None,
         ))

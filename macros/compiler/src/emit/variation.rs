@@ -32,7 +32,7 @@ impl Emitter<'_, '_> {
         } else {
             quote!(())
         };
-        let varied = self.implementation(quote!(Varied<#dimension>), quote!(type Slopes = #slopes;));
+        let varied = self.implementation("Varied", &[&dimension], quote!(type Slopes = #slopes;));
         let edges = variations.edges.iter().enumerate().map(|(index, edge)| self.edge(index, edge));
         quote! {
             #[automatically_derived]
@@ -119,7 +119,6 @@ impl Emitter<'_, '_> {
     /// The move by an increment. Where sums keep their rests, the kernel has what is added.
     fn advance_of_motions(&self) -> TokenStream {
         let kernel = &self.program.steps[0].advance;
-        let private = &self.paths.private;
         let formulas = self.program.formulas.titled(Id::Advance);
         let documentation = docs::formulas("The configuration that F = I + D moves q to.", formulas, Some(kernel));
         let moves_by_increments = self.program.steps[0].displace.is_none();
@@ -128,7 +127,10 @@ impl Emitter<'_, '_> {
             let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
             quote!(let added = { #added }; #sum)
         } else if moves_by_increments {
-            quote!(#private::Parts::advance(self, q, d))
+            {
+                let parts = self.call_of_parts("Parts", &[]);
+                quote!(#parts::advance(self, q, d))
+            }
         } else {
             code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration))
         };
@@ -233,7 +235,7 @@ impl Emitter<'_, '_> {
         let (number, dimension) = (Literal::usize_unsuffixed(index), Literal::usize_unsuffixed(self.dimension()));
         let (momenta, edge) = (self.momenta_of(kernels), self.edge_of(kernels));
         let (carried, slopes) = (self.carried_of(kernels), self.slopes_of(kernels));
-        self.implementation(quote!(VariedSubstep<#number, #dimension>), quote!(#momenta #edge #carried #slopes))
+        self.implementation("VariedSubstep", &[&number, &dimension], quote!(#momenta #edge #carried #slopes))
     }
 
     /// A method of `VariedSubstep`.

@@ -26,6 +26,7 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Property, Shape, identity};
 
+use crate::Method;
 use crate::derive::{self, Formulas, Id, Stencil, inverse_by};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Factor, Isotropy, Space};
@@ -59,6 +60,8 @@ pub struct Program<'g> {
     pub act: Kernel,
     /// J(q, p).
     pub momentum_map: Kernel,
+    /// J(q, p) as a step computes it, where one does: steps of order 16 map covectors.
+    pub momentum_of_step: Option<Kernel>,
     /// Ad*_F μ.
     pub coadjoint: Kernel,
     /// F⁻ℓd, from h, q and F.
@@ -110,6 +113,8 @@ pub struct Program<'g> {
     pub constants: Kernel,
     /// A short name for each constant.
     pub constant_names: Vec<String>,
+    /// Further ways to step the system, none behind this stage alone.
+    pub methods: Vec<Method<'g>>,
 }
 
 /// The kernels of a term of a power.
@@ -168,15 +173,20 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let links: Vec<LinkKernels> = links.collect();
     let gathered = gathered(&formulas, &links, |expressions| outputs(&mut scalars, expressions));
     let program = Program {
+        methods: Vec::new(),
         links,
         gathered,
         act: asked(&formulas.model.action, &mut scalars),
-        // these steps, and those of sites, map covectors
-        momentum_map: if formulas.collocation.is_some() || formulas.model.power.is_some() {
+        // steps of sites map covectors
+        momentum_map: if formulas.model.power.is_some() {
             stack(&mut scalars, &replaced(&formulas.momentum_map, &inverses))
         } else {
             stacked(&formulas.momentum_map, &mut scalars)
         },
+        momentum_of_step: formulas
+            .collocation
+            .as_ref()
+            .map(|_| stack(&mut scalars, &replaced(&formulas.momentum_map, &inverses))),
         coadjoint: stacked(&formulas.coadjoint, &mut scalars),
         legendre: stacked(&formulas.legendre, &mut scalars),
         legendre_next: stacked(&after, &mut scalars),

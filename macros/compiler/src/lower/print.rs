@@ -72,6 +72,7 @@ impl Program<'_> {
                 ("whole_guess".to_string(), &collocation.guess),
             ]
         }));
+        kernels.extend(self.momentum_of_step.iter().map(|kernel| ("momentum_of_step".to_string(), kernel)));
         for (number, link) in self.links.iter().enumerate() {
             kernels.push((format!("term_{}", number + 1), &link.value));
             if self.gathered.is_none() {
@@ -210,7 +211,7 @@ impl fmt::Display for Program<'_> {
                 writeln!(f, "    {target} = {}", self.text(code, 0))?;
             }
         }
-        Ok(())
+        self.methods.iter().try_for_each(|method| write!(f, "\nmethod {}\n{}", method.name, method.program))
     }
 }
 

@@ -156,6 +156,7 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
         Feature::Summation => dials.summation.as_ref().map(|summation| Found::at(summation.span)),
+        Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
         Feature::Tangent => emitted(dials.emit.tangent),
         Feature::Boundary => emitted(dials.emit.boundary),
         Feature::Momentum => emitted(dials.emit.momentum),

@@ -6,7 +6,7 @@ use syn::parse::ParseStream;
 use syn::{Attribute, DeriveInput, Meta, Token};
 
 use super::keys::{KEYS, Key, Keys};
-use super::{groups, values};
+use super::{groups, methods, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Reads all attributes of the struct as one.
@@ -46,23 +46,40 @@ fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics
         groups::read(&key, stream, keys, diagnostics)?;
         return end_of_item(&key, stream);
     }
-    let found = find(&key).ok_or_else(|| unknown_key(&key))?;
-    if !keys.give(&key) {
-        return Err(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"));
+    if key == "method" {
+        let _ = keys.give(&key);
+        methods::read(&key, stream, keys, diagnostics)?;
+        return end_of_item(&key, stream);
     }
+    let found = find(&key).ok_or_else(|| unknown_key(&key))?;
+    give(&key, keys)?;
     if found.comes_later() {
         return Err(Diagnostic::later(key.span(), format!("the key `{key}`")));
     }
-    if stream.parse::<Token![=]>().is_err() {
-        let error = Diagnostic::new(key.span(), format!("the key `{key}` has no value"));
-        return Err(error.help(format!("write `{key} = {}`", found.example)));
-    }
+    equals(&key, found, stream)?;
     values::read(&key, found, stream, keys, diagnostics)?;
     end_of_item(&key, stream)
 }
 
+/// Notes that a key is given, which it may be once.
+pub(super) fn give(key: &Ident, keys: &mut Keys) -> Result<(), Diagnostic> {
+    if keys.give(key) {
+        return Ok(());
+    }
+    Err(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"))
+}
+
+/// The `=` before the value of a key.
+pub(super) fn equals(key: &Ident, found: &Key, stream: ParseStream) -> Result<(), Diagnostic> {
+    if stream.parse::<Token![=]>().is_ok() {
+        return Ok(());
+    }
+    let error = Diagnostic::new(key.span(), format!("the key `{key}` has no value"));
+    Err(error.help(format!("write `{key} = {}`", found.example)))
+}
+
 /// A comma, or the end of the declaration.
-fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
+pub(super) fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
     if stream.is_empty() || stream.parse::<Token![,]>().is_ok() {
         return Ok(());
     }
@@ -87,13 +104,14 @@ fn unknown_key(key: &Ident) -> Diagnostic {
 }
 
 /// Goes on behind the next comma that is followed by `key =`.
-fn skip_to_next_item(stream: ParseStream) {
+pub(super) fn skip_to_next_item(stream: ParseStream) {
     while !stream.is_empty() {
         let starts_item = |stream: ParseStream| {
             let key = stream.call(Ident::parse_any);
-            let known = key.as_ref().is_ok_and(|key| key == "group" || find(key).is_some());
+            let is_named = key.as_ref().is_ok_and(|key| key == "group" || key == "method");
+            let known = is_named || key.is_ok_and(|key| find(&key).is_some());
             let assigned = stream.peek(Token![=]) && !stream.peek(Token![==]);
-            known && (assigned || key.is_ok_and(|key| key == "group"))
+            known && (assigned || is_named)
         };
         // a key whose comma was forgotten starts an item too
         if starts_item(&stream.fork()) {

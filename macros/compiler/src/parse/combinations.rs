@@ -3,27 +3,45 @@
 use proc_macro2::Span;
 
 use super::Order;
-use super::keys::{KEYS, Keys};
+use super::keys::{KEYS, Key, Keys};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 
 /// Reports all combinations of keys that the table of features refuses.
 pub(super) fn check(keys: &Keys, diagnostics: &mut Diagnostics) {
-    let found = |feature| place(keys, feature).map(|place| named(keys, Found::at(place)));
-    features::refusals(found).into_iter().for_each(|error| diagnostics.push(error));
+    let mut refuse = |of_steps: &Keys, of_system: fn(Feature) -> bool| {
+        let place = |feature| if of_system(feature) { None } else { place(keys, of_steps, feature) };
+        let found = |feature| place(feature).map(|place| named(of_steps, Found::at(place)));
+        features::refusals(found).into_iter().for_each(|error| diagnostics.push(error));
+        diagnostics.is_empty()
+    };
+    // what is wrong with the system is said once
+    if refuse(keys, |_| false) {
+        for method in &keys.methods {
+            refuse(&method.keys, is_declared_alone);
+        }
+    }
+}
+
+/// Whether a feature is of the steps with the declared dials alone.
+fn is_declared_alone(feature: Feature) -> bool {
+    matches!(
+        feature,
+        Feature::Effort | Feature::Bounds | Feature::Endpoint | Feature::Tangent | Feature::Boundary | Feature::Inputs
+    )
 }
 
 /// Messages about an order name it.
-fn named(keys: &Keys, found: Found) -> Found {
-    match &keys.dials.order {
+fn named(of_steps: &Keys, found: Found) -> Found {
+    match &of_steps.dials.order {
         Some(order) => found.named(order.value.number()),
         None => found,
     }
 }
 
-/// Where a key was given, or a value of one.
-fn place(keys: &Keys, feature: Feature) -> Option<Span> {
-    let dials = &keys.dials;
+/// Where a key was given, or a value of one. What a method takes stands in `of_steps`.
+fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
+    let (dials, emit) = (&of_steps.dials, &keys.dials.emit);
     let emitted = |asked: bool| keys.place_of("emit").filter(|_| asked);
     let order =
         |fits: fn(Order) -> bool| dials.order.as_ref().filter(|order| fits(order.value)).map(|order| order.span);
@@ -35,16 +53,20 @@ fn place(keys: &Keys, feature: Feature) -> Option<Span> {
         Feature::Cost => keys.cost.as_ref().map(|closure| closure.key.span()),
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
-        Feature::Tangent => emitted(dials.emit.tangent),
-        Feature::Boundary => emitted(dials.emit.boundary),
-        Feature::Momentum => emitted(dials.emit.momentum),
+        Feature::Tangent => emitted(emit.tangent),
+        Feature::Boundary => emitted(emit.boundary),
+        Feature::Momentum => emitted(emit.momentum),
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),
-        _ => keys.place_of(key(feature)?),
+        Feature::Method => keys.place_of("method"),
+        _ => {
+            let key = key(feature)?;
+            if key.of_method { of_steps.place_of(key.name) } else { keys.place_of(key.name) }
+        }
     }
 }
 
 /// The key that a feature is, if it is one.
-fn key(feature: Feature) -> Option<&'static str> {
+fn key(feature: Feature) -> Option<&'static Key> {
     let word = feature.words().strip_prefix('`')?.strip_suffix('`')?;
-    KEYS.iter().map(|key| key.name).find(|name| *name == word)
+    KEYS.iter().find(|key| key.name == word)
 }

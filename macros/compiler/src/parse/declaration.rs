@@ -5,7 +5,7 @@ use syn::{DeriveInput, Generics, Visibility};
 
 use super::dials::Dials;
 use super::keys::Keys;
-use super::{Choice, Closure, DeclaredGroup, Field, Opaque, combinations, control};
+use super::{Choice, Closure, DeclaredGroup, DeclaredMethod, Field, Opaque, combinations, control, methods};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -39,6 +39,8 @@ pub struct Declaration {
     pub symmetries: Vec<Closure>,
     /// Everything else.
     pub dials: Dials,
+    /// Further ways to step the system, each with dials of its own.
+    pub methods: Vec<DeclaredMethod>,
 }
 
 /// The key `potential`.
@@ -136,7 +138,8 @@ pub(super) fn assemble(
         None => (keys.action.take(), kinetic, None),
     };
     control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
-    let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, .. } = keys;
+    let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, methods, .. } = keys;
+    let methods = methods::checked(&input.ident, methods, &mut diagnostics);
     match (diagnostics.is_empty(), action, kinetic) {
         (true, Some(action), Some(kinetic)) => Ok(Declaration {
             ident: input.ident.clone(),
@@ -153,6 +156,7 @@ pub(super) fn assemble(
             endpoint,
             symmetries,
             dials,
+            methods,
         }),
         _ => Err(diagnostics),
     }

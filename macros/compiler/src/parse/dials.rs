@@ -234,6 +234,11 @@ impl Emit {
         }
     }
 
+    /// What is emitted of a method beside the integrator: what says which system is stepped.
+    pub(super) fn of_method(self) -> Emit {
+        Emit { momentum: self.momentum, ..Emit::NOTHING }
+    }
+
     /// Whether discrete Lagrangians are differentiated twice.
     pub fn variations(self) -> bool {
         self.tangent || self.boundary

@@ -6,6 +6,7 @@ pub use markdown::keys_as_markdown;
 use proc_macro2::{Ident, Span};
 
 use super::dials::{Dials, EMITTED, ORDERS};
+use super::methods::MethodKeys;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
 use crate::diagnostic::Diagnostic;
@@ -31,6 +32,8 @@ pub(super) struct Key {
     pub default: &'static str,
     /// What it belongs to.
     pub of: &'static str,
+    /// Whether a method takes it too.
+    pub of_method: bool,
 }
 
 /// How the value of a key is read.
@@ -71,14 +74,14 @@ pub(super) const KEYS: [Key; 27] = [
     closure("effort", |keys| &mut keys.effort, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
     closure("bounds", |keys| &mut keys.bounds, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
     closure("endpoint", |keys| &mut keys.endpoint, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
-    key("order", Dial(|dials, value| value.order(&ORDERS, &mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
-    key("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
-    key("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
-    key("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver)), "fixed_point", "what takes fewer operations", ITERATED),
-    key("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations)), "4", "until round-off", ITERATED),
-    key("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| Some(format!("{:e}", dials.tolerance.as_ref()?.value))), "1e-8", "round-off", ITERATED),
-    key("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
-    key("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
+    dial("order", Dial(|dials, value| value.order(&ORDERS, &mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
+    dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
+    dial("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
+    dial("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver)), "fixed_point", "what takes fewer operations", ITERATED),
+    dial("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations)), "4", "until round-off", ITERATED),
+    dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| Some(format!("{:e}", dials.tolerance.as_ref()?.value))), "1e-8", "round-off", ITERATED),
+    dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
+    dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
     key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy)), "free", "`fixed`", MECHANICS),
     key("emit", Dial(|dials, value| value.words(&EMITTED, &mut dials.emit), |dials| dials.emit.text()), "[generated]", "`[]`", ALL),
     key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string)), "f64", "`f64`", "structs without fields"),
@@ -89,7 +92,12 @@ pub(super) const KEYS: [Key; 27] = [
 ];
 
 const fn key(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
-    Key { name, kind, example, default, of }
+    Key { name, kind, example, default, of, of_method: false }
+}
+
+/// A dial of a method.
+const fn dial(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
+    Key { name, kind, example, default, of, of_method: true }
 }
 
 const fn closure(
@@ -146,6 +154,7 @@ pub(super) struct Keys {
     pub endpoint: Option<Closure>,
     pub symmetries: Vec<Closure>,
     pub groups: Vec<DeclaredGroup>,
+    pub methods: Vec<MethodKeys>,
     pub dials: Dials,
     given: Vec<(String, Span)>,
 }

@@ -10,6 +10,7 @@ mod dials;
 mod field;
 mod groups;
 mod keys;
+mod methods;
 mod opaque;
 mod print;
 mod spelling;
@@ -22,6 +23,7 @@ pub use dials::{ChartChoice, CodeForm, Dials, Discretization, Emit, Isotropy, Or
 pub use field::Field;
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Located, keys_as_markdown};
+pub use methods::DeclaredMethod;
 pub use opaque::Opaque;
 pub(crate) use spelling::tokens as spell_tokens;
 pub use spelling::{spell, spell_type};

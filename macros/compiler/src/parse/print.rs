@@ -45,6 +45,10 @@ impl fmt::Display for Declaration {
         for (name, value) in self.dials.given() {
             writeln!(f, "  {name:<10} = {value}")?;
         }
+        for method in &self.methods {
+            let dials: Vec<String> = method.dials.given().map(|(name, value)| format!("{name} = {value}")).collect();
+            writeln!(f, "  method {} = ({})", method.name, dials.join(", "))?;
+        }
         for field in &self.fields {
             let promise = field.promise.map(|(promise, _)| format!(", {promise:?}").to_lowercase()).unwrap_or_default();
             writeln!(f, "  field {}: {}{promise}", field.name(), spell_type(&field.ty))?;

@@ -1,39 +1,53 @@
 //! The bodies that share the lanes of one state.
 
 use crate::scheme::Held;
-use crate::{Body, Clebsch, Error, Mask, Scalar, Space, State, Stepper, Time};
+use crate::{Body, Clebsch, Error, Mask, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
+use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
 
 /// Chunks that take turns: what one waits for, another one has the time to do.
 pub const TOGETHER: usize = 4;
 
 /// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.
-#[derive(Debug)]
-pub struct Chunk<S: Clebsch> {
-    state: State<S>,
+pub struct Chunk<S: Clebsch, M: Method<S>> {
+    state: State<S, M>,
     /// The lanes of bodies that are stepped, one bit for each. The momenta of the others are NaN, which ends their solve at once.
     live: u16,
-    failed: Vec<Failed<S>>,
+    failed: Vec<Failed<S, M>>,
 }
 
 /// A body that stays where it is.
-#[derive(Debug)]
-struct Failed<S: Clebsch> {
+struct Failed<S: Clebsch, M: Method<S>> {
     lane: usize,
     /// The number of steps that it has made.
     step: u64,
     error: Error,
     /// The last state that it reached, in its lane.
-    state: State<S>,
+    state: State<S, M>,
 }
 
-impl<S: Clebsch> Chunk<S> {
+impl<S: Clebsch, M: Method<S>> Debug for Chunk<S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { state, live, failed } = self;
+        f.debug_struct("Chunk").field("state", state).field("live", live).field("failed", failed).finish()
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Debug for Failed<S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { lane, step, error, state } = self;
+        let mut failed = f.debug_struct("Failed");
+        failed.field("lane", lane).field("step", step).field("error", error).field("state", state).finish()
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Chunk<S, M> {
     /// From at least one body, and at most one for each lane.
     ///
     /// # Errors
     /// The first body that [`Stepper::state`] refuses.
-    pub fn new(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Result<Self, (usize, Error)> {
+    pub fn new(stepper: &Stepper<S, M>, bodies: &[Body<S>]) -> Result<Self, (usize, Error)> {
         let body = |lane: usize| bodies[lane.min(bodies.len() - 1)];
         let q = S::Configuration::side_by_side(|lane| body(lane).0);
         let mu = S::Momentum::side_by_side(|lane| body(lane).1);
@@ -45,7 +59,7 @@ impl<S: Clebsch> Chunk<S> {
 
     /// One step of each body; `step` have been made.
     #[inline(always)]
-    pub fn step(&mut self, stepper: &Stepper<S>, step: u64) {
+    pub fn step(&mut self, stepper: &Stepper<S, M>, step: u64) {
         // what the last step has left has been made by this stepper
         if let Ok(next) = stepper.attempt_with(&self.state, &self.state.left, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
@@ -62,7 +76,7 @@ impl<S: Clebsch> Chunk<S> {
     /// The step in which some bodies fail.
     #[cold]
     #[inline(never)]
-    fn part(&mut self, stepper: &Stepper<S>, step: u64) {
+    fn part(&mut self, stepper: &Stepper<S, M>, step: u64) {
         let (mut next, stepped) = stepper.step_each(&self.state);
         for lane in (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)) {
             if self.live >> lane & 1 == 1 {
@@ -71,19 +85,19 @@ impl<S: Clebsch> Chunk<S> {
                 self.failed.push(Failed { lane, step, error, state: self.state });
                 self.live &= !(1 << lane);
             }
-            next.held.set_lane(lane, &undefined::<S>().lane(lane));
+            next.held.set_lane(lane, &undefined::<S, M>().lane(lane));
         }
         next.time = self.state.time.after_step(stepper.h);
         self.state = next;
     }
 
     /// The state that has, in this lane, the last that the body reached.
-    pub fn state_of(&self, lane: usize) -> &State<S> {
+    pub fn state_of(&self, lane: usize) -> &State<S, M> {
         self.failed.iter().find(|failed| failed.lane == lane).map_or(&self.state, |failed| &failed.state)
     }
 
     /// Puts a body into a lane, at the present time.
-    pub fn put(&mut self, lane: usize, mut state: State<S>) {
+    pub fn put(&mut self, lane: usize, mut state: State<S, M>) {
         state.time = self.state.time;
         self.failed.retain(|failed| failed.lane != lane);
         self.live |= 1 << lane;
@@ -98,7 +112,12 @@ impl<S: Clebsch> Chunk<S> {
 
 /// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
 #[inline]
-pub fn advance<S: Clebsch>(chunks: &mut [Chunk<S>], steppers: &[Stepper<S>], first: u64, steps: u64) {
+pub fn advance<S: Clebsch, M: Method<S>>(
+    chunks: &mut [Chunk<S, M>],
+    steppers: &[Stepper<S, M>],
+    first: u64,
+    steps: u64,
+) {
     let numbers = first..first.saturating_add(steps);
     match steppers {
         [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
@@ -113,17 +132,17 @@ pub fn advance<S: Clebsch>(chunks: &mut [Chunk<S>], steppers: &[Stepper<S>], fir
 ///
 /// # Errors
 /// Those of [`Stepper::state`].
-pub fn alone<S: Clebsch>(stepper: &Stepper<S>, (q, mu): &Body<S>) -> Result<State<S>, Error> {
+pub fn alone<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, (q, mu): &Body<S>) -> Result<State<S, M>, Error> {
     stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
 }
 
 /// The first body that is refused.
-fn refused<S: Clebsch>(stepper: &Stepper<S>, bodies: &[Body<S>]) -> Option<(usize, Error)> {
+fn refused<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, bodies: &[Body<S>]) -> Option<(usize, Error)> {
     let refusal = |(lane, body)| alone(stepper, body).err().map(|error| (lane, error));
     bodies.iter().enumerate().find_map(refusal)
 }
 
 /// Momenta that are no numbers.
-fn undefined<S: Clebsch>() -> Held<S> {
-    Held::<S>::filled(S::Scalar::zero() / S::Scalar::zero())
+fn undefined<S: Clebsch, M: Method<S>>() -> Held<S, M> {
+    Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero())
 }

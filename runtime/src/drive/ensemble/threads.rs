@@ -2,17 +2,17 @@
 
 use super::Ensemble;
 use super::chunk::{self, Chunk};
-use crate::{Clebsch, State, Stepper};
+use crate::{Clebsch, Method, State, Stepper};
 use rayon::prelude::*;
 
 /// The least number of groups of chunks that a thread takes at a time.
 const SHARE: usize = 4;
 
-impl<S: Clebsch> Ensemble<S>
+impl<S: Clebsch, M: Method<S>> Ensemble<S, M>
 where
-    State<S>: Send,
-    Stepper<S>: Sync,
-    Chunk<S>: Send,
+    State<S, M>: Send,
+    Stepper<S, M>: Sync,
+    Chunk<S, M>: Send,
 {
     /// [`advance`](Self::advance) on all threads of the present pool, with the same bits.
     ///

@@ -10,6 +10,7 @@ mod equations;
 mod formulas;
 mod matrices;
 mod mentions;
+mod methods;
 mod paths;
 mod places;
 mod plans;

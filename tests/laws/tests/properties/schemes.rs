@@ -173,6 +173,7 @@ proptest! {
         prop_assert_eq!(<CollocatedTop as HamiltonEquations<8>>::step_size(&constants), H);
         let p = HamiltonEquations::<8>::covector(&top, &constants, &q, &mu);
         assert_near(&top.momentum_map(&q, &p), &mu, NEAR, "J(q, p)");
+        assert_near(&HamiltonEquations::<8>::momentum(&top, &q, &p), &mu, NEAR, "J(q, p) of a step");
         let y = <CollocatedTop as HamiltonEquations<8>>::joined(&q, &p);
         prop_assert_eq!(<CollocatedTop as HamiltonEquations<8>>::parted(&y), (q, p));
         let (dq, dp) = <CollocatedTop as HamiltonEquations<8>>::parted(&HamiltonEquations::<8>::slope(&top, &constants, 0.0, &y));

@@ -16,7 +16,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("coupled_costs_have_slopes",      &["Substep::rest", "Substep::coupled_gradient"]),
         ("free_motions_are_followed",      &["FreeMotion::kept", "FreeMotion::follow"]),
         ("kicks_of_splittings_are_momenta", &["SplitKicks::step_size", "SplitKicks::kick", "SplitKicks::kick_gradient"]),
-        ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
+        ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::momentum", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
         ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
         ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes"]),
     ]),
@@ -147,6 +147,10 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("clocks_do_not_drift",                  &["Clock::now", "Time::at", "Time::now", "Time::after_step", "Time::take_lane"]),
         ("conserved_values_have_names",          &["Conserved::new", "Conserved::names", "Conserved::values", "Conserved::get", "Conserved::iter", "Conserved::lane"]),
         ("lanes_hold_single_numbers",            &["lanes!::splat", "lanes!::to_array"]),
+    ]),
+    ("tests/laws/tests/properties/methods.rs", &[
+        ("methods_step_one_system",               &["Clebsch::stepper_by", "Clebsch::into_stepper_by", "Method::constants", "Method::kinetic_energy", "Method::legendre", "Method::legendre_next", "Method::stagger"]),
+        ("states_of_methods_are_the_same_bodies", &["Stepper::state_of"]),
     ]),
     ("tests/laws/tests/properties/steps.rs", &[
         ("ways_of_stepping_agree", &[

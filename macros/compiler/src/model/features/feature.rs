@@ -23,6 +23,7 @@ pub(crate) enum Feature {
     Tolerance,
     Iterations,
     Summation,
+    Method,
     // values of keys
     OpaquePotential,
     FreeIsotropy,
@@ -96,6 +97,7 @@ impl Feature {
             Feature::Tolerance => "`tolerance`",
             Feature::Iterations => "`iterations`",
             Feature::Summation => "`summation`",
+            Feature::Method => "`method`",
             Feature::OpaquePotential => "an opaque potential",
             Feature::FreeIsotropy => "`isotropy = free`",
             Feature::Composition => "`order = 4`, `6` or `8`",

@@ -24,7 +24,10 @@ pub(super) const ROWS: [Row; 48] = [
         "keep `controls` for motions of a group, `dynamics` for any map of a vector space",
     ),
     row(
-        &[Lagrangian, Potential, Force, ForceOn, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Chart],
+        &[
+            Lagrangian, Potential, Force, ForceOn, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Chart,
+            Method,
+        ],
         &[Controls, Dynamics],
         "a system with {beside} has no {refused}",
         "the inputs move the configuration directly, without mass, momentum or force",
@@ -162,7 +165,7 @@ pub(super) const ROWS: [Row; 48] = [
     ),
     row(&[Composition, Sixteenth], &[Power], "`order = {name}` of a power is not supported yet", LATER, ALL_SITES),
     row(
-        &[Summation, Tangent, Boundary, Momentum],
+        &[Summation, Tangent, Boundary, Momentum, Method],
         &[Power],
         "{refused} of a power is not supported yet",
         LATER,

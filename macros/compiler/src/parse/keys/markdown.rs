@@ -5,7 +5,17 @@ use super::{KEYS, Key};
 /// The table of all keys in Markdown.
 pub fn keys_as_markdown() -> String {
     let head = "| key | an example | default | of |\n|---|---|---|---|\n";
-    KEYS.iter().filter(|key| !key.comes_later()).map(row).fold(head.to_string(), |table, row| table + &row)
+    let rows = KEYS.iter().filter(|key| !key.comes_later()).map(row);
+    let table = rows.fold(head.to_string(), |table, row| table + &row);
+    let dials: Vec<String> = KEYS.iter().filter(|key| key.of_method).map(|key| format!("`{}`", key.name)).collect();
+    format!(
+        "{table}
+A further way to step the same system is a `method NAME = (dial = value, …)`, where `NAME` is a unit struct of yours; there may be any number of them.
+The dials of a method are {}. One that a method does not name has its default, whatever the declaration says.
+`emit = [tangent]`, `[boundary]` and `effort` are of the steps with the declared dials.
+",
+        dials.join(", ")
+    )
 }
 
 fn row(key: &Key) -> String {

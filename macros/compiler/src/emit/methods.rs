@@ -1,0 +1,88 @@
+//! Methods: several ways to step one system, each in a block of its own behind what is emitted of the system.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::{Emitter, Generics};
+use crate::Method;
+
+impl<'g> Emitter<'_, 'g> {
+    /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
+    pub(super) fn methods(&self) -> TokenStream {
+        let blocks = self.program.methods.iter().map(|method| {
+            let items = Emitter::of_method(self.program, method).items_of_method(&method.name);
+            quote!(const _: () = { #items };)
+        });
+        quote!(#(#blocks)*)
+    }
+
+    fn items_of_method(&self, name: &Ident) -> TokenStream {
+        let (constants, method) = (self.constants_type(), self.implementation_of_method(name));
+        let (parts, equations, velocity) = (self.parts(), self.equations(), self.velocity());
+        quote!(#constants #method #parts #equations #velocity)
+    }
+
+    /// What depends on how the system is stepped.
+    fn implementation_of_method(&self, name: &Ident) -> TokenStream {
+        let (krate, system) = (&self.paths.krate, self.item_type());
+        let Generics { parameters, predicates, .. } = &self.generics;
+        let (constants_type, scheme, order) = (self.constants_of_step(), self.scheme(), self.model.order.number());
+        let derivation = self.program.derivation_by(name);
+        let free_motion = self.is_free_motion();
+        let (constants, legendre) = (self.constants(), self.legendre_transforms());
+        let (stagger, kinetic_energy) = (self.stagger(), self.kinetic_energy_of_momentum());
+        quote! {
+            #[automatically_derived]
+            impl<#parameters> #krate::Method<#system> for #name #predicates {
+                type Constants = #constants_type;
+                type Scheme = #scheme;
+
+                const ORDER: ::core::primitive::u32 = #order;
+                #free_motion
+                const DERIVATION: &'static ::core::primitive::str = #derivation;
+
+                #constants
+                #legendre
+                #stagger
+                #kinetic_energy
+            }
+        }
+    }
+
+    /// How the system is called where it is stepped: `self`, but in the implementation of `Method`.
+    pub(super) fn receiver(&self) -> TokenStream {
+        if self.method.is_some() { quote!(system) } else { quote!(self) }
+    }
+
+    /// The same as a parameter.
+    pub(super) fn receiver_parameter(&self) -> TokenStream {
+        let system = self.item_type();
+        if self.method.is_some() { quote!(system: &#system) } else { quote!(&self) }
+    }
+
+    /// A trait of the parts of a step, as a type names it. That of the declared dials is its default.
+    pub(super) fn trait_of_parts(&self, name: &str, sizes: &[&Literal]) -> TokenStream {
+        let (private, name) = (&self.paths.private, format_ident!("{name}"));
+        match self.method {
+            Some(method) => quote!(#private::#name<#(#sizes,)* #method>),
+            None if sizes.is_empty() => quote!(#private::#name),
+            None => quote!(#private::#name<#(#sizes),*>),
+        }
+    }
+
+    /// The same, as a call names it. What has one method has no other parts.
+    pub(super) fn call_of_parts(&self, name: &str, sizes: &[&Literal]) -> TokenStream {
+        let (private, name) = (&self.paths.private, format_ident!("{name}"));
+        match self.method {
+            Some(method) => quote!(#private::#name::<#(#sizes,)* #method>),
+            None if !self.program.methods.is_empty() => quote!(#private::#name::<#(#sizes,)* #private::Declared>),
+            None if sizes.is_empty() => quote!(#private::#name),
+            None => quote!(#private::#name::<#(#sizes),*>),
+        }
+    }
+}
+
+/// The names of the methods of a program.
+pub(super) fn names<'a>(methods: &'a [Method<'_>]) -> impl Iterator<Item = &'a Ident> {
+    methods.iter().map(|method| &method.name)
+}

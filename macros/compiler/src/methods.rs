@@ -1,0 +1,46 @@
+//! Methods: several programs of one system.
+
+use proc_macro2::Ident;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::lower::Program;
+
+/// A further way to step the system of a program.
+pub struct Method<'g> {
+    /// The unit struct of the user that stands for it.
+    pub name: Ident,
+    /// Its program, of which the system is that of the declared dials.
+    pub program: Program<'g>,
+}
+
+impl Program<'_> {
+    /// The text of `DERIVATION` of a method.
+    pub(crate) fn derivation_by(&self, name: &Ident) -> String {
+        let system = self.formulas.model.item.ident.to_string();
+        self.derivation().replacen(&system, &format!("{system} by {name}"), 1)
+    }
+}
+
+impl<'g> Method<'g> {
+    /// The method of a program beside the one that the declared dials have.
+    ///
+    /// # Errors
+    /// Where it conserves less: `Conserves` is of the system and speaks for all of its methods.
+    pub(crate) fn new(name: &Ident, program: Program<'g>, declared: &Program<'g>) -> Result<Method<'g>, Diagnostics> {
+        let of = |program: &Program<'g>| -> Vec<String> {
+            program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.clone()).collect()
+        };
+        let conserved = of(&program);
+        match of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
+            None => Ok(Method { name: name.clone(), program }),
+            Some(lost) => {
+                let message = format!("the method `{name}` does not conserve the momentum `{lost}`");
+                let error = Diagnostic::new(name.span(), message);
+                let error = error.help("write another `discretization` for it, or declare another struct");
+                Err(error
+                    .note("the steps with the declared dials do, and what is conserved is said for the system")
+                    .into())
+            }
+        }
+    }
+}
