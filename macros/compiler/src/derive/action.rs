@@ -123,7 +123,7 @@ pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &
 }
 
 /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
-pub(crate) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+pub(super) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
     let column = |element: Vec<(Expr<'g>, Expr<'g>)>| {
         let images = generator.iter().map(|velocity| velocity.substitute(&element));
         images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect()

@@ -16,12 +16,30 @@ pub enum Id {
     Coadjoint,
     /// (TΦ_F)^{-*} p.
     CotangentLift,
+    /// The representing matrices of μ.
+    MomentumMatrix,
+    /// The components of representing matrices.
+    MomentumComponents,
+    /// What vanishes where q lies on the groups that it is promised to lie on.
+    Membership,
+    /// τ(x) − I, and τ(−x) − I behind it.
+    Retraction,
+    /// The increment of a motion and of another after it.
+    Composition,
+    /// GᵀG ξ of G: ξ ↦ ξ_Q(q).
+    OrbitMetric,
     /// Σξ.
     Inertia,
     /// T(ξ).
     KineticEnergy,
     /// ℓ(ξ), which is not quadratic.
     Lagrangian,
+    /// ∂ℓ/∂ξ.
+    LagrangianGradient,
+    /// ∂²ℓ/∂ξ².
+    LagrangianHessian,
+    /// A of a kinetic energy ½ ξ·Σξ + A·ξ.
+    Gyroscopic,
     /// V(q).
     PotentialEnergy,
     /// H(q, μ).
@@ -54,6 +72,8 @@ pub enum Id {
     PriceOfEnd,
     /// A momentum that no step changes.
     Conserved(usize),
+    /// All of these.
+    ConservedMomenta,
     /// M − N, the kick before the solve.
     StartKick(usize),
     /// What of that kick the cost gives at F = I.
@@ -76,8 +96,6 @@ pub enum Id {
     Solution(usize, usize),
     /// x(μ) to first order in h, component by component: what iterations start from.
     Predictor(usize, usize),
-    /// The same with whole matrices.
-    WholePredictor(usize, usize),
     /// M⁺.
     MomentumUpdate(usize),
     /// The same with F = I + D.
@@ -145,7 +163,6 @@ impl Id {
             | Id::JacobianFactor(index, _)
             | Id::Solution(index, _)
             | Id::Predictor(index, _)
-            | Id::WholePredictor(index, _)
             | Id::MomentumUpdate(index)
             | Id::MomentumAfter(index)
             | Id::EndKick(index)
@@ -162,8 +179,7 @@ impl Id {
             | Id::Jacobian(_, number)
             | Id::JacobianFactor(_, number)
             | Id::Solution(_, number)
-            | Id::Predictor(_, number)
-            | Id::WholePredictor(_, number) => Some(number),
+            | Id::Predictor(_, number) => Some(number),
             _ => None,
         }
     }
@@ -174,6 +190,10 @@ impl Id {
             Id::Action => &["act"],
             Id::MomentumMap => &["momentum_map"],
             Id::Coadjoint => &["coadjoint"],
+            Id::Generator => &["infinitesimal_motion"],
+            Id::Retraction => &["retractions"],
+            Id::Composition => &["compose"],
+            Id::OrbitMetric => &["orbit_metric"],
             Id::Lagrangian => &["velocity"],
             Id::PotentialEnergy => &["potential"],
             Id::KineticEnergyOfMomentum => &["kinetic_energy"],
@@ -220,9 +240,17 @@ impl Id {
             Id::MomentumMap => listed("momentum map", Some(MechanicsAndSymmetry), Cold),
             Id::Coadjoint => listed("coadjoint action", Some(MechanicsAndSymmetry), Cold),
             Id::CotangentLift => listed("cotangent lift", Some(ClebschOptimalControl), Cold),
+            Id::MomentumMatrix | Id::MomentumComponents => unlisted("momentum matrix", None, Cold),
+            Id::Membership => unlisted("group", None, Cold),
+            Id::Retraction => unlisted("retraction", Some(LieGroupMethods), Cold),
+            Id::Composition => unlisted("composition", None, Cold),
+            Id::OrbitMetric => unlisted("metric of the orbit", None, Cold),
             Id::Inertia => listed("inertia", Some(MechanicsAndSymmetry), Cold),
             Id::KineticEnergy => listed("kinetic energy", None, Cold),
             Id::Lagrangian => listed("Lagrangian", None, Cold),
+            Id::LagrangianGradient => unlisted("momentum", None, Cold),
+            Id::LagrangianHessian => unlisted("Hessian of the Lagrangian", None, Cold),
+            Id::Gyroscopic => unlisted("slope of the kinetic energy", None, Cold),
             Id::PotentialEnergy => listed("potential energy", None, Cold),
             Id::Hamiltonian => listed("Hamiltonian", Some(MechanicsAndSymmetry), Cold),
             Id::KineticEnergyOfMomentum => unlisted("kinetic energy", Some(MechanicsAndSymmetry), Cold),
@@ -237,6 +265,7 @@ impl Id {
             Id::Price => listed("price", None, Cold),
             Id::Bounds => listed("bounds", None, Cold),
             Id::PriceOfEnd => listed("price of the end", None, Cold),
+            Id::ConservedMomenta => unlisted("conserved", None, Cold),
             Id::Conserved(_) => listed("conserved", None, Cold),
             Id::StartKick(_) | Id::EndKick(_) | Id::SplittingKick => listed("kick", Some(ClebschOptimalControl), Hot),
             Id::RestKick(_) => unlisted("kick", Some(ClebschOptimalControl), Hot),
@@ -248,7 +277,7 @@ impl Id {
             Id::Jacobian(..) => listed("Jacobian", Some(LieGroupMethods), Hot),
             Id::JacobianFactor(..) => unlisted("factor of the Jacobian", None, Hot),
             Id::Solution(..) => listed("solution", None, Hot),
-            Id::Predictor(..) | Id::WholePredictor(..) | Id::Guess => unlisted("predictor", None, Hot),
+            Id::Predictor(..) | Id::Guess => unlisted("predictor", None, Hot),
             Id::MomentumUpdate(_) => listed("momentum update", Some(ClebschOptimalControl), Hot),
             Id::MomentumAfter(_) => unlisted("momentum update", Some(ClebschOptimalControl), Hot),
             Id::Increment => unlisted("increment", Some(LieGroupMethods), Hot),

@@ -16,8 +16,10 @@ pub struct Formula<'g> {
     pub title: &'static str,
     /// The left side, `J(q, p)`.
     pub symbol: String,
-    /// The right side; one expression for each factor or leaf.
+    /// What is computed; one expression for each factor or leaf.
     pub value: Vec<Expr<'g>>,
+    /// What is written as the right side, where that is not what is computed: F⁻¹ is written, the inverse of its group computed.
+    written: Option<Vec<Expr<'g>>>,
     /// Where it comes from.
     pub source: Option<Reference>,
     /// How often it is computed.
@@ -36,8 +38,6 @@ enum Wording<'g> {
     AsIs,
     /// Each expression as it is or expanded, whichever is shorter.
     Shorter,
-    /// As these expressions, where what is computed is made of their entries.
-    Like(Vec<Expr<'g>>),
     /// In words: Unicode and LaTeX.
     Words(String, String),
     /// Each expression with a kick at this place added to it.
@@ -60,6 +60,7 @@ impl<'g> Formula<'g> {
             title: entry.title,
             symbol: symbol.into(),
             value: value.to_vec(),
+            written: None,
             source: entry.source,
             heat: entry.heat,
             wording: Wording::AsIs,
@@ -73,9 +74,9 @@ impl<'g> Formula<'g> {
         Formula { wording: Wording::Shorter, ..Formula::new(id, symbol, value) }
     }
 
-    /// The same formula, written like these expressions.
-    pub(super) fn like(self, expressions: Vec<Expr<'g>>) -> Formula<'g> {
-        Formula { wording: Wording::Like(expressions), ..self }
+    /// The same formula, of which other expressions are computed than are written.
+    pub(super) fn computed_as(self, value: Vec<Expr<'g>>) -> Formula<'g> {
+        if value == self.value { self } else { Formula { written: Some(self.value), value, ..self } }
     }
 
     /// The same formula in words.
@@ -122,8 +123,12 @@ impl<'g> Formula<'g> {
 
     /// The shapes of the right sides.
     pub fn shapes(&self) -> Vec<Shape> {
-        let written = if let Wording::Like(expressions) = &self.wording { expressions } else { &self.value };
-        written.iter().map(|value| value.shape()).collect()
+        self.expressions().iter().map(|value| value.shape()).collect()
+    }
+
+    /// What is written.
+    fn expressions(&self) -> &[Expr<'g>] {
+        self.written.as_deref().unwrap_or(&self.value)
     }
 
     /// `symbol = expression`, tuples in parentheses.
@@ -148,13 +153,10 @@ impl<'g> Formula<'g> {
     }
 
     fn written_alone(&self, notation: Notation) -> Vec<String> {
-        let each = |write: &dyn Fn(Expr<'g>) -> String| self.value.iter().map(|value| write(*value)).collect();
+        let each = |write: &dyn Fn(Expr<'g>) -> String| self.expressions().iter().map(|value| write(*value)).collect();
         match &self.wording {
             Wording::AsIs => each(&|value| notation.of(without_embeddings(value))),
             Wording::Shorter => each(&|value| notation.of(without_embeddings(shorter(value)))),
-            Wording::Like(expressions) => {
-                expressions.iter().map(|value| notation.of(without_embeddings(shorter(*value)))).collect()
-            }
             Wording::Words(unicode, latex) => vec![if notation == Notation::Latex { latex } else { unicode }.clone()],
             Wording::AndKick(place, kicks) => {
                 let write = |(value, kick): (&Expr<'g>, &Expr<'g>)| {
@@ -164,7 +166,7 @@ impl<'g> Formula<'g> {
                         Notation::Latex => format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+")),
                     }
                 };
-                self.value.iter().zip(kicks).map(write).collect()
+                self.expressions().iter().zip(kicks).map(write).collect()
             }
         }
     }

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::equation::chart_slope;
 use super::exact::{by_inertia, inertia_inverse};
-use super::{Equation, Formulas, Solution, Substep};
+use super::{Equation, Formulas, MatrixForm, Solution, Substep};
 
 impl<'g> Formulas<'g> {
     /// Whether an equation is started from, or solved by, what is right to first order in h: Σ does not change, and nothing better is known.
@@ -33,8 +33,15 @@ impl<'g> Formulas<'g> {
         velocity.into_iter().take(count).zip(components).map(coordinate).collect()
     }
 
-    /// The same for all components of each block at once.
-    pub(super) fn whole_predictor(
+    /// The same for all components of each block at once, as code with whole matrices computes it; `None` where there is none.
+    pub fn whole_predictor(&self, index: usize, number: usize) -> Option<Vec<Expr<'g>>> {
+        let substep = self.substeps.get(index)?;
+        let equation = substep.equations.get(number).filter(|equation| self.is_predicted(equation))?;
+        self.predictor_by_blocks(substep, equation, inertia_inverse(self.model.graph, self.inertia.shape()))
+    }
+
+    /// The same with an inverse of Σ.
+    fn predictor_by_blocks(
         &self,
         substep: &Substep<'g>,
         equation: &Equation<'g>,
@@ -70,7 +77,7 @@ impl<'g> Formulas<'g> {
     /// The predictor as it is printed, with Σ for the inertia.
     pub(super) fn printed_predictor(&self, substep: &Substep<'g>, equation: &Equation<'g>) -> Option<Vec<Expr<'g>>> {
         let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
-        self.whole_predictor(substep, equation, inertia.inverse())
+        self.predictor_by_blocks(substep, equation, inertia.inverse())
     }
 
     /// The chart coordinates of the motion by the velocity of the start of a step that is collocated, to first order in h.
@@ -83,15 +90,24 @@ impl<'g> Formulas<'g> {
         Some(entries.enumerate().map(coordinate).collect())
     }
 
-    /// −ρ(0), of an equation that is linear in the chart.
-    pub fn right_side(&self, equation: &Equation<'g>) -> Expr<'g> {
-        -equation.residual.substitute(&self.chart_at_zero())
+    /// −ρ(0) and Dρ(0), of an equation that is linear in the chart: column by column, or along one direction.
+    pub fn linear_system(&self, equation: &Equation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
+        let zero = self.chart_at_zero();
+        let right_side = -equation.residual.substitute(&zero);
+        if keeps_matrices {
+            return [right_side, equation.directional].map(MatrixForm::Whole);
+        }
+        let columns = equation.columns(&self.symbols).into_iter().map(|column| column.substitute(&zero));
+        [MatrixForm::Whole(right_side), MatrixForm::of_columns(columns)]
     }
 
-    /// The columns of Dρ(0).
-    pub fn columns_at_zero(&self, equation: &Equation<'g>) -> Vec<Expr<'g>> {
-        let zero = self.chart_at_zero();
-        equation.columns(&self.symbols).iter().map(|column| column.substitute(&zero)).collect()
+    /// ρ(x) and Dρ(x), of an equation that Newton's method solves: column by column, or along one direction, of bodies as B(x).
+    pub fn newton_system(&self, equation: &Equation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
+        let jacobian = match keeps_matrices {
+            true => MatrixForm::Whole(equation.large_jacobian_factor(self).unwrap_or(equation.directional)),
+            false => MatrixForm::of_columns(equation.columns(&self.symbols)),
+        };
+        [MatrixForm::Whole(equation.residual), jacobian]
     }
 
     /// ρ(x) with the slopes of exponentials on so(4) by its halves.

@@ -1,11 +1,15 @@
 //! The rows of the table of formulas, made of what was derived.
 
+mod energy;
+mod lagrangian;
+mod motions;
 mod steps;
 
-use clebsch_symbolic::{Expr, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Property};
 
+use super::increments::inverse_by;
 use super::{Formula, Formulas, Id};
-use crate::model::Kinetic;
+use crate::model::{Factor, Kinetic, Space};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -63,6 +67,7 @@ impl<'g> Formulas<'g> {
             return self.rows_of_steered();
         }
         let mut rows = self.rows_of_action();
+        rows.extend(self.rows_of_momenta());
         rows.extend(self.rows_of_energy());
         rows.extend(self.rows_of_lagrangian());
         rows.extend(self.rows_of_terms());
@@ -75,6 +80,7 @@ impl<'g> Formulas<'g> {
         rows.extend(self.row_of_stagger());
         rows.extend(self.rows_of_splitting());
         rows.extend(self.rows_of_collocation());
+        rows.extend(self.rows_of_motions());
         rows.retain(|row| !row.value.is_empty());
         rows
     }
@@ -84,6 +90,8 @@ impl<'g> Formulas<'g> {
         let (q, u) = (self.q(), self.u());
         let mut rows = self.rows_of_action();
         rows.truncate(2);
+        rows.push(self.row_of_membership());
+        rows.extend(self.rows_of_motions());
         match &self.model.kinetic {
             Kinetic::Controls { velocity, .. } => {
                 let symbol = format!("{}({u})", self.letter(&self.symbols.algebra));
@@ -108,120 +116,48 @@ impl<'g> Formulas<'g> {
         let xi = self.letter(&self.symbols.algebra);
         let mu = self.letter(&self.symbols.momenta);
         let p = self.letter(&self.symbols.covectors);
+        let action = Formula::new(Id::Action, format!("Φ_{f}({q})"), &self.model.action);
+        let coadjoint = Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), &self.coadjoint);
         vec![
-            Formula::new(Id::Action, format!("Φ_{f}({q})"), &self.model.action),
+            action.computed_as(self.with_inverses(&self.model.action)),
             Formula::new(Id::Generator, format!("{xi}_Q({q})"), &self.generator),
             Formula::new(Id::MomentumMap, format!("J({q}, {p})"), &self.momentum_map),
-            Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), &self.coadjoint),
+            coadjoint.computed_as(self.with_inverses(&self.coadjoint)),
             Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), &self.cotangent_lift),
         ]
     }
 
-    /// The energies, as functions of the velocity and of the momentum.
-    fn rows_of_energy(&self) -> Vec<Formula<'g>> {
-        let xi = self.letter(&self.symbols.algebra);
-        let slopes = self.symbols.algebra.iter().map(|xi| self.energy.kinetic.gradient(*xi).expand());
-        let slopes: Vec<Expr<'g>> = slopes.collect();
-        let general: Vec<Expr<'g>> = self.energy.general.into_iter().collect();
-        let mu = self.letter(&self.symbols.momenta);
-        let kinetic = if self.kinetic_energy_moves() { format!("T({}, {mu})", self.q()) } else { format!("T({mu})") };
-        vec![
-            Formula::new(Id::Inertia, format!("Σ{xi}"), &slopes),
-            Formula::new(Id::KineticEnergy, format!("T({xi})"), &[self.energy.kinetic + self.energy.gyroscopic]),
-            Formula::new(Id::Lagrangian, format!("ℓ({xi})"), &general),
-            Formula::new(Id::PotentialEnergy, format!("V({})", self.q()), &[self.potential_energy]),
-            self.row_of_energy(Id::Hamiltonian, format!("H({}, {mu})", self.q()), self.potential_energy),
-            self.row_of_energy(Id::KineticEnergyOfMomentum, kinetic, self.model.graph.integer(0)),
-            Formula::new(Id::Force, "f", self.covector.as_deref().unwrap_or_default()),
-        ]
-    }
-
-    /// ½ (μ − A)·Σ⁻¹(μ − A), or μ·ξ − ℓ(ξ) where ℓ is not quadratic, and a potential energy added to it.
-    fn row_of_energy(&self, id: Id, symbol: String, potential: Expr<'g>) -> Formula<'g> {
-        let mu = self.letter(&self.symbols.momenta);
-        if let Some(lagrangian) = self.energy.general {
-            let pairs = self.symbols.momenta.iter().zip(&self.symbols.algebra);
-            let pairing = pairs.fold(self.model.graph.integer(0), |sum, (mu, xi)| sum + mu.dot(*xi));
-            let symbol = format!("{symbol}, with {mu} = ∂ℓ/∂{}", self.letter(&self.symbols.algebra));
-            return Formula::new(id, symbol, &[pairing - lagrangian + potential]);
-        }
-        let (graph, shape) = (self.model.graph, self.inertia.shape());
-        let momentum = graph.symbol(&mu, Shape::vector(shape.rows), Role::Letter, Property::General);
-        let inertia = graph.symbol("Σ", shape, Role::Letter, Property::Symmetric);
-        let momentum = momentum - self.symbols.slope(self.energy.gyroscopic);
-        let kinetic = momentum.dot(inertia.inverse() * momentum) / 2;
-        Formula::new(id, symbol, &[kinetic + potential])
-    }
-
-    /// Whether the kinetic energy depends on the configuration.
-    fn kinetic_energy_moves(&self) -> bool {
-        let parts = [Some(self.energy.kinetic), Some(self.energy.gyroscopic), self.energy.general];
-        let depends = |part: Expr<'g>| self.model.configurations.iter().any(|leaf| part.depends_on(leaf.symbol));
-        parts.into_iter().flatten().any(depends)
-    }
-
-    /// The discrete Lagrangian, part by part, and its Legendre transforms.
-    fn rows_of_lagrangian(&self) -> Vec<Formula<'g>> {
-        let (q, f, end) = (self.q(), self.f(), self.end_of_step(self.lagrangian.end));
-        let next = tuple(self.symbols.images.iter().map(|image| image.to_string()));
-        let legendre = Formula::shorter(Id::Legendre, format!("F⁻ℓd({q}, {f})"), &self.legendre);
-        let legendre_next = Formula::new(Id::LegendreNext, format!("F⁺ℓd({q}, {f})"), &self.legendre_next);
-        let legendre_next = match &self.legendre_kick {
-            Some(kick) => legendre_next.and_kick(self.place_of_end(kick), kick),
-            None => legendre_next,
+    /// Expressions with the formula that each group has for F⁻¹, and with log F.
+    fn with_inverses(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let explicit = |(factor, y): (&Factor<'g>, &Expr<'g>)| {
+            let logarithm = (*y, factor.group.logarithm(factor.symbol));
+            inverse_by(factor.group, factor.symbol, factor.symbol).into_iter().chain([logarithm])
         };
+        let factors = self.model.factors.iter().zip(&self.symbols.logarithms);
+        let inverses: Vec<_> = factors.flat_map(explicit).collect();
+        parts.iter().map(|part| part.substitute(&inverses)).collect()
+    }
+
+    /// What vanishes where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
+    fn row_of_membership(&self) -> Formula<'g> {
+        let equations = self.model.configurations.iter().flat_map(|leaf| match leaf.space {
+            Space::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
+            _ => Vec::new(),
+        });
+        Formula::new(Id::Membership, "0", &equations.collect::<Vec<_>>())
+    }
+
+    /// Momenta as matrices, and what lies on a group.
+    fn rows_of_momenta(&self) -> Vec<Formula<'g>> {
+        let (factors, symbols) = (&self.model.factors, &self.symbols);
+        let [mu, matrix] = [&symbols.momenta, &symbols.momentum_matrices].map(|letters| self.letter(letters));
+        let matrices = factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.momentum_matrix(*mu));
+        let components = factors.iter().zip(&symbols.momentum_matrices).map(|(factor, m)| factor.group.components(*m));
         vec![
-            self.row_of_discrete_lagrangian(),
-            Formula::new(
-                Id::StartPotential,
-                format!("U₀({}h, {q})", self.time(self.lagrangian.start, "t")),
-                &[self.lagrangian.start],
-            ),
-            Formula::new(Id::EndPotential, format!("U₁({}h, {next})", self.time(self.lagrangian.end, "t⁺")), &[end]),
-            legendre.of_free_motions(self.free_motions()),
-            legendre_next.of_free_motions(self.free_motions()),
+            self.row_of_membership(),
+            Formula::new(Id::MomentumMatrix, matrix.as_str(), &matrices.collect::<Vec<_>>()),
+            Formula::new(Id::MomentumComponents, mu, &components.collect::<Vec<_>>()),
         ]
-    }
-
-    /// `t, ` where a part of the discrete Lagrangian depends on the time.
-    fn time(&self, part: Expr<'g>, name: &str) -> String {
-        if part.depends_on(self.model.time) { format!("{name}, ") } else { String::new() }
-    }
-
-    /// A function of (t, q) at the end of a step: of (t⁺, q⁺).
-    fn end_of_step(&self, function: Expr<'g>) -> Expr<'g> {
-        let time = self.model.graph.symbol("t⁺", Shape::scalar(), Role::Letter, Property::General);
-        let leaves = self.model.configurations.iter().zip(&self.symbols.images);
-        let mut moved: Vec<(Expr<'g>, Expr<'g>)> = leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect();
-        moved.push((self.model.time, time));
-        function.substitute(&moved)
-    }
-
-    /// `q⁺`, or `(t⁺, q⁺)` for what depends on the time.
-    fn place_of_end(&self, parts: &[Expr<'g>]) -> String {
-        let is_timed = parts.iter().any(|part| part.depends_on(self.model.time));
-        if is_timed { format!("(t⁺, {}⁺)", self.q()) } else { format!("{}⁺", self.q()) }
-    }
-
-    /// K(h, F), with what else it depends on.
-    fn row_of_discrete_lagrangian(&self) -> Formula<'g> {
-        let time = self.time(self.lagrangian.kinetic, "t");
-        let q = if self.lagrangian.couples { self.q() + ", " } else { String::new() };
-        let symbol = format!("K({time}h, {q}{})", self.f());
-        let row = Formula::new(Id::DiscreteLagrangian, symbol, &[self.lagrangian.kinetic]);
-        if self.free_motions().is_empty() {
-            return row;
-        }
-        row.in_words(
-            format!("∫₀ʰ T dt along the free motion from I to {}", self.f()),
-            format!("\\int_0^h T\\,dt \\text{{ along the free motion from }} I \\text{{ to }} {}", self.f()),
-        )
-    }
-
-    /// The factors that move freely, with the symbols of their momenta and of their elements.
-    fn free_motions(&self) -> Vec<(usize, Expr<'g>, Expr<'g>)> {
-        let free = (0..self.model.factors.len()).filter(|&k| self.is_free_rotation(k));
-        free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).collect()
     }
 
     /// The terms of the potential of a power, and their gradients.
@@ -263,10 +199,23 @@ impl<'g> Formulas<'g> {
             let momentum = &conserved[number];
             Formula::shorter(Id::Conserved(number), format!("{before}{}", momentum.name), &[momentum.value])
         };
-        if conserved.len() > MOST_LISTED {
-            return vec![row(0, ""), row(conserved.len() - 1, "… ")];
-        }
-        (0..conserved.len()).map(|number| row(number, "")).collect()
+        let mut rows: Vec<_> = match conserved.len() {
+            count if count > MOST_LISTED => vec![row(0, ""), row(count - 1, "… ")],
+            count => (0..count).map(|number| row(number, "")).collect(),
+        };
+        rows.push(self.row_of_conserved_momenta());
+        rows
+    }
+
+    /// The values of all conserved momenta, with the inverses of configurations by the formulas of their groups.
+    fn row_of_conserved_momenta(&self) -> Formula<'g> {
+        let leaves = self.model.configurations.iter().filter_map(|leaf| match leaf.space {
+            Space::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
+            _ => None,
+        });
+        let inverses: Vec<_> = leaves.flatten().collect();
+        let values = self.symmetries.conserved.iter().map(|momentum| momentum.value.substitute(&inverses));
+        Formula::new(Id::ConservedMomenta, "conserved", &values.collect::<Vec<_>>())
     }
 }
 

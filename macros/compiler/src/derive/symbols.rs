@@ -111,6 +111,18 @@ impl<'g> Symbols<'g> {
         })
     }
 
+    /// The derivative of a vector with respect to the velocities of all factors, as a matrix.
+    pub fn slopes(&self, vector: Expr<'g>) -> Expr<'g> {
+        let columns = self.algebra.iter().map(|xi| xi.shape().rows).sum();
+        let shape = Shape::new(vector.shape().rows, columns);
+        let mut column = 0;
+        self.algebra.iter().fold(vector.graph().zero(shape), |sum, xi| {
+            let placed = vector.jacobian(*xi).embed(shape, 0, column);
+            column += xi.shape().rows;
+            sum + placed
+        })
+    }
+
     /// The element of a factor in its chart.
     pub fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
         self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))

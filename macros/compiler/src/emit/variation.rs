@@ -53,32 +53,30 @@ impl Emitter<'_, '_> {
 
     /// Retraction, composition, advance, and the geometry of the orbit.
     fn motions(&self, variations: &VariationKernels) -> TokenStream {
-        let method = |documentation: &str, signature: TokenStream, kernel: &Kernel, nesting, before: TokenStream| {
-            let documentation = docs::formulas(documentation, &[], Some(kernel));
+        let formulas = &self.program.formulas;
+        let method = |(documentation, id): (&str, Id), signature: TokenStream, kernel: &Kernel, nesting| {
+            let documentation = docs::formulas(documentation, formulas.titled(id), Some(kernel));
             let body = code::body(&self.scope_of_system(), kernel, nesting);
             quote! {
                 #documentation
                 #[inline]
                 fn #signature {
-                    #before
                     #body
                 }
             }
         };
         let compose = method(
-            "The increment of the motion by I + d and after it by I + second.",
+            ("The increment of the motion by I + d and after it by I + second.", Id::Composition),
             quote!(compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element),
             &variations.compose,
             Some(Nesting::Element),
-            quote!(),
         );
         let advance = self.advance_of_motions();
         let motion = method(
-            "The infinitesimal motion ξ_Q(q).",
+            ("The infinitesimal motion ξ_Q(q).", Id::Generator),
             quote!(infinitesimal_motion(&self, q: &Self::Configuration, x: &Self::Momentum) -> Self::Configuration),
             &variations.generator,
             Some(Nesting::Configuration),
-            quote!(),
         );
         let retractions = self.retractions(variations);
         let (matrix, orbit_metric) = (self.block_type(), &variations.orbit_metric);
@@ -88,7 +86,7 @@ impl Emitter<'_, '_> {
             true => {
                 let along = |role| matches!(role, Role::Algebra(_));
                 let (terms, metric) = matrices::matrix_of(&self.scope_of_system(), orbit_metric, 0, "x", along);
-                let documentation = docs::formulas(title, &[], Some(orbit_metric));
+                let documentation = docs::formulas(title, formulas.titled(Id::OrbitMetric), Some(orbit_metric));
                 quote! {
                     #documentation
                     #[inline]
@@ -98,7 +96,7 @@ impl Emitter<'_, '_> {
                     }
                 }
             }
-            false => method(title, signature, orbit_metric, None, quote!()),
+            false => method((title, Id::OrbitMetric), signature, orbit_metric, None),
         };
         let difference = code::combined(self.model, &quote!(target), quote!(-), &quote!(q), &self.paths);
         let krate = &self.paths.krate;
@@ -153,8 +151,9 @@ impl Emitter<'_, '_> {
                 code::grid(&scope, *shape, entries, scope.is_quaternion(Nesting::Element, leaf))
             })
         });
-        let documentation =
-            docs::formulas("The increments τ(η) − I and τ(−η) − I of a small motion.", &[], Some(kernel));
+        let formulas = self.program.formulas.titled(Id::Retraction);
+        let title = "The increments τ(η) − I and τ(−η) − I of a small motion.";
+        let documentation = docs::formulas(title, formulas, Some(kernel));
         quote! {
             #documentation
             #[inline]

@@ -24,12 +24,12 @@ mod sums;
 mod told;
 mod variation;
 
-use clebsch_symbolic::{Expr, Property, Shape, identity};
+use clebsch_symbolic::{Expr, Shape};
 
 use crate::Method;
-use crate::derive::{self, Formulas, Id, Stencil, inverse_by};
+use crate::derive::{self, Formulas, Id, MatrixForm, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{CodeForm, Factor, Isotropy, Space};
+use crate::model::{CodeForm, Isotropy};
 
 use rare::Rare;
 
@@ -158,54 +158,42 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
     let control = control::control(&formulas, &mut scalars);
     let endpoint = control::endpoint(&formulas, &mut scalars);
-    let inverses = inverses(&formulas);
-    let outputs = |scalars: &mut Scalars, expressions: &[Expr<'_>]| plain(scalars, &replaced(expressions, &inverses));
-    let after = legendre_next(&formulas);
     let names = names::constants(&scalars, &hoisted);
     let constants = hoisted.kernel(&mut scalars, Hoisting::Nothing);
-    let asked =
-        |expressions: &[Expr<'_>], scalars: &mut Scalars| rare.kernel(scalars, &replaced(expressions, &inverses));
-    let stacked = |parts: &[Expr<'_>], scalars: &mut Scalars| rare.stack(scalars, &replaced(parts, &inverses));
     let links = formulas.links.iter().map(|link| {
         let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();
-        LinkKernels { value: outputs(&mut scalars, &[link.term.value]), gradient: outputs(&mut scalars, &slopes) }
+        LinkKernels { value: plain(&mut scalars, &[link.term.value]), gradient: plain(&mut scalars, &slopes) }
     });
     let links: Vec<LinkKernels> = links.collect();
-    let gathered = gathered(&formulas, &links, |expressions| outputs(&mut scalars, expressions));
+    let gathered = gathered(&formulas, &links, |expressions| plain(&mut scalars, expressions));
+    let asked = |id: Id, scalars: &mut Scalars| rare.kernel(scalars, formulas.value(id).unwrap_or_default());
+    let stacked = |id: Id, scalars: &mut Scalars| rare.stack(scalars, formulas.value(id).unwrap_or_default());
     let program = Program {
         methods: Vec::new(),
         links,
         gathered,
-        act: asked(&formulas.model.action, &mut scalars),
+        act: asked(Id::Action, &mut scalars),
         // steps of sites map covectors
         momentum_map: if formulas.model.power.is_some() {
-            stack(&mut scalars, &replaced(&formulas.momentum_map, &inverses))
+            stack(&mut scalars, &formulas.momentum_map)
         } else {
-            stacked(&formulas.momentum_map, &mut scalars)
+            stacked(Id::MomentumMap, &mut scalars)
         },
-        momentum_of_step: formulas
-            .collocation
-            .as_ref()
-            .map(|_| stack(&mut scalars, &replaced(&formulas.momentum_map, &inverses))),
-        coadjoint: stacked(&formulas.coadjoint, &mut scalars),
-        legendre: stacked(&formulas.legendre, &mut scalars),
-        legendre_next: stacked(&after, &mut scalars),
-        stagger: formulas.stagger.as_ref().map(|stagger| stacked(stagger, &mut scalars)),
-        potential: asked(&[formulas.potential_energy], &mut scalars),
+        momentum_of_step: formulas.collocation.as_ref().map(|_| stack(&mut scalars, &formulas.momentum_map)),
+        coadjoint: stacked(Id::Coadjoint, &mut scalars),
+        legendre: stacked(Id::Legendre, &mut scalars),
+        legendre_next: stacked(Id::LegendreNext, &mut scalars),
+        stagger: formulas.value(Id::SynchronizedMomentum).map(|stagger| rare.stack(&mut scalars, stagger)),
+        potential: asked(Id::PotentialEnergy, &mut scalars),
         inertia: inertia(&formulas, &mut scalars),
         energy_coefficients: (!form.keeps_matrices()).then(|| energy_coefficients(&formulas, &mut scalars)),
-        momentum_matrix: asked(&momentum_matrices(&formulas), &mut scalars),
-        momentum_components: stacked(&momentum_components(&formulas), &mut scalars),
+        momentum_matrix: asked(Id::MomentumMatrix, &mut scalars),
+        momentum_components: stacked(Id::MomentumComponents, &mut scalars),
         velocity: velocity(&formulas, &mut scalars),
-        gyroscopic: gyroscopic(&formulas, &mut scalars),
-        conserved: conserved(&formulas, &rare, &mut scalars),
+        gyroscopic: formulas.value(Id::Gyroscopic).map(|slope| stack(&mut scalars, slope)),
+        conserved: formulas.value(Id::ConservedMomenta).map(|values| rare.list(&mut scalars, values)),
         membership: membership(&formulas, &mut scalars),
-        generator: (!formulas.is_free && formulas.model.isotropy == Isotropy::Fixed).then(|| {
-            match formulas.projection.as_ref().filter(|_| scalars.keeps_matrices) {
-                Some(projection) => stack(&mut scalars, &replaced(projection, &inverses)),
-                None => generator(&formulas, &mut scalars),
-            }
-        }),
+        generator: generator(&formulas, &mut scalars),
         cotangent_lift: lift,
         splitting,
         collocation,
@@ -235,15 +223,6 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     Ok(program)
 }
 
-/// F⁺ℓd with its last kick at q⁺ = Φ_F(q).
-fn legendre_next<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
-    let Some(kick) = &formulas.legendre_kick else { return formulas.legendre_next.clone() };
-    let leaves = formulas.model.configurations.iter().zip(&formulas.model.action);
-    let mut moved: Vec<_> = leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect();
-    moved.push((formulas.model.time, formulas.model.time + formulas.model.step_size));
-    formulas.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&moved)).collect()
-}
-
 /// The error for a system whose code would be too large in a form, with what is too large of it.
 fn too_large(formulas: &Formulas<'_>, code: CodeForm, size: String) -> Diagnostics {
     let groups: Vec<String> =
@@ -263,20 +242,6 @@ fn too_large(formulas: &Formulas<'_>, code: CodeForm, size: String) -> Diagnosti
         }
     }
     .into()
-}
-
-/// F⁻¹ of each factor, by the formula that its group has for it, and log F.
-fn inverses<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let explicit = |(factor, y): (&Factor<'g>, &Expr<'g>)| {
-        let mut replacements = inverse_by(factor.group, factor.symbol, factor.symbol);
-        replacements.push((*y, factor.group.logarithm(factor.symbol)));
-        replacements
-    };
-    formulas.model.factors.iter().zip(&formulas.symbols.logarithms).flat_map(explicit).collect()
-}
-
-fn replaced<'g>(expressions: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
-    expressions.iter().map(|expression| expression.substitute(replacements)).collect()
 }
 
 /// The gradient of one site, where each site is read by few terms and gathering takes no more operations than adding up what each term has for its sites.
@@ -316,19 +281,38 @@ fn stack(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
 
 fn grids(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
     let mut lowering = Lowering { scalars };
-    let grid = |expr: &Expr<'_>| expr.shape();
-    let shapes: Vec<Shape> = expressions.iter().map(grid).collect();
-    expressions.iter().zip(shapes).map(|(&expr, shape)| (shape, lowering.grid(expr).entries.clone())).collect()
+    expressions.iter().map(|&expr| (expr.shape(), lowering.grid(expr).entries.clone())).collect()
 }
 
-fn momentum_matrices<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
-    let factors = formulas.model.factors.iter().zip(&formulas.symbols.momenta);
-    factors.map(|(factor, mu)| factor.group.momentum_matrix(*mu)).collect()
+/// The outputs of a kernel that computes matrices.
+fn outputs(scalars: &mut Scalars, matrices: &[MatrixForm<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
+    matrices.iter().map(|matrix| output(scalars, matrix)).collect()
 }
 
-fn momentum_components<'g>(formulas: &Formulas<'g>) -> Vec<Expr<'g>> {
-    let factors = formulas.model.factors.iter().zip(&formulas.symbols.momentum_matrices);
-    factors.map(|(factor, matrix)| factor.group.components(*matrix)).collect()
+fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> (Shape, Vec<Scalar>) {
+    let mut entries = |parts: &[Expr<'_>]| -> Vec<Scalar> {
+        grids(scalars, parts).into_iter().flat_map(|(_, entries)| entries).collect()
+    };
+    match matrix {
+        MatrixForm::Whole(expression) => (expression.shape(), entries(&[*expression])),
+        MatrixForm::Entries(shape, parts) => (*shape, entries(parts)),
+        MatrixForm::Columns(columns) => {
+            let columns: Vec<Vec<Scalar>> = columns.iter().map(|parts| entries(parts)).collect();
+            let shape = Shape::new(columns.first().map_or(0, Vec::len), columns.len());
+            (shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
+        }
+    }
+}
+
+/// A kernel that computes matrices: with whole matrices where all of them are such.
+fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoisting: Hoisting<'_>) -> Kernel {
+    match MatrixForm::wholes(forms).filter(|_| scalars.keeps_matrices) {
+        Some(wholes) => matrices::kernel(&wholes),
+        None => {
+            let outputs = outputs(scalars, forms);
+            kernel::kernel(scalars, &outputs, hoisting)
+        }
+    }
 }
 
 /// κ of an inertia κI, else Σ; where matrices are kept Σξ.
@@ -336,33 +320,19 @@ fn inertia(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     match formulas.uniform_inertia {
         Some(kappa) => plain(scalars, &[kappa]),
         None if !scalars.keeps_matrices => plain(scalars, &[formulas.inertia]),
-        None => {
-            let slopes = formulas.symbols.algebra.iter().map(|xi| formulas.energy.kinetic.gradient(*xi).expand());
-            stack(scalars, &slopes.collect::<Vec<_>>())
-        }
+        None => stack(scalars, formulas.value(Id::Inertia).unwrap_or_default()),
     }
 }
 
-/// The rows of ξ ↦ ξ_Q(q) on all components, one row for each entry of the configuration.
-fn generator(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let columns = crate::derive::generator_columns(&formulas.symbols, &formulas.generator);
-    let graph = formulas.model.graph;
-    // a factor that moves nothing has its own motion: any momentum of it is one
-    let free = |(factor, from): (&Factor<'_>, usize)| (!factor.moves).then(|| from..from + factor.group.dimension());
-    let offsets = formulas.model.factors.iter().scan(0, |next, factor| {
-        let from = *next;
-        *next += factor.group.dimension();
-        Some((factor, from))
-    });
-    let free: Vec<usize> = offsets.filter_map(free).flatten().collect();
-    let rows = columns[0].len();
-    let entry = |(i, j): (usize, usize)| match i.checked_sub(rows) {
-        Some(extra) => graph.integer((free[extra] == j) as i64),
-        None => columns[j][i],
-    };
-    let shape = Shape::new(rows + free.len(), columns.len());
-    let matrix = graph.stack(shape, shape.positions().map(entry).collect());
-    plain(scalars, &[matrix])
+/// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free; where matrices are kept the projection to the momenta of motions.
+fn generator(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+    if formulas.is_free || formulas.model.isotropy != Isotropy::Fixed {
+        return None;
+    }
+    Some(match formulas.projection.as_ref().filter(|_| scalars.keeps_matrices) {
+        Some(projection) => stack(scalars, projection),
+        None => plain(scalars, &[formulas.generator_matrix()]),
+    })
 }
 
 /// Σ with its diagonal halved.
@@ -384,54 +354,20 @@ fn energy_coefficients(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel
 }
 
 /// ℓ(ξ) with its gradient and its Hessian.
-fn velocity<'g>(formulas: &Formulas<'g>, scalars: &mut Scalars) -> Option<Kernel> {
-    let lagrangian = formulas.energy.general?;
-    let (graph, shape) = (formulas.model.graph, formulas.inertia.shape());
-    let gradient = formulas.symbols.slope(lagrangian);
-    let mut hessian = graph.zero(shape);
-    let mut column = 0;
-    for xi in &formulas.symbols.algebra {
-        hessian = hessian + gradient.jacobian(*xi).embed(shape, 0, column);
-        column += xi.shape().rows;
-    }
-    Some(plain(scalars, &[lagrangian, gradient, hessian]))
+fn velocity(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
+    let parts = [Id::Lagrangian, Id::LagrangianGradient, Id::LagrangianHessian].map(|id| formulas.value(id));
+    let parts: Vec<Expr<'_>> = parts.into_iter().flatten().flatten().copied().collect();
+    (!parts.is_empty()).then(|| plain(scalars, &parts))
 }
 
-/// A, the gradient of A·ξ, in the components of all factors.
-fn gyroscopic(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
-    let slope = formulas.symbols.slope(formulas.energy.gyroscopic);
-    (!identity::vanishes(slope)).then(|| stack(scalars, &[slope]))
-}
-
-/// The values of the conserved momenta, in one vector. Inverses are those of configurations, by the formulas of their groups.
-fn conserved(formulas: &Formulas<'_>, rare: &Rare, scalars: &mut Scalars) -> Option<Kernel> {
-    let leaves = formulas.model.configurations.iter().filter_map(|leaf| match leaf.space {
-        Space::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
-        _ => None,
-    });
-    let inverses: Vec<_> = leaves.flatten().collect();
-    let values: Vec<_> =
-        formulas.symmetries.conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
-    let conserved = || rare.list(scalars, &values);
-    (!values.is_empty()).then(conserved)
-}
-
-/// The equations of the groups that leaves of the configuration are promised to lie on, in one vector. Those of SO(n) and of the
-/// unit sphere are the runtime's.
+/// The equations of the groups that leaves of the configuration are promised to lie on, in one vector, without those that always hold.
 fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
-    let equations = formulas.model.configurations.iter().flat_map(|leaf| match leaf.space {
-        Space::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
-        _ => Vec::new(),
-    });
-    let equations: Vec<_> = equations.collect();
+    let equations = formulas.value(Id::Membership)?;
     if scalars.keeps_matrices {
-        return (!equations.is_empty()).then(|| matrices::largest(&equations));
+        return Some(matrices::largest(equations));
     }
-    let entries: Vec<Scalar> = grids(scalars, &equations)
-        .into_iter()
-        .flat_map(|(_, entries)| entries)
-        .filter(|&entry| !scalars.is_zero(entry))
-        .collect();
+    let entries = grids(scalars, equations).into_iter().flat_map(|(_, entries)| entries);
+    let entries: Vec<Scalar> = entries.filter(|&entry| !scalars.is_zero(entry)).collect();
     (!entries.is_empty())
         .then(|| kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing))
 }

@@ -7,7 +7,7 @@ use clebsch_symbolic::{Expr, Role, Shape, Zero};
 use super::fixed_point;
 use super::kernel::kernel;
 use super::matrices;
-use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, plain};
+use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, of_matrices, plain};
 use crate::derive::{Formulas, Id, Solution, Structure};
 
 /// The kernels of one substep.
@@ -245,23 +245,23 @@ fn solve<'g>(
     let start = match (equation.formula, equation.solution) {
         (Some(formula), _) => Some(vec![formula]),
         (None, Solution::Linear | Solution::FreeRotation) => None,
-        (None, _) if scalars.keeps_matrices => formulas.value(Id::WholePredictor(index, number)).map(<[_]>::to_vec),
+        (None, _) if scalars.keeps_matrices => formulas.whole_predictor(index, number),
         (None, _) => formulas.value(Id::Predictor(index, number)).map(<[_]>::to_vec),
     };
     let predict = start.map(|start| stack(scalars, hoisted, &start));
     let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
     let mut residual = None;
-    let sylvester = if scalars.keeps_matrices { equation.large_jacobian_factor(formulas) } else { None };
+    let system = match equation.solution {
+        Solution::Linear => formulas.linear_system(equation, scalars.keeps_matrices).to_vec(),
+        Solution::Newton => formulas.newton_system(equation, scalars.keeps_matrices).to_vec(),
+        Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => Vec::new(),
+    };
     let (prepare, linearize) = match equation.solution {
         Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {
             (kernel(scalars, &[], Hoisting::Nothing), kernel(scalars, &[], Hoisting::Nothing))
         }
         Solution::Linear | Solution::Newton if scalars.keeps_matrices => {
-            let linearize = match equation.solution {
-                Solution::Linear => [formulas.right_side(equation), equation.directional],
-                _ => [equation.residual, sylvester.unwrap_or(equation.directional)],
-            };
-            let linearize = matrices::kernel(&linearize);
+            let linearize = of_matrices(scalars, &system, Hoisting::Nothing);
             match fixed_point::residual_of_matrices(formulas, equation, predict.as_ref()) {
                 Some(alone) => {
                     let (prepare, alone) = matrices::hoisted(alone);
@@ -273,14 +273,12 @@ fn solve<'g>(
             }
         }
         Solution::Linear => {
-            let outputs = linearized(scalars, formulas.right_side(equation), &formulas.columns_at_zero(equation));
-            let system = kernel(scalars, &outputs, Hoisting::Constants(hoisted));
-            (kernel(scalars, &[], Hoisting::Nothing), system)
+            let linearize = of_matrices(scalars, &system, Hoisting::Constants(hoisted));
+            (kernel(scalars, &[], Hoisting::Nothing), linearize)
         }
         Solution::Newton => {
-            let outputs = linearized(scalars, equation.residual, &equation.columns(&formulas.symbols));
             let mut terms = Hoisted::default();
-            let mut linearize = kernel(scalars, &outputs, Hoisting::Terms(hoisted, &mut terms));
+            let mut linearize = of_matrices(scalars, &system, Hoisting::Terms(hoisted, &mut terms));
             let newton = fixed_point::Newton { linearize: &linearize, predict: predict.as_ref() };
             residual = fixed_point::residual(formulas, equation, &newton, scalars, (hoisted, &mut terms));
             let mut prepare = terms.kernel(scalars, Hoisting::Constants(hoisted));
@@ -299,8 +297,8 @@ fn solve<'g>(
         given: Vec::new(),
         coupled: equation.coupled.clone(),
         solution: equation.solution,
-        structure: match sylvester {
-            Some(factor) => Structure::Sylvester(factor.shape().rows),
+        structure: match formulas.value(Id::JacobianFactor(index, number)).filter(|_| scalars.keeps_matrices) {
+            Some(factor) => Structure::Sylvester(factor[0].shape().rows),
             None => equation.structure.clone(),
         },
         prepare,
@@ -321,15 +319,6 @@ fn solve<'g>(
     // Σ⁻¹ρ takes the components of its own unknowns alone
     solve.residual = solve.residual.filter(|_| solve.momenta.len() == solve.dimension && solve.given.is_empty());
     solve
-}
-
-/// A vector and the matrix with these columns.
-fn linearized(scalars: &mut Scalars, vector: Expr<'_>, columns: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
-    let vector = grids(scalars, &[vector]).remove(0);
-    let columns: Vec<Vec<Scalar>> = grids(scalars, columns).into_iter().map(|(_, entries)| entries).collect();
-    let shape = Shape::square(columns.len());
-    let matrix = shape.positions().map(|(i, j)| columns[j][i]).collect();
-    vec![vector, (shape, matrix)]
 }
 
 impl Solve {

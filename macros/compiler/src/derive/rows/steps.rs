@@ -2,7 +2,6 @@
 
 use clebsch_symbolic::Expr;
 
-use crate::derive::exact::inertia_inverse;
 use crate::derive::{Equation, Formula, Formulas, Id, Solution, Substep};
 
 impl<'g> Formulas<'g> {
@@ -103,23 +102,17 @@ impl<'g> Formulas<'g> {
             .formula
             .map(|solution| Formula::new(Id::Solution(index, number), self.coordinates_of(equation), &[solution]));
         rows.extend(factor.into_iter().chain(solution));
-        rows.extend(self.rows_of_predictor(index, number));
+        rows.extend(self.row_of_predictor(index, number));
         rows
     }
 
     /// What iterations of an equation start from.
-    fn rows_of_predictor(&self, index: usize, number: usize) -> Vec<Formula<'g>> {
+    fn row_of_predictor(&self, index: usize, number: usize) -> Option<Formula<'g>> {
         let substep = &self.substeps[index];
-        let equation = &substep.equations[number];
-        if !self.is_predicted(equation) {
-            return Vec::new();
-        }
-        let symbol = self.coordinates_of(equation);
-        let row = Formula::new(Id::Predictor(index, number), symbol.as_str(), &self.predictor(substep, equation));
+        let equation = substep.equations.get(number).filter(|equation| self.is_predicted(equation))?;
         let printed = self.printed_predictor(substep, equation).unwrap_or_default();
-        let inverse = inertia_inverse(self.model.graph, self.inertia.shape());
-        let whole = self.whole_predictor(substep, equation, inverse).unwrap_or_default();
-        vec![row.like(printed), Formula::new(Id::WholePredictor(index, number), symbol, &whole)]
+        let row = Formula::shorter(Id::Predictor(index, number), self.coordinates_of(equation), &printed);
+        Some(row.computed_as(self.predictor(substep, equation)))
     }
 
     /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.

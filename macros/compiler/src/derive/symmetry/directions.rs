@@ -3,7 +3,8 @@
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::{Direction, Family};
-use crate::derive::{Symbols, generator_columns};
+use crate::derive::Symbols;
+use crate::derive::action::generator_columns;
 use crate::model::{Model, Side, Space};
 
 /// All directions, family by family.

@@ -1,6 +1,6 @@
 //! The terms that tie sites together: their sum, and its gradient, added up term by term or gathered site by site.
 
-use clebsch_symbolic::{Expr, Role, Shape, integer};
+use clebsch_symbolic::{Expr, Role, Shape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -8,7 +8,7 @@ use crate::derive::{Home, Link};
 use crate::emit::Emitter;
 use crate::emit::code::{Scope, accessor, grid, locals};
 use crate::lower::{Code, Gathered, Kernel, LinkKernels};
-use crate::model::{Configuration, Leaf, Parameter, Power, SiteIndex};
+use crate::model::{Configuration, Leaf, Linear, Parameter, Power, SiteIndex};
 
 /// How the term is found that has a site at a place.
 struct Head {
@@ -251,41 +251,31 @@ fn place_of(parameter: &Parameter<'_>) -> Option<usize> {
 
 /// A linear expression in the indices and N, as a signed number.
 fn linear(expr: Expr<'_>, power: &Power<'_>) -> TokenStream {
-    let graph = expr.graph();
-    let (mut rest, mut terms) = (expr, Vec::new());
-    for symbol in expr.symbols() {
-        let name = match symbol.as_symbol().map(|data| data.role) {
-            Some(Role::Site(depth)) => {
-                let index = format_ident!("i{depth}");
-                quote!(#index)
-            }
-            _ => {
-                let length = &power.length;
-                quote!((#length as ::core::primitive::isize))
-            }
-        };
-        terms.push((expr.gradient(symbol).as_number().unwrap_or_else(|| integer(0)), Some(name)));
-        rest = rest.substitute(&[(symbol, graph.integer(0))]);
-    }
-    let constant = rest.as_number().unwrap_or_else(|| integer(0));
-    if terms.is_empty() || constant != integer(0) {
+    // by construction: what is not linear is refused where it is declared
+    let Some(Linear { constant, sites, indices }) = Linear::of(expr) else { return quote!(0) };
+    let length = &power.length;
+    let index = |(depth, weight): (usize, i64)| {
+        let name = format_ident!("i{depth}");
+        (weight, Some(quote!(#name)))
+    };
+    let mut terms: Vec<(i64, Option<TokenStream>)> = indices.into_iter().enumerate().map(index).collect();
+    terms.push((sites, Some(quote!((#length as ::core::primitive::isize)))));
+    terms.retain(|(weight, _)| *weight != 0);
+    if terms.is_empty() || constant != 0 {
         terms.push((constant, None));
     }
-    let mut tokens = TokenStream::new();
-    for (weight, name) in terms {
-        let size = weight.abs();
-        let number = Literal::isize_unsuffixed(size.parts().map_or(0, |(numerator, _)| numerator as isize));
+    terms.into_iter().fold(TokenStream::new(), |sum, (weight, name)| {
+        let number = Literal::u64_unsuffixed(weight.unsigned_abs());
         let term = match name {
-            Some(name) if size == integer(1) => name,
+            Some(name) if weight.unsigned_abs() == 1 => name,
             Some(name) => quote!(#number * #name),
             None => quote!(#number),
         };
-        tokens = match (tokens.is_empty(), weight.is_negative()) {
+        match (sum.is_empty(), weight < 0) {
             (true, false) => term,
             (true, true) => quote!(-#term),
-            (false, false) => quote!(#tokens + #term),
-            (false, true) => quote!(#tokens - #term),
-        };
-    }
-    tokens
+            (false, false) => quote!(#sum + #term),
+            (false, true) => quote!(#sum - #term),
+        }
+    })
 }

@@ -32,7 +32,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.range_of_numbers(range, start, end);
         }
         for (syntax, expr) in [(start, from), (end, to)] {
-            if Linear::of(expr).is_none() {
+            if !Linear::is_declarable(expr) {
                 let error = Diagnostic::new(Place::of(syntax), format!("`{}` is no end of a range", spell(syntax)));
                 return self
                     .error(error.help("write a whole number, `N`, an index, or sums of these, as in `i + 1..N`"));
@@ -158,7 +158,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             value => SiteIndex { index: self.as_matrix(&index.index, value)?, wraps: false },
         };
         let text = spell(&index.index);
-        if !place.index.shape().is_scalar() || Linear::of(place.index).is_none() {
+        if !place.index.shape().is_scalar() || !Linear::is_declarable(place.index) {
             let error = Diagnostic::new(Place::of(&index.index), format!("`{text}` is no index of a site"));
             return self.error(error.help("write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`"));
         }

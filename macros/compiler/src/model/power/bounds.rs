@@ -34,11 +34,19 @@ impl Linear {
         linear.constant = whole(rest.as_number()?)?;
         Some(linear)
     }
+
+    /// Whether an expression can be declared as an index or as the end of a range: in this form, with numbers of less than 32 bits.
+    pub(in crate::model) fn is_declarable(expr: Expr<'_>) -> bool {
+        let is_small = |number: &i64| number.unsigned_abs() < 1 << 32;
+        Linear::of(expr).is_some_and(|linear| {
+            is_small(&linear.constant) && is_small(&linear.sites) && linear.indices.iter().all(is_small)
+        })
+    }
 }
 
 fn whole(number: Rational) -> Option<i64> {
     match number.parts() {
-        Some((value, 1)) if value.abs() < 1 << 32 => Some(value),
+        Some((value, 1)) => Some(value),
         _ => None,
     }
 }

@@ -1,0 +1,98 @@
+//! The rows of small motions: how they retract, follow each other, and move a configuration.
+
+use clebsch_symbolic::{Block, Expr};
+
+use crate::derive::{Formula, Formulas, Id, MatrixForm, action, from_increment};
+use crate::model::Side;
+
+impl<'g> Formulas<'g> {
+    /// What variations and the choice of inputs need of motions.
+    pub(super) fn rows_of_motions(&self) -> Vec<Formula<'g>> {
+        let is_steered = self.model.is_steered();
+        if !is_steered && !self.model.has_variations() && self.steering.is_none() {
+            return Vec::new();
+        }
+        let (q, xi) = (self.q(), self.letter(&self.symbols.algebra));
+        let (metric, d) = (self.momenta_of(&self.generator), self.letter(&self.symbols.increments));
+        let mut rows = vec![Formula::new(Id::OrbitMetric, format!("J({q}, {xi}_Q({q}))"), &metric)];
+        if self.model.has_variations() {
+            rows.push(Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", &self.retractions()));
+            rows.push(Formula::new(Id::Composition, format!("{d}, then {d}⁺"), &self.compositions()));
+        }
+        if let Some(step) = self.steering.as_ref().and_then(|steering| steering.step.as_ref()) {
+            rows.push(Formula::new(Id::Increment, d, &step.increment));
+            rows.push(Formula::new(Id::Advance, format!("{q}⁺"), &self.at_increments(&self.model.action)));
+        }
+        rows
+    }
+
+    /// J(q, v) of velocities.
+    fn momenta_of(&self, velocities: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(velocities.iter().copied()).collect();
+        self.momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
+    }
+
+    /// GᵀG, column by column: J(q, (E_j)_Q(q)).
+    pub fn orbit_metric(&self) -> MatrixForm<'g> {
+        let column = |element: &Vec<(Expr<'g>, Expr<'g>)>| {
+            let velocities: Vec<_> = self.generator.iter().map(|velocity| velocity.substitute(element)).collect();
+            self.momenta_of(&velocities).into_iter().map(Expr::expand).collect()
+        };
+        MatrixForm::Columns(self.symbols.basis().iter().map(column).collect())
+    }
+
+    /// τ(x) − I of each factor, then τ(−x) − I of each.
+    fn retractions(&self) -> Vec<Expr<'g>> {
+        let increment = |k: usize, forward: bool| {
+            let coordinates = self.symbols.coordinates(k).into_iter();
+            let coordinates: Vec<_> = coordinates.map(|x| if forward { x } else { -x }).collect();
+            let (numerator, denominator) = self.retraction(k).increment(self.model.factors[k].group, &coordinates);
+            numerator / denominator
+        };
+        let factors = 0..self.model.factors.len();
+        let both = [true, false].into_iter().flat_map(|forward| factors.clone().map(move |k| (k, forward)));
+        both.map(|(k, forward)| increment(k, forward)).collect()
+    }
+
+    /// For each component of ξ, the chart coordinate of exp ξ to first order, as numerator and denominator.
+    pub fn slopes_of_retraction(&self) -> Vec<(i64, i64)> {
+        let of_factor = |k: usize| {
+            let chart = self.retraction(k);
+            let slope = |block: &Block| std::iter::repeat_n(chart.slope_at_identity(block), block.algebra.dimension());
+            self.model.graph.blocks(self.model.factors[k].group).iter().flat_map(slope).collect::<Vec<_>>()
+        };
+        (0..self.model.factors.len()).flat_map(of_factor).collect()
+    }
+
+    /// F₂ F₁ − I for a left action, F₁ F₂ − I for a right one, with F = I + D.
+    fn compositions(&self) -> Vec<Expr<'g>> {
+        let product = |k: usize| {
+            let factor = &self.model.factors[k];
+            let elements = [self.symbols.increments[k], self.symbols.following[k]];
+            let [first, second] = elements.map(|d| from_increment(factor.group, d));
+            let product = match factor.side {
+                Side::Left => factor.group.compose(second, first),
+                Side::Right => factor.group.compose(first, second),
+            };
+            (product - factor.group.identity(self.model.graph)).expand()
+        };
+        (0..self.model.factors.len()).map(product).collect()
+    }
+
+    /// The matrix of ξ ↦ ξ_Q(q), a row for each entry of the configuration. Any momentum of a factor that moves nothing is one of a motion: behind
+    /// them stands a row for each component of such a factor.
+    pub fn generator_matrix(&self) -> Expr<'g> {
+        let (graph, factors) = (self.model.graph, &self.model.factors);
+        let columns = action::generator_columns(&self.symbols, &self.generator);
+        let still = (0..factors.len()).filter(|&k| !factors[k].moves);
+        let components = |k: usize| self.model.offset(k)..self.model.offset(k) + factors[k].group.dimension();
+        let still: Vec<usize> = still.flat_map(components).collect();
+        let rows = columns[0].len();
+        let entry = |(i, j): (usize, usize)| match i.checked_sub(rows) {
+            Some(extra) => graph.integer((still[extra] == j) as i64),
+            None => columns[j][i],
+        };
+        let shape = clebsch_symbolic::Shape::new(rows + still.len(), columns.len());
+        graph.stack(shape, shape.positions().map(entry).collect())
+    }
+}
