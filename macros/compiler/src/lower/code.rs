@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::{Analytic, Function, Rational, Role, Shape, integer};
 
+use super::kernel::DEEPEST_EXPRESSION;
 use super::scalar::{Callee, Output};
 use super::{Cost, Input};
 
@@ -198,12 +199,17 @@ impl Kernel {
         let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
         let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).collect();
         let mut places: Vec<Code> = Vec::new();
+        let mut depths: Vec<usize> = Vec::new();
         let mut locals = Vec::new();
         for (index, (code, uses)) in self.locals.iter().zip(uses).enumerate() {
+            let depth = 1 + code.locals().into_iter().map(|other| depths[other]).max().unwrap_or(0);
             let code = code.with_locals(&|other| places[other].clone());
-            if uses == 1 && (!code.needs_name() || returned.contains(&index)) {
+            let has_place = !code.needs_name() || returned.contains(&index);
+            if uses == 1 && has_place && depth <= DEEPEST_EXPRESSION {
                 places.push(code);
+                depths.push(depth);
             } else {
+                depths.push(0);
                 places.push(Code::Local(locals.len()));
                 locals.push(code);
             }

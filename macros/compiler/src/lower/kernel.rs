@@ -46,7 +46,7 @@ fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
 const LONGEST_EXPRESSION: usize = 256;
 /// An expression that nests deeper is cut too: a parser takes more of its stack for a level than for an operation.
-const DEEPEST_EXPRESSION: usize = 24;
+pub(super) const DEEPEST_EXPRESSION: usize = 24;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
 /// The index of an operation of a kernel.

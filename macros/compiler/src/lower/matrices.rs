@@ -109,12 +109,21 @@ impl Matrices {
         self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
     }
 
+    /// What scalars are made of has a function of its own, whose frames are small: functions of functions may be hundreds deep.
     fn made(&mut self, expr: Expr<'_>) -> Code {
-        let (shape, graph) = (expr.shape(), expr.graph());
         match expr.view() {
             View::Symbol(symbol) => argument(&symbol),
             View::Pi => Code::Pi,
-            View::Sum(terms) if shape.is_scalar() => self.scalar_sum(terms),
+            View::Sum(terms) if expr.shape().is_scalar() => self.scalar_sum(terms),
+            View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
+            view => self.made_of_matrices(expr, view),
+        }
+    }
+
+    fn made_of_matrices<'g>(&mut self, expr: Expr<'g>, view: View<'g>) -> Code {
+        let (shape, graph) = (expr.shape(), expr.graph());
+        match view {
+            View::Symbol(_) | View::Pi | View::Function(..) => self.made(expr),
             View::Sum(terms) => self.sum(graph, shape, terms),
             View::Literal(entries) => self.entries(shape, entries.into_iter().map(Code::Number).collect()),
             View::Stack(entries) => {
@@ -150,7 +159,6 @@ impl Matrices {
                 let cost = Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() };
                 self.operation(MatrixOperation::Determinant, vec![a], shape, cost)
             }
-            View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
             View::Block(a, row, column) => self.block(a, row, column, shape),
             View::Embed(a, row, column) => {
                 let inner = a.shape();
