@@ -3,6 +3,7 @@
 //! What is the same for every problem is here and compiled once; what depends on the problem is generated. The other side of
 //! this file is the module of paths in the compiler's `emit` stage.
 
+pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
 pub use crate::element::{
     below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,

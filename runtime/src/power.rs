@@ -6,6 +6,8 @@
 //! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them again. A site is a
 //! system of its own; what is here is the same for every power and does not grow with N.
 
+mod formulas;
+
 use crate::scheme::{self, Scheme};
 use crate::space::larger;
 use crate::{Clebsch, Clock, Error, Scalar, Space, Time};

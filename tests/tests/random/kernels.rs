@@ -1,8 +1,9 @@
 //! Symbols with numbers in them: formulas are evaluated and kernels are run.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
-use clebsch_compiler::lower::{Callee, Code, Kernel, Output, Program};
+use clebsch_compiler::lower::{Callee, Code, Kernel, MatrixOperation, Output, Program, Whole};
 use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
 use nalgebra::SMatrix;
 
@@ -45,7 +46,11 @@ impl Values {
             let value = run.local(local);
             run.locals.push(value);
         }
-        kernel.outputs.iter().map(|(_, entries)| entries.iter().map(|entry| run.code(entry)).collect()).collect()
+        let output = |(_, entries): &(Shape, Vec<Code>)| match &entries[..] {
+            [whole] => run.matrix(whole).entries,
+            entries => entries.iter().map(|entry| run.code(entry)).collect(),
+        };
+        kernel.outputs.iter().map(output).collect()
     }
 }
 
@@ -59,7 +64,7 @@ struct Run<'a> {
 impl Run<'_> {
     /// A shared term: a number, or what a call returns.
     fn local(&self, code: &Code) -> Matrix<f64> {
-        let Code::Call(callee, arguments) = code else { return Matrix::new(Shape::scalar(), vec![self.code(code)]) };
+        let Code::Call(callee, arguments) = code else { return self.matrix(code) };
         let argument =
             |(shape, entries): &(Shape, Vec<Code>)| Matrix::new(*shape, entries.iter().map(|x| self.code(x)).collect());
         let arguments: Vec<Matrix<f64>> = arguments.iter().map(argument).collect();
@@ -94,11 +99,86 @@ impl Run<'_> {
             Code::Function(function, x) => Number::function(self.code(x), *function),
             Code::Call(callee, _) => panic!("{callee:?} returns a matrix"),
             Code::Output(local, _, output) => self.output(*local, *output),
-            Code::Whole(whole) => {
-                panic!("{:?} keeps a matrix: the two forms are compared by their steps", whole.operation)
-            }
+            Code::Whole(whole) => self.whole(whole).entries[0],
         }
     }
+
+    /// A number, or a matrix as a whole.
+    fn matrix(&self, code: &Code) -> Matrix<f64> {
+        match code {
+            Code::Whole(whole) => self.whole(whole),
+            Code::Local(index) => self.locals[*index].clone(),
+            number => Matrix::new(Shape::scalar(), vec![self.code(number)]),
+        }
+    }
+
+    fn whole(&self, whole: &Whole) -> Matrix<f64> {
+        let of: Vec<Matrix<f64>> = whole.operands.iter().map(|operand| self.matrix(operand)).collect();
+        let one = |(i, j): (usize, usize)| if i == j { 1.0 } else { 0.0 };
+        let number = |value: f64| Matrix::new(Shape::scalar(), vec![value]);
+        let from = |entry: &dyn Fn((usize, usize)) -> f64| Matrix::from_fn(whole.shape, entry);
+        match &whole.operation {
+            MatrixOperation::Argument(input) => self.values.0[&input.name].clone(),
+            MatrixOperation::Zero => from(&|_| 0.0),
+            MatrixOperation::Entries => Matrix::new(whole.shape, of.iter().map(|entry| entry.entries[0]).collect()),
+            MatrixOperation::Sum(weights) => from(&|(i, j)| {
+                weights.iter().zip(&of).map(|(weight, a)| <f64 as Number>::from_rational(weight) * a.at(i, j)).sum()
+            }),
+            MatrixOperation::Scaled => from(&|(i, j)| of[0].at(i, j) * of[1].entries[0]),
+            MatrixOperation::Shifted => from(&|(i, j)| of[0].at(i, j) + of[1].entries[0] * one((i, j))),
+            MatrixOperation::Product => {
+                from(&|(i, j)| (0..of[0].shape.columns).map(|k| of[0].at(i, k) * of[1].at(k, j)).sum())
+            }
+            MatrixOperation::Transpose => from(&|(i, j)| of[0].at(j, i)),
+            MatrixOperation::Inverse => of[0].inverse().0,
+            MatrixOperation::Analytic(Analytic::Logarithm) => logarithm(&of[0]),
+            MatrixOperation::Analytic(function) => <f64 as Number>::analytic(*function, &of[0]),
+            MatrixOperation::Block(row, column) => from(&|(i, j)| of[0].at(row + i, column + j)),
+            MatrixOperation::Hadamard => from(&|(i, j)| of[0].at(i, j) * of[1].at(i, j)),
+            MatrixOperation::DiagonalMatrix => from(&|(i, j)| of[0].at(i, 0) * one((i, j))),
+            MatrixOperation::Diagonal => from(&|(i, _)| of[0].at(i, i)),
+            MatrixOperation::Hat => from(&|(i, j)| match (3 + j - i) % 3 {
+                0 => 0.0,
+                1 => -of[0].at(3 - i - j, 0),
+                _ => of[0].at(3 - i - j, 0),
+            }),
+            MatrixOperation::Axial => from(&|(i, _)| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                of[0].at(k, j) - of[0].at(j, k)
+            }),
+            MatrixOperation::Skew => {
+                let n = whole.shape.rows;
+                from(&|(i, j)| match i.cmp(&j) {
+                    Ordering::Equal => 0.0,
+                    Ordering::Less => -of[0].at(pair(n, (i, j)), 0),
+                    Ordering::Greater => of[0].at(pair(n, (j, i)), 0),
+                })
+            }
+            MatrixOperation::SkewComponents => {
+                let pairs = pairs(of[0].shape.rows);
+                from(&|(k, _)| of[0].at(pairs[k].1, pairs[k].0) - of[0].at(pairs[k].0, pairs[k].1))
+            }
+            MatrixOperation::SkewOuter => {
+                let pairs = pairs(of[0].shape.rows);
+                let product = |i: usize, j: usize| of[0].at(i, 0) * of[1].at(j, 0);
+                from(&|(k, _)| product(pairs[k].1, pairs[k].0) - product(pairs[k].0, pairs[k].1))
+            }
+            MatrixOperation::Pairing => number(of[0].entries.iter().zip(&of[1].entries).map(|(a, b)| a * b).sum()),
+            MatrixOperation::Trace => number((0..of[0].shape.rows).map(|i| of[0].at(i, i)).sum()),
+            MatrixOperation::Entry(i, j) => number(of[0].at(*i, *j)),
+            other => panic!("{other:?} is not among what is called once in a while"),
+        }
+    }
+}
+
+/// The pairs of axes of so(n) in the order of its basis.
+fn pairs(n: usize) -> Vec<(usize, usize)> {
+    (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect()
+}
+
+/// The place of one of them.
+fn pair(n: usize, wanted: (usize, usize)) -> usize {
+    pairs(n).iter().position(|&pair| pair == wanted).expect("a pair of axes")
 }
 
 /// The function of the runtime, for emitted code has no other.

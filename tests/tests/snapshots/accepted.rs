@@ -15,8 +15,9 @@ const MOST_LINES: usize = 150;
 /// Whose formulas are shown in LaTeX too.
 const IN_LATEX: [&str; 2] = ["heavy_top", "two_pendulums"];
 
-/// Whose generated code is shown: the shortest expansions, one implicit and one explicit.
-const GENERATED: [&str; 2] = ["free_particle", "planar_pendulum"];
+/// Whose generated code is shown as a whole, for people to review: the shortest expansions, and one of each kind that is written most.
+const GENERATED: [&str; 6] =
+    ["free_particle", "planar_pendulum", "heavy_top", "spherical_pendulum", "rigid_body4", "spin_chain"];
 
 #[test]
 fn every_stage_of_every_accepted_fixture() {

@@ -12,7 +12,7 @@ pub fn lines(lines: &[String]) -> TokenStream {
     quote!(#(#[doc = #lines])*)
 }
 
-/// A title, its formulas, and in one line their shape, the cost of the kernel and the source.
+/// A title with the shape, the cost of the kernel and the source of its formulas, and below these the formulas.
 pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) -> TokenStream {
     let cost = kernel.map(|kernel| format!("Cost: {}.", kernel.cost()));
     let Some(first) = formulas.first() else {
@@ -22,10 +22,8 @@ pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) 
     let shapes: Vec<String> = first.shapes().iter().map(|shape| shape.to_string()).collect();
     let shape = Some(format!("Shape: {}.", shapes.join(", ")));
     let source = first.source.map(|source| format!("Source: {source}."));
-    let line: Vec<String> = [shape, cost, source].into_iter().flatten().collect();
+    let line: Vec<String> = [Some(title.to_string()), shape, cost, source].into_iter().flatten().collect();
     let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
-    let mut text = vec![title.to_string()];
-    text.extend(equations);
-    text.push(line.join(" "));
+    let text: Vec<String> = [line.join(" ")].into_iter().chain(equations).collect();
     lines(&text)
 }

@@ -154,64 +154,7 @@ impl<'g> Emitter<'_, 'g> {
                     #checks
                     #private::Power::power_constants(self, h)
                 }
-                /// The action, site by site.
-                fn act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration {
-                    #private::Power::act_on_sites(self, f, q)
-                }
-                /// The momentum map of the cotangent lift, site by site.
-                fn momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum {
-                    #private::Power::momenta_of(self, q, p)
-                }
-                /// The coadjoint action, site by site.
-                fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum {
-                    #private::Power::coadjoint_of_sites(self, f, mu)
-                }
-                /// The discrete Legendre transform: that of each site, less its kick at the start.
-                fn legendre(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum {
-                    #private::Power::power_legendre(self, h, t, q, f, #start)
-                }
-                /// The discrete Legendre transform: that of each site, and its kick at the end.
-                fn legendre_next(&self, h: #scalar, t: #scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum {
-                    #private::Power::power_legendre_next(self, h, t, q, f, #end)
-                }
-                /// By how much the momentum of a state is ahead of the momentum at its configuration.
-                fn stagger(&self, h: #scalar, t: #scalar, q: &Self::Configuration) -> Self::Momentum {
-                    #private::Power::power_stagger(self, h, t, q, #start, #end)
-                }
-                /// The potential energy, a sum over sites.
-                fn potential(&self, t: #scalar, q: &Self::Configuration) -> #scalar {
-                    #private::Power::potential_of_sites(self, t, q)
-                }
-                /// The kinetic energy of all sites.
-                fn kinetic_energy(
-                    &self,
-                    constants: &Self::Constants,
-                    t: #scalar,
-                    q: &Self::Configuration,
-                    mu: &Self::Momentum,
-                ) -> #scalar {
-                    #private::Power::power_kinetic_energy(self, constants, t, q, mu)
-                }
-                /// The representing matrices of a momentum, site by site.
-                fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix {
-                    <Self as #private::Power<#length>>::matrices_of(mu)
-                }
-                /// The components of a momentum, site by site.
-                fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum {
-                    <Self as #private::Power<#length>>::components_of(m)
-                }
-                /// By how much q violates what the declaration promises, at the site where it does most.
-                fn orbit_defect(&self, q: &Self::Configuration) -> #scalar {
-                    #private::Power::power_orbit_defect(self, q)
-                }
-                /// The size of the component of μ that no motion of q can have.
-                fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> #scalar {
-                    #private::Power::power_isotropy_defect(self, q, mu)
-                }
-                /// The momentum without that component.
-                fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
-                    #private::Power::projected(self, q, mu)
-                }
+                #private::formulas_of_sites!(#scalar, #length, #start, #end);
             }
         }
     }

@@ -249,24 +249,25 @@ impl Emitter<'_, '_> {
         quote!(#legendre #legendre_next)
     }
 
-    fn potential(&self) -> TokenStream {
-        let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
-        let formulas = &self.program.formulas;
+    /// V, where there is one; the trait says what it is elsewhere.
+    fn potential(&self) -> Option<TokenStream> {
+        if self.program.formulas.potential_energy.is_zero() {
+            return None;
+        }
+        let (scalar, kernel) = (&self.paths.scalar, &self.program.potential);
+        let [configuration, ..] = self.names_of_types();
+        let formulas = self.program.formulas.titled(Id::PotentialEnergy);
+        let signature = quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar);
+        let documentation = docs::formulas("The potential energy.", formulas, Some(kernel));
         let scope = self.scope_of_system();
-        let locals = code::locals(&scope, &self.program.potential);
-        let value = scope.code(&self.program.potential.outputs[0].1[0], false);
-        let potential = docs::formulas(
-            "The potential energy.",
-            formulas.titled(Id::PotentialEnergy),
-            Some(&self.program.potential),
-        );
-        quote! {
-            #potential
-            fn potential(&self, t: #scalar, q: &#configuration) -> #scalar {
+        let (locals, value) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+        Some(quote! {
+            #documentation
+            fn #signature {
                 #locals
                 #value
             }
-        }
+        })
     }
 
     /// The kinetic energy of a momentum.

@@ -27,9 +27,25 @@ impl Kernel {
         self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|code| cost.count(code));
         cost
     }
+
+    /// The operations that stand in its code: one on whole matrices is one.
+    pub fn length(&self) -> usize {
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        let whole: usize = self.locals.iter().chain(outputs).map(Cost::within_matrices).sum();
+        self.cost().total() - whole
+    }
 }
 
 impl Cost {
+    /// The operations on entries that operations on whole matrices are made of, but for one each.
+    fn within_matrices(code: &Code) -> usize {
+        let parts: usize = code.parts().into_iter().map(Cost::within_matrices).sum();
+        match code {
+            Code::Whole(whole) => parts + whole.cost.total().saturating_sub(1),
+            _ => parts,
+        }
+    }
+
     /// So many times the cost.
     pub fn times(self, count: usize) -> Cost {
         Cost {

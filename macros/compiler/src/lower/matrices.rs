@@ -8,7 +8,7 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Expr, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
+    Algebra, Expr, Function, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
 };
 
 use super::signs;
@@ -109,107 +109,81 @@ impl Matrices {
         self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
     }
 
-    /// What scalars are made of has a function of its own, whose frames are small: functions of functions may be hundreds deep.
+    /// Expressions are deep: each kind has a function of its own, so that this one has little on the stack.
     fn made(&mut self, expr: Expr<'_>) -> Code {
+        let (shape, graph) = (expr.shape(), expr.graph());
         match expr.view() {
             View::Symbol(symbol) => argument(&symbol),
             View::Pi => Code::Pi,
-            View::Sum(terms) if expr.shape().is_scalar() => self.scalar_sum(terms),
-            View::Function(function, a) => Code::Function(function, Box::new(self.value(a))),
-            view => self.made_of_matrices(expr, view),
-        }
-    }
-
-    fn made_of_matrices<'g>(&mut self, expr: Expr<'g>, view: View<'g>) -> Code {
-        let (shape, graph) = (expr.shape(), expr.graph());
-        match view {
-            View::Symbol(_) | View::Pi | View::Function(..) => self.made(expr),
+            View::Sum(terms) if shape.is_scalar() => self.scalar_sum(terms),
             View::Sum(terms) => self.sum(graph, shape, terms),
             View::Literal(entries) => self.entries(shape, entries.into_iter().map(Code::Number).collect()),
-            View::Stack(entries) => {
-                let entries = entries.into_iter().map(|entry| self.value(entry)).collect();
-                self.entries(shape, entries)
-            }
+            View::Stack(entries) => self.stack(&entries, shape),
             View::Word(word) => self.scalar_word(&word),
             View::Trace(word) => self.trace(&word),
-            View::Transpose(a) => {
-                let a = self.value(a);
-                self.transposed(a, shape)
-            }
-            View::Inverse(a) => {
-                let (n, a) = (shape.rows, self.value(a));
-                let cost = Cost { additions: n * n * n, multiplications: n * n * n, divisions: n, ..Cost::default() };
-                self.operation(MatrixOperation::Inverse, vec![a], shape, cost)
-            }
+            View::Transpose(a) => self.of_matrix(MatrixOperation::Transpose, a, shape, Cost::default()),
+            View::Inverse(a) => self.of_matrix(MatrixOperation::Inverse, a, shape, cost_of_inverse(shape.rows)),
             View::Analytic(function, a) => {
-                let (n, a) = (shape.rows, self.value(a));
-                // squarings and a rational approximation
-                let cost = product_cost(n, n, n).times(12);
-                self.operation(MatrixOperation::Analytic(function), vec![a], shape, Cost { calls: 1, ..cost })
+                self.of_matrix(MatrixOperation::Analytic(function), a, shape, cost_of_series(shape.rows))
             }
-            View::Opaque(_, output, arguments) => {
-                let arguments: Vec<Code> = arguments.into_iter().map(|argument| self.value(argument)).collect();
-                let operation =
-                    if output == 0 { MatrixOperation::Value } else { MatrixOperation::Gradient(output - 1) };
-                self.operation(operation, arguments, shape, Cost { calls: 1, ..Cost::default() })
-            }
+            View::Opaque(_, output, arguments) => self.opaque(output, &arguments, shape),
             View::Determinant(a) => {
-                let (n, a) = (a.shape().rows, self.value(a));
-                let third = n * n * n / 3;
-                let cost = Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() };
-                self.operation(MatrixOperation::Determinant, vec![a], shape, cost)
+                self.of_matrix(MatrixOperation::Determinant, a, shape, cost_of_determinant(a.shape().rows))
             }
+            View::Function(function, a) => self.function(function, a),
             View::Block(a, row, column) => self.block(a, row, column, shape),
+            View::Embed(a, row, column) if self.joins_blocks => self.embedded(a, (row, column), shape),
             View::Embed(a, row, column) => {
-                let inner = a.shape();
-                let a = self.value(a);
-                if self.joins_blocks {
-                    return self.embedded(&a, inner, (row, column), shape);
-                }
-                self.operation(MatrixOperation::Embedded(row, column), vec![a], shape, Cost::default())
+                self.of_matrix(MatrixOperation::Embedded(row, column), a, shape, Cost::default())
             }
-            View::Hadamard(a, b) => {
-                let operands = vec![self.value(a), self.value(b)];
-                let cost = Cost { multiplications: shape.len(), ..Cost::default() };
-                match shape.is_scalar() {
-                    true => Code::Product(operands),
-                    false => self.operation(MatrixOperation::Hadamard, operands, shape, cost),
-                }
-            }
-            View::DiagonalMatrix(a) => {
-                let a = self.value(a);
-                self.operation(MatrixOperation::DiagonalMatrix, vec![a], shape, Cost::default())
-            }
-            View::Diagonal(a) => {
-                let a = self.value(a);
-                self.operation(MatrixOperation::Diagonal, vec![a], shape, Cost::default())
-            }
-            View::Wedge(algebra, x) => {
-                let x = self.value(x);
-                if is_rotations(graph, algebra) {
-                    self.operation(MatrixOperation::Skew, vec![x], shape, Cost::default())
-                } else if is_hat(graph, algebra) {
-                    self.operation(MatrixOperation::Hat, vec![x], shape, Cost::default())
-                } else {
-                    self.wedge(graph, algebra, &x)
-                }
-            }
+            View::Hadamard(a, b) => self.hadamard(a, b, shape),
+            View::DiagonalMatrix(a) => self.of_matrix(MatrixOperation::DiagonalMatrix, a, shape, Cost::default()),
+            View::Diagonal(a) => self.of_matrix(MatrixOperation::Diagonal, a, shape, Cost::default()),
+            View::Wedge(algebra, x) => self.wedge(graph, algebra, x, shape),
             View::Components(algebra, a) => match self.outer(graph, algebra, a) {
                 Some(components) => components,
-                None => {
-                    let a = self.value(a);
-                    self.components(graph, algebra, a)
-                }
+                None => self.components_of(graph, algebra, a),
             },
         }
     }
 
-    fn entries(&mut self, shape: Shape, entries: Vec<Code>) -> Code {
-        self.operation(MatrixOperation::Entries, entries, shape, Cost::default())
+    /// An operation on one matrix.
+    fn of_matrix(&mut self, operation: MatrixOperation, a: Expr<'_>, shape: Shape, cost: Cost) -> Code {
+        let a = self.value(a);
+        self.operation(operation, vec![a], shape, cost)
     }
 
-    fn transposed(&mut self, a: Code, shape: Shape) -> Code {
-        self.operation(MatrixOperation::Transpose, vec![a], shape, Cost::default())
+    fn stack(&mut self, entries: &[Expr<'_>], shape: Shape) -> Code {
+        let entries = entries.iter().map(|&entry| self.value(entry)).collect();
+        self.entries(shape, entries)
+    }
+
+    fn function(&mut self, function: Function, a: Expr<'_>) -> Code {
+        Code::Function(function, Box::new(self.value(a)))
+    }
+
+    fn opaque(&mut self, output: usize, arguments: &[Expr<'_>], shape: Shape) -> Code {
+        let arguments: Vec<Code> = arguments.iter().map(|&argument| self.value(argument)).collect();
+        let operation = if output == 0 { MatrixOperation::Value } else { MatrixOperation::Gradient(output - 1) };
+        self.operation(operation, arguments, shape, Cost { calls: 1, ..Cost::default() })
+    }
+
+    fn hadamard(&mut self, a: Expr<'_>, b: Expr<'_>, shape: Shape) -> Code {
+        let operands = vec![self.value(a), self.value(b)];
+        if shape.is_scalar() {
+            return Code::Product(operands);
+        }
+        let cost = Cost { multiplications: shape.len(), ..Cost::default() };
+        self.operation(MatrixOperation::Hadamard, operands, shape, cost)
+    }
+
+    fn components_of(&mut self, graph: &Graph, algebra: Algebra, a: Expr<'_>) -> Code {
+        let a = self.value(a);
+        self.components(graph, algebra, a)
+    }
+
+    fn entries(&mut self, shape: Shape, entries: Vec<Code>) -> Code {
+        self.operation(MatrixOperation::Entries, entries, shape, Cost::default())
     }
 
     fn block(&mut self, a: Expr<'_>, row: usize, column: usize, shape: Shape) -> Code {
@@ -226,13 +200,19 @@ impl Matrices {
         }
     }
 
-    /// Σ x_k E_k of a basis that has no function of its own, entry by entry.
-    fn wedge(&mut self, graph: &Graph, algebra: Algebra, x: &Code) -> Code {
-        let (basis, shape) = (graph.basis(algebra), algebra.matrix_shape());
+    /// Σ x_k E_k, entry by entry where the basis has no function of its own.
+    fn wedge(&mut self, graph: &Graph, algebra: Algebra, x: Expr<'_>, shape: Shape) -> Code {
+        if is_rotations(graph, algebra) {
+            return self.of_matrix(MatrixOperation::Skew, x, shape, Cost::default());
+        }
+        if is_hat(graph, algebra) {
+            return self.of_matrix(MatrixOperation::Hat, x, shape, Cost::default());
+        }
+        let (x, basis) = (self.value(x), graph.basis(algebra));
         let mut entries = vec![Vec::new(); shape.len()];
         for (k, element) in basis.elements.iter().enumerate() {
             for (i, j, value) in element {
-                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(x, k, 0) };
+                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(&x, k, 0) };
                 entries[i * shape.columns + j].push((value.clone(), x));
             }
         }
@@ -566,14 +546,15 @@ impl Matrices {
     }
 
     /// A block in a matrix of zeros.
-    fn embedded(&mut self, a: &Code, inner: Shape, (row, column): (usize, usize), shape: Shape) -> Code {
+    fn embedded(&mut self, a: Expr<'_>, (row, column): (usize, usize), shape: Shape) -> Code {
+        let (inner, a) = (a.shape(), self.value(a));
         let entry = |(i, j): (usize, usize)| {
             let within = i.checked_sub(row).zip(j.checked_sub(column));
             let within = within.filter(|(i, j)| *i < inner.rows && *j < inner.columns);
             match within {
                 None => Code::Number(integer(0)),
                 Some(_) if inner.is_scalar() => a.clone(),
-                Some((i, j)) => self.entry(a, i, j),
+                Some((i, j)) => self.entry(&a, i, j),
             }
         };
         let entries = shape.positions().map(entry).collect();
@@ -583,7 +564,13 @@ impl Matrices {
     /// The entries of a sum of matrices that are made one by one, or of vectors of which one is.
     fn joined(&self, shape: Shape, parts: &[(Rational, Code)]) -> Option<Vec<Code>> {
         let mut listed = parts.iter().map(|(_, part)| self.is_listed(part));
-        let is_joined = if shape.is_column() { listed.any(|listed| listed) } else { listed.all(|listed| listed) };
+        let is_joined = if shape.is_column() {
+            listed.any(|listed| listed)
+        } else {
+            // x^ alone has a function
+            let is_hat = |part| self.operation_of(part).is_some_and(|whole| whole.operation == MatrixOperation::Hat);
+            listed.all(|listed| listed) && !parts.iter().all(|(_, part)| is_hat(part))
+        };
         let sum = |(i, j): (usize, usize)| {
             total(parts.iter().map(|(weight, part)| (weight.clone(), self.entry(part, i, j))).collect())
         };
@@ -651,6 +638,20 @@ fn outer_product<'g>(graph: &Graph, algebra: Algebra, a: Expr<'g>) -> Option<(Ve
 fn entry(a: &Code, i: usize, j: usize) -> Code {
     let (operation, operands) = (MatrixOperation::Entry(i, j), vec![a.clone()]);
     Code::Whole(Box::new(Whole { operation, operands, shape: Shape::scalar(), cost: Cost::default() }))
+}
+
+fn cost_of_inverse(n: usize) -> Cost {
+    Cost { additions: n * n * n, multiplications: n * n * n, divisions: n, ..Cost::default() }
+}
+
+fn cost_of_determinant(n: usize) -> Cost {
+    let third = n * n * n / 3;
+    Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() }
+}
+
+/// Squarings and a rational approximation.
+fn cost_of_series(n: usize) -> Cost {
+    Cost { calls: 1, ..product_cost(n, n, n).times(12) }
 }
 
 fn product_cost(rows: usize, inner: usize, columns: usize) -> Cost {

@@ -183,8 +183,8 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         coadjoint: stacked(Id::Coadjoint, &mut scalars),
         legendre: stacked(Id::Legendre, &mut scalars),
         legendre_next: stacked(Id::LegendreNext, &mut scalars),
-        stagger: formulas.value(Id::SynchronizedMomentum).map(|stagger| rare.stack(&mut scalars, stagger)),
-        potential: asked(Id::PotentialEnergy, &mut scalars),
+        stagger: formulas.value(Id::SynchronizedMomentum).map(|stagger| stack(&mut scalars, stagger)),
+        potential: plain(&mut scalars, formulas.value(Id::PotentialEnergy).unwrap_or_default()),
         inertia: inertia(&formulas, &mut scalars),
         energy_coefficients: (!form.keeps_matrices()).then(|| energy_coefficients(&formulas, &mut scalars)),
         momentum_matrix: asked(Id::MomentumMatrix, &mut scalars),
@@ -206,11 +206,11 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         form,
         formulas,
     };
-    let whole = program.cost().total();
-    let kernel = program.kernels().into_iter().map(|(_, kernel)| kernel.cost().total()).max().unwrap_or(0);
     if program.form.keeps_matrices() {
         return Ok(program);
     }
+    let lengths: Vec<usize> = program.kernels().into_iter().map(|(_, kernel)| kernel.length()).collect();
+    let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
     for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
         if operations > most {
             return Err(too_large(

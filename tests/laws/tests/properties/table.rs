@@ -174,6 +174,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("operations_are_those_of_matrices", &["shifted", "determinant", "embedded", "matrix_of"]),
         ("maps_of_skew_matrices_are_their_matrices", &["Sylvester::new", "Sylvester::times", "Jacobian::all_finite", "Jacobian::between", "Jacobian::column", "Jacobian::lane", "Jacobian::largest_entry", "Jacobian::orientation", "Jacobian::size_of_terms", "Jacobian::solve", "Jacobian::solve_exchanged"]),
         ("maps_of_all_kinds_of_numbers_are_inverted", &["Jacobian::solve"]),
+        ("hats_turn_vectors",                &["hat", "axial"]),
         ("skew_matrices_have_components",    &["skew", "skew_components", "skew_times", "skew_outer"]),
         ("inertias_are_inverted",            &["InertiaInverse::new", "InertiaInverse::matrix", "InertiaInverse::times", "InertiaInverse::energy", "invert_uniform", "kinetic_energy_uniform", "orientation_of_inertia", "orientation_of_uniform"]),
         ("integrators_step_in_place",           &["Scheme::step_into", "Stepper::integrator", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),

@@ -3,8 +3,8 @@
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::Stepping;
 use clebsch::__private::{
-    InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, determinant, distance_of_projection, embedded,
-    invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
+    InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection, embedded,
+    hat, invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
     orientation_of_uniform, projection, push, shifted, skew, skew_components, skew_outer, skew_times, tangent,
     turn_freely, turn_great_circle, turned_in_plane,
 };
@@ -60,6 +60,13 @@ proptest! {
         prop_assert!((skew_times(&x, &v) - z * v).amax() < 1e-14);
         let outer: SVector<f64, 10> = skew_outer(&v, &w);
         prop_assert!((outer - skew_components::<f64, 5, 10>(&(v * w.transpose()))).amax() < 1e-15);
+    }
+
+    /// x^ v = x × v, and A ↦ ⟨A, E⟩ is its transpose.
+    #[test]
+    fn hats_turn_vectors(x in vector::<3>(1.0), a in matrix::<3, 3>(1.0), v in vector::<3>(1.0)) {
+        prop_assert!((hat(&x) * v - x.cross(&v)).amax() < 1e-15);
+        prop_assert!(near(axial(&a).dot(&x), a.dot(&hat(&x))));
     }
 
     /// x ↦ ⟨x^B, E⟩ and its matrix are the same Jacobian: values, solutions, signs, columns, sizes.
