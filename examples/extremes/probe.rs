@@ -1,7 +1,7 @@
 //! One cell of the map: a scene with a dial, from one start, in one number type.
 
 use crate::random::Random;
-use clebsch::{Clebsch, DoubleDouble, Error, Real, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, DoubleDouble, Error, Method, Real, Scalar, Space, State, Stepper};
 use clebsch_examples::counted::iterations;
 use nalgebra::{Matrix3, Vector3};
 
@@ -70,13 +70,13 @@ pub trait Scene: Clebsch<Scalar: Real, Time = (), Input = ()> + Clone {
     ///
     /// # Errors
     /// Those of [`Stepper::state`].
-    fn start(setup: &Setup, stepper: &Stepper<Self>) -> Result<State<Self>, Error>;
+    fn start<M: Method<Self>>(setup: &Setup, stepper: &Stepper<Self, M>) -> Result<State<Self, M>, Error>;
 
     /// Configuration and momentum.
-    fn numbers(state: &State<Self>) -> Vec<f64>;
+    fn numbers<M: Method<Self>>(state: &State<Self, M>) -> Vec<f64>;
 
     /// The momenta that no step changes, zeros for those that it has not.
-    fn conserved(stepper: &Stepper<Self>, state: &State<Self>) -> [f64; 3];
+    fn conserved<M: Method<Self>>(stepper: &Stepper<Self, M>, state: &State<Self, M>) -> [f64; 3];
 }
 
 /// What became of a run.
@@ -187,20 +187,25 @@ pub struct Sample {
     pub missed: f64,
 }
 
-/// The dial of a declaration that is generic over its scalar, run [`beside`] 31 digits.
+/// The dial of a method of a declaration that is generic over its scalar, run [`beside`] 31 digits.
 macro_rules! dial {
-    ($name:literal, $scene:literal, $double:ty, $single:ty, beside $precise:ty) => {
-        $crate::probe::dial!(@ $name, $scene, $double, $single,
-            [$crate::probe::beside::<$double, $precise>, $crate::probe::beside::<$single, $precise>])
-    };
-    (@ $name:literal, $scene:literal, $double:ty, $single:ty, $run:expr) => {
+    ($name:literal, $scene:literal, $system:ident, $method:ty) => {
         $crate::probe::Dial {
             scene: $scene,
             name: $name,
-            run: $run,
-            step: $crate::probe::one_step::<$double>,
-            drift: [$crate::probe::drift::<$double>, $crate::probe::drift::<$single>],
-            sample: [$crate::probe::sample::<$double>, $crate::probe::sample::<$single>],
+            run: [
+                $crate::probe::beside::<$system<Counted<f64>>, $system<DoubleDouble>, $method>,
+                $crate::probe::beside::<$system<Counted<f32>>, $system<DoubleDouble>, $method>,
+            ],
+            step: $crate::probe::one_step::<$system<Counted<f64>>, $method>,
+            drift: [
+                $crate::probe::drift::<$system<Counted<f64>>, $method>,
+                $crate::probe::drift::<$system<Counted<f32>>, $method>,
+            ],
+            sample: [
+                $crate::probe::sample::<$system<Counted<f64>>, $method>,
+                $crate::probe::sample::<$system<Counted<f32>>, $method>,
+            ],
         }
     };
 }
@@ -210,18 +215,22 @@ pub(crate) use dial;
 ///
 /// # Errors
 /// Whatever it is refused for.
-pub fn one_step<S: Scene>(setup: &Setup) -> Result<u32, Error> {
-    let stepper = S::of(setup).into_stepper(S::Scalar::from_f64(setup.h))?;
+pub fn one_step<S: Scene, M: Method<S>>(setup: &Setup) -> Result<u32, Error> {
+    let stepper = S::of(setup).into_stepper_by::<M>(S::Scalar::from_f64(setup.h))?;
     let start = S::start(setup, &stepper)?;
     let (next, iterations) = iterations(|| stepper.step(&start));
     next.map(|_| iterations)
 }
 
 /// A run of S, and of P in 31 digits beside it.
-pub fn beside<S: Scene, P: Scene<Scalar = DoubleDouble>>(setup: &Setup, steps: u64, is_compared: bool) -> Cell {
-    let mut cell = run::<S>(setup, steps);
+pub fn beside<S: Scene, P: Scene<Scalar = DoubleDouble>, M: Method<S> + Method<P>>(
+    setup: &Setup,
+    steps: u64,
+    is_compared: bool,
+) -> Cell {
+    let mut cell = run::<S, M>(setup, steps);
     if is_compared && cell.outcome.is_ok() {
-        let precise = run::<P>(&setup.rounded::<S::Scalar>(), steps);
+        let precise = run::<P, M>(&setup.rounded::<S::Scalar>(), steps);
         if precise.outcome.is_ok() {
             cell.precise = distance(&cell.last, &precise.last);
         }
@@ -230,9 +239,9 @@ pub fn beside<S: Scene, P: Scene<Scalar = DoubleDouble>>(setup: &Setup, steps: u
 }
 
 /// `steps` steps, watched.
-fn run<S: Scene>(setup: &Setup, steps: u64) -> Cell {
+fn run<S: Scene, M: Method<S>>(setup: &Setup, steps: u64) -> Cell {
     let begin = || {
-        let stepper = S::of(setup).into_stepper(S::Scalar::from_f64(setup.h))?;
+        let stepper = S::of(setup).into_stepper_by::<M>(S::Scalar::from_f64(setup.h))?;
         let start = S::start(setup, &stepper)?;
         Ok((stepper, start))
     };
@@ -269,15 +278,15 @@ struct Watch {
 }
 
 impl Watch {
-    fn new<S: Scene>(stepper: &Stepper<S>, start: &State<S>) -> Self {
+    fn new<S: Scene, M: Method<S>>(stepper: &Stepper<S, M>, start: &State<S, M>) -> Self {
         let mut cell = Cell::new(Ok(()), 0.0);
-        cell.residual = if has_equation::<S>() { 0.0 } else { f64::NAN };
+        cell.residual = if has_equation::<S, M>() { 0.0 } else { f64::NAN };
         let size = start.momentum().max_abs().to_f64();
         let energy = stepper.energy(start).to_f64();
         Self { cell, energy, conserved: S::conserved(stepper, start), size: if size > 0.0 { size } else { 1.0 } }
     }
 
-    fn observe<S: Scene>(&mut self, stepper: &Stepper<S>, state: &State<S>) {
+    fn observe<S: Scene, M: Method<S>>(&mut self, stepper: &Stepper<S, M>, state: &State<S, M>) {
         let raise = |largest: &mut f64, value: f64| {
             // NaN is kept
             if value > *largest || value.is_nan() {
@@ -292,7 +301,7 @@ impl Watch {
             raise(&mut self.cell.momentum, (now - then).abs() / self.size);
         }
         raise(&mut self.cell.constraint, stepper.system().orbit_defect(state.configuration()).to_f64());
-        if has_equation::<S>()
+        if has_equation::<S, M>()
             && let Some(missed) = residual(stepper, state)
         {
             raise(&mut self.cell.residual, missed);
@@ -301,12 +310,12 @@ impl Watch {
 }
 
 /// Whether a step is that of one equation F⁻ℓd(q, F) = N.
-fn has_equation<S: Scene>() -> bool {
-    S::ORDER == 2
+fn has_equation<S: Scene, M: Method<S>>() -> bool {
+    M::ORDER == 2
 }
 
 /// |F⁻ℓd(q, F) − N| for the F that the next step finds, over the larger one of |N| and |F⁺ℓd(q, F)|; `None` where it finds none.
-fn residual<S: Scene>(stepper: &Stepper<S>, state: &State<S>) -> Option<f64> {
+fn residual<S: Scene, M: Method<S>>(stepper: &Stepper<S, M>, state: &State<S, M>) -> Option<f64> {
     let (q, n) = (state.configuration(), state.momentum());
     let f = stepper.inverse_legendre(q, &n).ok()?;
     let found = stepper.legendre(q, &f);
@@ -329,8 +338,8 @@ const OBSERVATIONS: u64 = 100;
 ///
 /// # Errors
 /// That of the step which was refused.
-pub fn drift<S: Scene>(setup: &Setup, marks: &[u64]) -> Result<Vec<Drift>, Error> {
-    let stepper = S::of(setup).into_stepper(S::Scalar::from_f64(setup.h))?;
+pub fn drift<S: Scene, M: Method<S>>(setup: &Setup, marks: &[u64]) -> Result<Vec<Drift>, Error> {
+    let stepper = S::of(setup).into_stepper_by::<M>(S::Scalar::from_f64(setup.h))?;
     let mut state = S::start(setup, &stepper)?;
     let first = Watch::new(&stepper, &state);
     let (mut drifts, mut steps) = (Vec::new(), 0);
@@ -354,9 +363,9 @@ pub fn drift<S: Scene>(setup: &Setup, marks: &[u64]) -> Result<Vec<Drift>, Error
 }
 
 /// One step from each of `states` random states of a body: its attitude, any direction, and h|ω| of any size from 1e-8 to ten.
-pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Sample) {
+pub fn sample<S: Scene, M: Method<S>>(setup: &Setup, states: u64, seed: u64, sample: &mut Sample) {
     sample.iterations.resize(64, 0);
-    let Ok(stepper) = S::of(setup).into_stepper(S::Scalar::from_f64(setup.h)) else {
+    let Ok(stepper) = S::of(setup).into_stepper_by::<M>(S::Scalar::from_f64(setup.h)) else {
         sample.others += states;
         return;
     };
@@ -375,7 +384,7 @@ pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Samp
                 sample.iterations[count.min(63) as usize] += 1;
                 sample.most = sample.most.max(count);
                 sample.hidden += u64::from(!is_finite(&next));
-                if number % 100 == 0 && has_equation::<S>() && setup.h * setup.velocity().norm() < 1.0 {
+                if number % 100 == 0 && has_equation::<S, M>() && setup.h * setup.velocity().norm() < 1.0 {
                     sample.missed = sample.missed.max(residual(&stepper, &start).unwrap_or(0.0));
                 }
                 continue;
@@ -388,6 +397,6 @@ pub fn sample<S: Scene>(setup: &Setup, states: u64, seed: u64, sample: &mut Samp
     }
 }
 
-fn is_finite<S: Scene>(state: &State<S>) -> bool {
+fn is_finite<S: Scene, M: Method<S>>(state: &State<S, M>) -> bool {
     state.configuration().is_finite() && state.momentum().is_finite()
 }

@@ -1,8 +1,9 @@
 //! One way to integrate a scene: a method with its dial.
 
-use clebsch::{Clebsch, Error, State, Stepper};
+use clebsch::{Clebsch, Error, Method, State, Stepper};
 use nalgebra::SVector;
 use std::hint::black_box;
+use std::marker::PhantomData;
 use std::time::Instant;
 
 /// Times at which the error is taken: the multiples of duration/SAMPLES.
@@ -88,8 +89,9 @@ pub type Observe<'a, const N: usize> = dyn FnMut(f64, &SVector<f64, N>) + 'a;
 /// Writes a state as the numbers of the scene.
 pub type Flat<S, const N: usize> = fn(&<S as Clebsch>::Configuration, &<S as Clebsch>::Momentum) -> SVector<f64, N>;
 
-/// A declared system from its start.
-pub struct Declared<S: Clebsch, const N: usize> {
+/// A declared system from its start, by the method M.
+pub struct Declared<S: Clebsch, M: Method<S>, const N: usize> {
+    by: PhantomData<M>,
     method: &'static str,
     system: S,
     start: (S::Configuration, S::Momentum),
@@ -99,17 +101,21 @@ pub struct Declared<S: Clebsch, const N: usize> {
     tolerance: Option<f64>,
 }
 
-/// A declared system as a setting.
-pub fn declared<S: Clebsch, const N: usize>(
+/// A stepper and its start.
+type Begun<S, M> = (Stepper<S, M>, State<S, M>);
+
+/// A declared system as a setting, by one of its methods.
+pub fn declared<S: Clebsch, M: Method<S>, const N: usize>(
+    _: M,
     method: &'static str,
     system: S,
     start: (S::Configuration, S::Momentum),
     flat: Flat<S, N>,
-) -> Box<Declared<S, N>> {
-    Box::new(Declared { method, system, start, flat, is_synchronized: false, tolerance: None })
+) -> Box<Declared<S, M, N>> {
+    Box::new(Declared { by: PhantomData, method, system, start, flat, is_synchronized: false, tolerance: None })
 }
 
-impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
+impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Declared<S, M, N> {
     /// The same, read as [`Stepper::synchronized`] says.
     pub fn synchronized(self) -> Box<Self> {
         Box::new(Self { is_synchronized: true, ..self })
@@ -120,8 +126,8 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
         Box::new(Self { tolerance: Some(tolerance), ..self })
     }
 
-    fn prepare(&self, h: f64) -> Result<(Stepper<S>, State<S>), Error> {
-        let stepper = self.system.clone().into_stepper(h)?;
+    fn prepare(&self, h: f64) -> Result<Begun<S, M>, Error> {
+        let stepper = self.system.clone().into_stepper_by(h)?;
         let start = match self.is_synchronized {
             true => stepper.staggered_state(self.start.0, self.start.1)?,
             false => stepper.state(self.start.0, self.start.1)?,
@@ -130,7 +136,7 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
     }
 
     /// The numbers of a state, as it is read.
-    fn read(&self, stepper: &Stepper<S>, state: &State<S>) -> SVector<f64, N> {
+    fn read(&self, stepper: &Stepper<S, M>, state: &State<S, M>) -> SVector<f64, N> {
         match self.is_synchronized {
             true => (self.flat)(state.configuration(), &stepper.synchronized(state)),
             false => (self.flat)(state.configuration(), &state.momentum()),
@@ -138,9 +144,9 @@ impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Declared<S, N> {
     }
 }
 
-impl<S: Clebsch<Scalar = f64> + Clone, const N: usize> Setting<N> for Declared<S, N> {
+impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Setting<N> for Declared<S, M, N> {
     fn name(&self) -> Name {
-        let order = if self.is_synchronized { 2 } else { S::ORDER };
+        let order = if self.is_synchronized { 2 } else { M::ORDER };
         Name { method: self.method, order, family: Family::Geometric, tolerance: self.tolerance }
     }
 

@@ -3,6 +3,7 @@
 use crate::classical::Equation;
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
+use clebsch::{Clebsch, Declared};
 use nalgebra::{Matrix4, SVector, Vector4, Vector6};
 use std::hint::black_box;
 
@@ -16,78 +17,88 @@ const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2,
 /// R by columns, then the six entries of M.
 type Body = SVector<f64, 22>;
 
-/// The same body in one form after another, in every order.
-macro_rules! bodies {
-    ($($module:ident, $label:literal, $type:ident, $field:ident, {$($declared:tt)*};)*) => {
-        $(bodies!(@orders $module, $type, $field, {$($declared)*}, [second 2, fourth 4, sixth 6, eighth 8]);)*
+struct MoserVeselovSecond;
+struct MoserVeselovFourth;
+struct MoserVeselovSixth;
+struct MoserVeselovEighth;
+struct CayleySecond;
+struct CayleyFourth;
+struct CayleySixth;
+struct CayleyEighth;
+struct ExponentialSecond;
+struct ExponentialFourth;
+struct ExponentialSixth;
+struct ExponentialEighth;
 
-        fn declarations() -> Vec<Box<dyn Setting<22>>> {
-            // components of a momentum in the basis of SO(4) are twice the entries below the diagonal
-            let start = (Matrix4::identity(), MOMENTUM * -2.0);
-            let flat = |attitude: &Matrix4<f64>, momentum: &Vector6<f64>| pack(attitude, &(momentum * -0.5));
-            vec![$(
-                declared($label, $module::second::Body { $field: $field() }, start, flat),
-                declared($label, $module::fourth::Body { $field: $field() }, start, flat),
-                declared($label, $module::sixth::Body { $field: $field() }, start, flat),
-                declared($label, $module::eighth::Body { $field: $field() }, start, flat),
-            )*]
-        }
-    };
-    (@orders $module:ident, $type:ident, $field:ident, $declared:tt, [$($name:ident $order:literal),*]) => {
-        mod $module {
-            $(bodies!(@one $name, $order, $type, $field, $declared);)*
-        }
-    };
-    (@one $name:ident, $order:literal, $type:ident, $field:ident, {$($declared:tt)*}) => {
-        pub mod $name {
-            use clebsch::Clebsch;
-            use nalgebra::$type;
-
-            /// A free body.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch($($declared)*, order = $order)]
-            pub struct Body {
-                /// Its mass and how it is spread, kg·m².
-                pub $field: $type<f64>,
-            }
-        }
-    };
+/// A free body, by the cost of Moser and Veselov.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action = |F: SO<4>, R: SO<4>| R * F,
+    cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
+    method MoserVeselovSecond = (order = 2),
+    method MoserVeselovFourth = (order = 4),
+    method MoserVeselovSixth  = (order = 6),
+    method MoserVeselovEighth = (order = 8),
+)]
+struct Discrete {
+    /// Half the second moments of mass, kg·m².
+    j_d: Matrix4<f64>,
 }
 
-bodies! {
-    moser_veselov, "moser_veselov", Matrix4, j_d, {
-        action = |F: SO<4>, R: SO<4>| R * F,
-        cost = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h
-    };
-    cayley, "cayley", Vector6, inertia, {
-        action = |F: SO<4>, R: SO<4>| R * F,
-        lagrangian = |xi| xi.dot(&self.inertia.component_mul(&xi)),
-        discretization = cayley
-    };
-    exponential, "exponential", Vector6, inertia, {
-        action = |F: SO<4>, R: SO<4>| R * F,
-        lagrangian = |xi| xi.dot(&self.inertia.component_mul(&xi)),
-        discretization = exponential
-    };
+/// The same body by its Lagrangian, in one form after another.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SO<4>, R: SO<4>| R * F,
+    lagrangian = |xi| xi.dot(&self.inertia.component_mul(&xi)),
+    method CayleySecond      = (order = 2, discretization = cayley),
+    method CayleyFourth      = (order = 4, discretization = cayley),
+    method CayleySixth       = (order = 6, discretization = cayley),
+    method CayleyEighth      = (order = 8, discretization = cayley),
+    method ExponentialSecond = (order = 2, discretization = exponential),
+    method ExponentialFourth = (order = 4, discretization = exponential),
+    method ExponentialSixth  = (order = 6, discretization = exponential),
+    method ExponentialEighth = (order = 8, discretization = exponential),
+)]
+struct Principal {
+    /// Inertia in each plane, kg·m².
+    inertia: Vector6<f64>,
 }
 
 /// The motion itself, which no order makes better.
-mod exact {
-    use clebsch::Clebsch;
-    use nalgebra::Matrix4;
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action         = |F: SO<4>, R: SO<4>| R * F,
+    lagrangian     = |xi| (self.j_d * xi.matrix() * xi.matrix().transpose()).trace(),
+    discretization = exact,
+)]
+struct Exact {
+    /// Half the second moments of mass, kg·m².
+    #[clebsch(symmetric)]
+    j_d: Matrix4<f64>,
+}
 
-    /// A free body.
-    #[derive(Clebsch, Clone, Debug)]
-    #[clebsch(
-        action         = |F: SO<4>, R: SO<4>| R * F,
-        lagrangian     = |xi| (self.j_d * xi.matrix() * xi.matrix().transpose()).trace(),
-        discretization = exact,
-    )]
-    pub struct Body {
-        /// Half the second moments of mass, kg·m².
-        #[clebsch(symmetric)]
-        pub j_d: Matrix4<f64>,
-    }
+/// Every form in every order.
+fn declarations() -> Vec<Box<dyn Setting<22>>> {
+    // components of a momentum in the basis of SO(4) are twice the entries below the diagonal
+    let start = (Matrix4::identity(), MOMENTUM * -2.0);
+    let flat = |attitude: &Matrix4<f64>, momentum: &Vector6<f64>| pack(attitude, &(momentum * -0.5));
+    let discrete = Discrete { j_d: j_d() };
+    let principal = Principal { inertia: inertia() };
+    vec![
+        declared(MoserVeselovSecond, "moser_veselov", discrete, start, flat),
+        declared(MoserVeselovFourth, "moser_veselov", discrete, start, flat),
+        declared(MoserVeselovSixth, "moser_veselov", discrete, start, flat),
+        declared(MoserVeselovEighth, "moser_veselov", discrete, start, flat),
+        declared(CayleySecond, "cayley", principal, start, flat),
+        declared(CayleyFourth, "cayley", principal, start, flat),
+        declared(CayleySixth, "cayley", principal, start, flat),
+        declared(CayleyEighth, "cayley", principal, start, flat),
+        declared(ExponentialSecond, "exponential", principal, start, flat),
+        declared(ExponentialFourth, "exponential", principal, start, flat),
+        declared(ExponentialSixth, "exponential", principal, start, flat),
+        declared(ExponentialEighth, "exponential", principal, start, flat),
+        declared(Declared, "exact", Exact { j_d: j_d() }, start, flat),
+    ]
 }
 
 /// J_d = diag(1, 1.5, 2, 2.5).
@@ -101,14 +112,6 @@ pub fn scene() -> Scene<22> {
         pack(&(attitude * omega), &above(&(product - product.transpose())))
     };
     let mut settings = declarations();
-    // components of a momentum in the basis of SO(4) are twice the entries below the diagonal
-    let exact_start = (Matrix4::identity(), MOMENTUM * -2.0);
-    settings.push(declared(
-        "exact",
-        exact::Body { j_d: j_d() },
-        exact_start,
-        |attitude: &Matrix4<f64>, momentum: &Vector6<f64>| pack(attitude, &(momentum * -0.5)),
-    ));
     let start = pack(&Matrix4::identity(), &MOMENTUM);
     settings.extend(Equation { field, start, flat: |y| *y }.settings());
     Scene {

@@ -6,6 +6,7 @@ use super::rotation::{
 use crate::classical::Equation;
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
+use clebsch::Clebsch;
 use clebsch_examples::jacobi::Jacobi;
 use nalgebra::{Matrix3, Quaternion, Vector3, Vector6};
 use std::hint::black_box;
@@ -13,91 +14,126 @@ use std::hint::black_box;
 const MOMENTS: Vector3<f64> = Vector3::new(1.0, 2.0, 3.0);
 const MOMENTUM: Vector3<f64> = Vector3::new(0.3, 2.0, 0.6);
 
-/// The same body in one form after another, in every order; a free body has no kicks, so that order 1 is order 2.
-macro_rules! bodies {
-    ($($module:ident, $label:literal, $start:ident, $flat:ident, {$($declared:tt)*};)*) => {
-        $(bodies!(@orders $module, {$($declared)*}, [second 2, fourth 4, sixth 6, eighth 8]);)*
+struct MoserVeselovSecond;
+struct MoserVeselovFourth;
+struct MoserVeselovSixth;
+struct MoserVeselovEighth;
+struct CayleySecond;
+struct CayleyFourth;
+struct CayleySixth;
+struct CayleyEighth;
+struct ExponentialSecond;
+struct ExponentialFourth;
+struct ExponentialSixth;
+struct ExponentialEighth;
+struct ProjectionSecond;
+struct ProjectionFourth;
+struct ProjectionSixth;
+struct ProjectionEighth;
+struct Exact;
+struct ChordSecond;
+struct ChordFourth;
+struct ChordSixth;
+struct ChordEighth;
+struct QuaternionSecond;
+struct QuaternionFourth;
+struct QuaternionSixth;
+struct QuaternionEighth;
 
-        fn declarations(inertia: Matrix3<f64>) -> Vec<Box<dyn Setting<12>>> {
-            vec![$(
-                declared($label, $module::second::Body { inertia }, ($start(), MOMENTUM), $flat),
-                declared($label, $module::fourth::Body { inertia }, ($start(), MOMENTUM), $flat),
-                declared($label, $module::sixth::Body { inertia }, ($start(), MOMENTUM), $flat),
-                declared($label, $module::eighth::Body { inertia }, ($start(), MOMENTUM), $flat),
-            )*]
-        }
-    };
-    (@orders $module:ident, $declared:tt, [$($name:ident $order:literal),*]) => {
-        mod $module {
-            $(bodies!(@one $name, $order, $declared);)*
-        }
-    };
-    (@one $name:ident, $order:literal, {$($declared:tt)*}) => {
-        pub mod $name {
-            use clebsch::Clebsch;
-            use nalgebra::Matrix3;
-
-            /// A free body.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch($($declared)*, order = $order)]
-            pub struct Body {
-                /// Inertia tensor, kg·m².
-                #[clebsch(symmetric)]
-                pub inertia: Matrix3<f64>,
-            }
-        }
-    };
+/// A free body, in one form after another, in every order; without kicks order 1 is order 2. `Exact` is the motion itself, which no order makes better.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    method Exact = (discretization = exact),
+    method MoserVeselovSecond = (order = 2, discretization = moser_veselov),
+    method MoserVeselovFourth = (order = 4, discretization = moser_veselov),
+    method MoserVeselovSixth  = (order = 6, discretization = moser_veselov),
+    method MoserVeselovEighth = (order = 8, discretization = moser_veselov),
+    method CayleySecond       = (order = 2, discretization = cayley),
+    method CayleyFourth       = (order = 4, discretization = cayley),
+    method CayleySixth        = (order = 6, discretization = cayley),
+    method CayleyEighth       = (order = 8, discretization = cayley),
+    method ExponentialSecond  = (order = 2, discretization = exponential),
+    method ExponentialFourth  = (order = 4, discretization = exponential),
+    method ExponentialSixth   = (order = 6, discretization = exponential),
+    method ExponentialEighth  = (order = 8, discretization = exponential),
+    method ProjectionSecond   = (order = 2, discretization = projection),
+    method ProjectionFourth   = (order = 4, discretization = projection),
+    method ProjectionSixth    = (order = 6, discretization = projection),
+    method ProjectionEighth   = (order = 8, discretization = projection),
+)]
+struct Body {
+    /// Inertia tensor, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
 }
 
-bodies! {
-    moser_veselov, "moser_veselov", unturned, pack, {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = moser_veselov
-    };
-    cayley, "cayley", unturned, pack, {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = cayley
-    };
-    exponential, "exponential", unturned, pack, {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = exponential
-    };
-    projection, "projection", unturned, pack, {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = projection
-    };
-    chord, "quaternion chord", unit, pack_quaternion, {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        cost = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h
-    };
-    quaternion, "quaternion cayley", unit, pack_quaternion, {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = cayley
-    };
+/// The same body by unit quaternions and the chord of the rotation of a step.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action = |F: SU<2>, Q: SU<2>| Q * F,
+    cost   = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
+    method ChordSecond = (order = 2),
+    method ChordFourth = (order = 4),
+    method ChordSixth  = (order = 6),
+    method ChordEighth = (order = 8),
+)]
+struct Chord {
+    /// Inertia tensor, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
 }
 
-/// The motion itself, which no order makes better.
-mod exact {
-    use clebsch::Clebsch;
-    use nalgebra::Matrix3;
+/// The same by unit quaternions and its Lagrangian.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SU<2>, Q: SU<2>| Q * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    method QuaternionSecond = (order = 2, discretization = cayley),
+    method QuaternionFourth = (order = 4, discretization = cayley),
+    method QuaternionSixth  = (order = 6, discretization = cayley),
+    method QuaternionEighth = (order = 8, discretization = cayley),
+)]
+struct Turn {
+    /// Inertia tensor, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
+}
 
-    /// A free body.
-    #[derive(Clebsch, Clone, Debug)]
-    #[clebsch(
-        action         = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = exact,
-    )]
-    pub struct Body {
-        /// Inertia tensor, kg·m².
-        #[clebsch(symmetric)]
-        pub inertia: Matrix3<f64>,
-    }
+fn declarations(inertia: Matrix3<f64>) -> Vec<Box<dyn Setting<12>>> {
+    let body = Body { inertia };
+    let chord = Chord { inertia };
+    let turn = Turn { inertia };
+    let attitude = (unturned(), MOMENTUM);
+    let quaternion = (unit(), MOMENTUM);
+    vec![
+        declared(MoserVeselovSecond, "moser_veselov", body, attitude, pack),
+        declared(MoserVeselovFourth, "moser_veselov", body, attitude, pack),
+        declared(MoserVeselovSixth, "moser_veselov", body, attitude, pack),
+        declared(MoserVeselovEighth, "moser_veselov", body, attitude, pack),
+        declared(CayleySecond, "cayley", body, attitude, pack),
+        declared(CayleyFourth, "cayley", body, attitude, pack),
+        declared(CayleySixth, "cayley", body, attitude, pack),
+        declared(CayleyEighth, "cayley", body, attitude, pack),
+        declared(ExponentialSecond, "exponential", body, attitude, pack),
+        declared(ExponentialFourth, "exponential", body, attitude, pack),
+        declared(ExponentialSixth, "exponential", body, attitude, pack),
+        declared(ExponentialEighth, "exponential", body, attitude, pack),
+        declared(ProjectionSecond, "projection", body, attitude, pack),
+        declared(ProjectionFourth, "projection", body, attitude, pack),
+        declared(ProjectionSixth, "projection", body, attitude, pack),
+        declared(ProjectionEighth, "projection", body, attitude, pack),
+        declared(ChordSecond, "quaternion chord", chord, quaternion, pack_quaternion),
+        declared(ChordFourth, "quaternion chord", chord, quaternion, pack_quaternion),
+        declared(ChordSixth, "quaternion chord", chord, quaternion, pack_quaternion),
+        declared(ChordEighth, "quaternion chord", chord, quaternion, pack_quaternion),
+        declared(QuaternionSecond, "quaternion cayley", turn, quaternion, pack_quaternion),
+        declared(QuaternionFourth, "quaternion cayley", turn, quaternion, pack_quaternion),
+        declared(QuaternionSixth, "quaternion cayley", turn, quaternion, pack_quaternion),
+        declared(QuaternionEighth, "quaternion cayley", turn, quaternion, pack_quaternion),
+        declared(Exact, "exact", body, attitude, pack),
+    ]
 }
 
 fn unturned() -> Matrix3<f64> {
@@ -123,7 +159,6 @@ pub fn scene() -> Scene<12> {
         compact_rates(&attitude, &omega, &momentum.cross(&omega))
     };
     let mut settings = declarations(inertia);
-    settings.push(declared("exact", exact::Body { inertia }, (unturned(), MOMENTUM), pack));
     settings.extend(Equation { field: fast, start: compact(&unit(), &MOMENTUM), flat: unpack_compact }.settings());
     Scene {
         name: "free_body",

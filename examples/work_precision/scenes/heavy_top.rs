@@ -6,6 +6,7 @@ use super::rotation::{
 use crate::classical::Equation;
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
+use clebsch::Clebsch;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3, Vector6};
 use std::hint::black_box;
 
@@ -14,148 +15,204 @@ const CENTER: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 const VELOCITY: Vector3<f64> = Vector3::new(0.1, 0.2, 5.0);
 const TILT: f64 = 0.5;
 
-/// The same top in one form after another, in its orders.
-macro_rules! tops {
-    ($($module:ident, $label:literal, $start:ident, $flat:ident, [$($name:ident $order:literal),*], $declared:tt;)*) => {
-        $(tops!(@orders $module, $declared, [$($name $order),*]);)*
+struct ExactFirst;
+struct ExactSecond;
+struct ExactFourth;
+struct ExactSixth;
+struct Compensated;
+struct MoserVeselovFirst;
+struct MoserVeselovSecond;
+struct MoserVeselovFourth;
+struct MoserVeselovSixth;
+struct MoserVeselovEighth;
+struct CayleyFirst;
+struct CayleySecond;
+struct CayleyFourth;
+struct CayleySixth;
+struct CayleyEighth;
+struct ExponentialFirst;
+struct ExponentialSecond;
+struct ExponentialFourth;
+struct ExponentialSixth;
+struct ExponentialEighth;
+struct ProjectionFirst;
+struct ProjectionSecond;
+struct ProjectionFourth;
+struct ProjectionSixth;
+struct ProjectionEighth;
+struct Collocation;
+struct ToleratedRough;
+struct ToleratedFourth;
+struct ToleratedSixth;
+struct QuaternionExactFirst;
+struct QuaternionExactSecond;
+struct QuaternionExactFourth;
+struct QuaternionExactSixth;
+struct QuaternionCollocation;
+struct QuaternionCollocationLoose;
+struct QuaternionCayleyFirst;
+struct QuaternionCayleySecond;
+struct QuaternionCayleyFourth;
+struct QuaternionCayleySixth;
+struct QuaternionCayleyEighth;
+struct ChordFirst;
+struct ChordSecond;
+struct ChordFourth;
+struct ChordSixth;
+struct ChordEighth;
 
-        fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec<Box<dyn Setting<12>>> {
-            let momentum = inertia * VELOCITY;
-            vec![$($(
-                declared($label, $module::$name::Top { inertia, weight, center }, ($start(), momentum), $flat),
-            )*)*]
-        }
-    };
-    (@orders $module:ident, $declared:tt, [$($name:ident $order:literal),*]) => {
-        mod $module {
-            $(tops!(@one $name, $order, $declared);)*
-        }
-    };
-    (@one $name:ident, $order:literal, {$($declared:tt)*}) => {
-        pub mod $name {
-            use clebsch::Clebsch;
-            use nalgebra::{Matrix3, Vector3};
-
-            /// A body about a pivot.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch($($declared)*, order = $order)]
-            pub struct Top {
-                /// Inertia tensor about the pivot, kg·m².
-                #[clebsch(symmetric)]
-                pub inertia: Matrix3<f64>,
-                /// m·g, N.
-                pub weight: f64,
-                /// Centre of mass in the body frame, m.
-                pub center: Vector3<f64>,
-            }
-        }
-    };
+/// A body about a pivot, in one form after another, in every order.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    potential  = |R| self.weight * (R * self.center).z,
+    method ExactFirst         = (order = 1, discretization = exact),
+    method ExactSecond        = (order = 2, discretization = exact),
+    method ExactFourth        = (order = 4, discretization = exact),
+    method ExactSixth         = (order = 6, discretization = exact),
+    method Compensated        = (order = 6, discretization = exact, summation = compensated),
+    method MoserVeselovFirst  = (order = 1, discretization = moser_veselov),
+    method MoserVeselovSecond = (order = 2, discretization = moser_veselov),
+    method MoserVeselovFourth = (order = 4, discretization = moser_veselov),
+    method MoserVeselovSixth  = (order = 6, discretization = moser_veselov),
+    method MoserVeselovEighth = (order = 8, discretization = moser_veselov),
+    method CayleyFirst        = (order = 1, discretization = cayley),
+    method CayleySecond       = (order = 2, discretization = cayley),
+    method CayleyFourth       = (order = 4, discretization = cayley),
+    method CayleySixth        = (order = 6, discretization = cayley),
+    method CayleyEighth       = (order = 8, discretization = cayley),
+    method ExponentialFirst   = (order = 1, discretization = exponential),
+    method ExponentialSecond  = (order = 2, discretization = exponential),
+    method ExponentialFourth  = (order = 4, discretization = exponential),
+    method ExponentialSixth   = (order = 6, discretization = exponential),
+    method ExponentialEighth  = (order = 8, discretization = exponential),
+    method ProjectionFirst    = (order = 1, discretization = projection),
+    method ProjectionSecond   = (order = 2, discretization = projection),
+    method ProjectionFourth   = (order = 4, discretization = projection),
+    method ProjectionSixth    = (order = 6, discretization = projection),
+    method ProjectionEighth   = (order = 8, discretization = projection),
+    method Collocation        = (order = 16),
+    method ToleratedRough     = (order = 4, discretization = exact, tolerance = 1e-4),
+    method ToleratedFourth    = (order = 4, discretization = exact, tolerance = 1e-7),
+    method ToleratedSixth     = (order = 6, discretization = exact, tolerance = 1e-10),
+)]
+struct Top {
+    /// Inertia tensor about the pivot, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
+    /// m·g, N.
+    weight: f64,
+    /// Centre of mass in the body frame, m.
+    center: Vector3<f64>,
 }
 
-tops! {
-    exact, "exact", tilted, pack, [first 1, second 2, fourth 4, sixth 6], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = exact
-    };
-    compensated, "exact compensated", tilted, pack, [sixth 6], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = exact,
-        summation = compensated
-    };
-    quaternion_exact, "quaternion exact", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6], {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |Q| self.weight * (Q * self.center).z,
-        discretization = exact
-    };
-    moser_veselov, "moser_veselov", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = moser_veselov
-    };
-    cayley, "cayley", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = cayley
-    };
-    exponential, "exponential", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = exponential
-    };
-    projection, "projection", tilted, pack, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z,
-        discretization = projection
-    };
-    chord, "quaternion chord", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        cost = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
-        potential = |Q| self.weight * (Q * self.center).z
-    };
-    collocated, "collocation", tilted, pack, [sixteenth 16], {
-        action = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |R| self.weight * (R * self.center).z
-    };
-    quaternion_collocated, "quaternion collocation", tilted_quaternion, pack_quaternion, [sixteenth 16], {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |Q| self.weight * (Q * self.center).z
-    };
-    quaternion, "quaternion cayley", tilted_quaternion, pack_quaternion, [first 1, second 2, fourth 4, sixth 6, eighth 8], {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |Q| self.weight * (Q * self.center).z,
-        discretization = cayley
-    };
+/// The same body by unit quaternions.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SU<2>, Q: SU<2>| Q * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    potential  = |Q| self.weight * (Q * self.center).z,
+    method QuaternionExactFirst       = (order = 1, discretization = exact),
+    method QuaternionExactSecond      = (order = 2, discretization = exact),
+    method QuaternionExactFourth      = (order = 4, discretization = exact),
+    method QuaternionExactSixth       = (order = 6, discretization = exact),
+    method QuaternionCollocation      = (order = 16),
+    method QuaternionCollocationLoose = (order = 16, tolerance = 1e-10),
+    method QuaternionCayleyFirst      = (order = 1, discretization = cayley),
+    method QuaternionCayleySecond     = (order = 2, discretization = cayley),
+    method QuaternionCayleyFourth     = (order = 4, discretization = cayley),
+    method QuaternionCayleySixth      = (order = 6, discretization = cayley),
+    method QuaternionCayleyEighth     = (order = 8, discretization = cayley),
+)]
+struct Turn {
+    /// Inertia tensor about the pivot, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
+    /// m·g, N.
+    weight: f64,
+    /// Centre of mass in the body frame, m.
+    center: Vector3<f64>,
 }
 
-/// Steps of order 16 whose sweeps end early.
-#[rustfmt::skip]
-mod loose {
-    tops!(@one sixteenth, 16, {
-        action = |F: SU<2>, Q: SU<2>| Q * F,
-        lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        potential = |Q| self.weight * (Q * self.center).z,
-        tolerance = 1e-10
-    });
+/// The same by unit quaternions and the chord of the rotation of a step.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action    = |F: SU<2>, Q: SU<2>| Q * F,
+    cost      = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
+    potential = |Q| self.weight * (Q * self.center).z,
+    method ChordFirst  = (order = 1),
+    method ChordSecond = (order = 2),
+    method ChordFourth = (order = 4),
+    method ChordSixth  = (order = 6),
+    method ChordEighth = (order = 8),
+)]
+struct Chord {
+    /// Inertia tensor about the pivot, kg·m².
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
+    /// m·g, N.
+    weight: f64,
+    /// Centre of mass in the body frame, m.
+    center: Vector3<f64>,
 }
 
-/// Exact drifts whose series end early.
-macro_rules! tolerant {
-    ($($name:ident $order:literal $tolerance:literal;)*) => {
-        mod tolerant {
-            $(tops!(@one $name, $order, {
-                action = |F: SO<3>, R: SO<3>| R * F,
-                lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-                potential = |R| self.weight * (R * self.center).z,
-                discretization = exact,
-                tolerance = $tolerance
-            });)*
-        }
-
-        fn tolerant(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec<Box<dyn Setting<12>>> {
-            let momentum = inertia * VELOCITY;
-            vec![$(
-                declared("exact", tolerant::$name::Top { inertia, weight, center }, (tilted(), momentum), pack)
-                    .to($tolerance),
-            )*]
-        }
-    };
-}
-tolerant! {
-    rough 4 1e-4;
-    fourth 4 1e-7;
-    sixth 6 1e-10;
+fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec<Box<dyn Setting<12>>> {
+    let top = Top { inertia, weight, center };
+    let turn = Turn { inertia, weight, center };
+    let chord = Chord { inertia, weight, center };
+    let start = (tilted(), inertia * VELOCITY);
+    let turned = (tilted_quaternion(), inertia * VELOCITY);
+    vec![
+        declared(ExactFirst, "exact", top, start, pack),
+        declared(ExactSecond, "exact", top, start, pack),
+        declared(ExactFourth, "exact", top, start, pack),
+        declared(ExactSixth, "exact", top, start, pack),
+        declared(Compensated, "exact compensated", top, start, pack),
+        declared(QuaternionExactFirst, "quaternion exact", turn, turned, pack_quaternion),
+        declared(QuaternionExactSecond, "quaternion exact", turn, turned, pack_quaternion),
+        declared(QuaternionExactFourth, "quaternion exact", turn, turned, pack_quaternion),
+        declared(QuaternionExactSixth, "quaternion exact", turn, turned, pack_quaternion),
+        declared(MoserVeselovFirst, "moser_veselov", top, start, pack),
+        declared(MoserVeselovSecond, "moser_veselov", top, start, pack),
+        declared(MoserVeselovFourth, "moser_veselov", top, start, pack),
+        declared(MoserVeselovSixth, "moser_veselov", top, start, pack),
+        declared(MoserVeselovEighth, "moser_veselov", top, start, pack),
+        declared(CayleyFirst, "cayley", top, start, pack),
+        declared(CayleySecond, "cayley", top, start, pack),
+        declared(CayleyFourth, "cayley", top, start, pack),
+        declared(CayleySixth, "cayley", top, start, pack),
+        declared(CayleyEighth, "cayley", top, start, pack),
+        declared(ExponentialFirst, "exponential", top, start, pack),
+        declared(ExponentialSecond, "exponential", top, start, pack),
+        declared(ExponentialFourth, "exponential", top, start, pack),
+        declared(ExponentialSixth, "exponential", top, start, pack),
+        declared(ExponentialEighth, "exponential", top, start, pack),
+        declared(ProjectionFirst, "projection", top, start, pack),
+        declared(ProjectionSecond, "projection", top, start, pack),
+        declared(ProjectionFourth, "projection", top, start, pack),
+        declared(ProjectionSixth, "projection", top, start, pack),
+        declared(ProjectionEighth, "projection", top, start, pack),
+        declared(ChordFirst, "quaternion chord", chord, turned, pack_quaternion),
+        declared(ChordSecond, "quaternion chord", chord, turned, pack_quaternion),
+        declared(ChordFourth, "quaternion chord", chord, turned, pack_quaternion),
+        declared(ChordSixth, "quaternion chord", chord, turned, pack_quaternion),
+        declared(ChordEighth, "quaternion chord", chord, turned, pack_quaternion),
+        declared(Collocation, "collocation", top, start, pack),
+        declared(QuaternionCollocation, "quaternion collocation", turn, turned, pack_quaternion),
+        declared(QuaternionCayleyFirst, "quaternion cayley", turn, turned, pack_quaternion),
+        declared(QuaternionCayleySecond, "quaternion cayley", turn, turned, pack_quaternion),
+        declared(QuaternionCayleyFourth, "quaternion cayley", turn, turned, pack_quaternion),
+        declared(QuaternionCayleySixth, "quaternion cayley", turn, turned, pack_quaternion),
+        declared(QuaternionCayleyEighth, "quaternion cayley", turn, turned, pack_quaternion),
+        // series of drifts that end early
+        declared(ToleratedRough, "exact", top, start, pack).to(1e-4),
+        declared(ToleratedFourth, "exact", top, start, pack).to(1e-7),
+        declared(ToleratedSixth, "exact", top, start, pack).to(1e-10),
+        // sweeps that end early
+        declared(QuaternionCollocationLoose, "quaternion collocation", turn, turned, pack_quaternion).to(1e-10),
+        declared(ExactFirst, "exact synchronized", top, start, pack).synchronized(),
+    ]
 }
 
 fn tilted() -> Matrix3<f64> {
@@ -187,12 +244,6 @@ pub fn scene() -> Scene<12> {
         momentum.dot(&(inverse * momentum)) / 2.0 + weight * (attitude * center).z
     };
     let mut settings = declarations(inertia, weight, center);
-    settings.extend(tolerant(inertia, weight, center));
-    let loose = loose::sixteenth::Top { inertia, weight, center };
-    settings
-        .push(declared("quaternion collocation", loose, (tilted_quaternion(), momentum), pack_quaternion).to(1e-10));
-    let first = exact::first::Top { inertia, weight, center };
-    settings.push(declared("exact synchronized", first, (tilted(), momentum), pack).synchronized());
     let start = compact(&tilted_quaternion(), &momentum);
     settings.extend(Equation { field: fast, start, flat: unpack_compact }.settings());
     Scene {

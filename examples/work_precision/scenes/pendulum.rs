@@ -3,6 +3,7 @@
 use crate::classical::Equation;
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
+use clebsch::Clebsch;
 use nalgebra::{SVector, Vector3, Vector6};
 use std::hint::black_box;
 
@@ -12,71 +13,91 @@ const MOMENTUM: Vector3<f64> = Vector3::new(1.0, 0.0, 0.5);
 /// Position and angular momentum q × q̇.
 type Bob = SVector<f64, 6>;
 
-/// The same pendulum in one form after another, in every order.
-macro_rules! pendulums {
-    ($($module:ident, $label:literal, {$($declared:tt)*};)*) => {
-        $(pendulums!(@orders $module, {$($declared)*}, [first 1, second 2, fourth 4, sixth 6, eighth 8]);)*
+struct ChordFirst;
+struct ChordSecond;
+struct ChordFourth;
+struct ChordSixth;
+struct ChordEighth;
+struct CayleyFirst;
+struct CayleySecond;
+struct CayleyFourth;
+struct CayleySixth;
+struct CayleyEighth;
+struct ExponentialFirst;
+struct ExponentialSecond;
+struct ExponentialFourth;
+struct ExponentialSixth;
+struct ExponentialEighth;
+struct Collocation;
 
-        fn declarations(gravity: f64) -> Vec<Box<dyn Setting<6>>> {
-            let start = (POSITION, MOMENTUM);
-            vec![$(
-                declared($label, $module::first::Pendulum { mass: 1.0, gravity }, start, pack),
-                declared($label, $module::second::Pendulum { mass: 1.0, gravity }, start, pack),
-                declared($label, $module::fourth::Pendulum { mass: 1.0, gravity }, start, pack),
-                declared($label, $module::sixth::Pendulum { mass: 1.0, gravity }, start, pack),
-                declared($label, $module::eighth::Pendulum { mass: 1.0, gravity }, start, pack),
-            )*]
-        }
-    };
-    (@orders $module:ident, $declared:tt, [$($name:ident $order:literal),*]) => {
-        mod $module {
-            $(pendulums!(@one $name, $order, $declared);)*
-        }
-    };
-    (@one $name:ident, $order:literal, {$($declared:tt)*}) => {
-        pub mod $name {
-            use clebsch::Clebsch;
-
-            /// A point on the unit sphere.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch($($declared)*, order = $order)]
-            pub struct Pendulum {
-                /// Mass of the bob, kg.
-                pub mass: f64,
-                /// g, m/s².
-                pub gravity: f64,
-            }
-        }
-    };
+/// A point on the unit sphere, by the chord of the rotation of a step.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| self.mass * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.mass * self.gravity * q.z,
+    method ChordFirst  = (order = 1),
+    method ChordSecond = (order = 2),
+    method ChordFourth = (order = 4),
+    method ChordSixth  = (order = 6),
+    method ChordEighth = (order = 8),
+)]
+struct Chord {
+    /// Mass of the bob, kg.
+    mass: f64,
+    /// g, m/s².
+    gravity: f64,
 }
 
-pendulums! {
-    chord, "chord", {
-        action = |F: SO<3>, q: Unit<Vector3>| F * q,
-        cost = |h, F| self.mass * (F - I).norm_squared() / (4 * h),
-        potential = |q| self.mass * self.gravity * q.z
-    };
-    cayley, "cayley", {
-        action = |F: SO<3>, q: Unit<Vector3>| F * q,
-        lagrangian = |omega| self.mass * omega.norm_squared() / 2,
-        potential = |q| self.mass * self.gravity * q.z,
-        discretization = cayley
-    };
-    exponential, "exponential", {
-        action = |F: SO<3>, q: Unit<Vector3>| F * q,
-        lagrangian = |omega| self.mass * omega.norm_squared() / 2,
-        potential = |q| self.mass * self.gravity * q.z,
-        discretization = exponential
-    };
+/// The same point by its Lagrangian, in one form after another.
+#[derive(Clebsch, Clone, Copy, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, q: Unit<Vector3>| F * q,
+    lagrangian = |omega| self.mass * omega.norm_squared() / 2,
+    potential  = |q| self.mass * self.gravity * q.z,
+    method CayleyFirst       = (order = 1, discretization = cayley),
+    method CayleySecond      = (order = 2, discretization = cayley),
+    method CayleyFourth      = (order = 4, discretization = cayley),
+    method CayleySixth       = (order = 6, discretization = cayley),
+    method CayleyEighth      = (order = 8, discretization = cayley),
+    method ExponentialFirst  = (order = 1, discretization = exponential),
+    method ExponentialSecond = (order = 2, discretization = exponential),
+    method ExponentialFourth = (order = 4, discretization = exponential),
+    method ExponentialSixth  = (order = 6, discretization = exponential),
+    method ExponentialEighth = (order = 8, discretization = exponential),
+    method Collocation       = (order = 16),
+)]
+struct Pendulum {
+    /// Mass of the bob, kg.
+    mass: f64,
+    /// g, m/s².
+    gravity: f64,
 }
 
-#[rustfmt::skip]
-mod collocated {
-    pendulums!(@one sixteenth, 16, {
-        action = |F: SO<3>, q: Unit<Vector3>| F * q,
-        lagrangian = |omega| self.mass * omega.norm_squared() / 2,
-        potential = |q| self.mass * self.gravity * q.z
-    });
+/// Every form in every order.
+fn declarations(gravity: f64) -> Vec<Box<dyn Setting<6>>> {
+    let start = (POSITION, MOMENTUM);
+    let chord = Chord { mass: 1.0, gravity };
+    let pendulum = Pendulum { mass: 1.0, gravity };
+    vec![
+        declared(ChordFirst, "chord", chord, start, pack),
+        declared(ChordSecond, "chord", chord, start, pack),
+        declared(ChordFourth, "chord", chord, start, pack),
+        declared(ChordSixth, "chord", chord, start, pack),
+        declared(ChordEighth, "chord", chord, start, pack),
+        declared(CayleyFirst, "cayley", pendulum, start, pack),
+        declared(CayleySecond, "cayley", pendulum, start, pack),
+        declared(CayleyFourth, "cayley", pendulum, start, pack),
+        declared(CayleySixth, "cayley", pendulum, start, pack),
+        declared(CayleyEighth, "cayley", pendulum, start, pack),
+        declared(ExponentialFirst, "exponential", pendulum, start, pack),
+        declared(ExponentialSecond, "exponential", pendulum, start, pack),
+        declared(ExponentialFourth, "exponential", pendulum, start, pack),
+        declared(ExponentialSixth, "exponential", pendulum, start, pack),
+        declared(ExponentialEighth, "exponential", pendulum, start, pack),
+        declared(Collocation, "collocation", pendulum, start, pack),
+        declared(ExponentialFirst, "exponential synchronized", pendulum, start, pack).synchronized(),
+    ]
 }
 
 /// g = 1.
@@ -87,10 +108,6 @@ pub fn scene() -> Scene<6> {
         pack(&n.cross(&q), &(Vector3::new(-q.y, q.x, 0.0) * gravity))
     };
     let mut settings = declarations(gravity);
-    let collocated = collocated::sixteenth::Pendulum { mass: 1.0, gravity };
-    settings.push(declared("collocation", collocated, (POSITION, MOMENTUM), pack));
-    let first = exponential::first::Pendulum { mass: 1.0, gravity };
-    settings.push(declared("exponential synchronized", first, (POSITION, MOMENTUM), pack).synchronized());
     settings.extend(Equation { field, start: pack(&POSITION, &MOMENTUM), flat: |y| *y }.settings());
     Scene {
         name: "pendulum",

@@ -12,7 +12,7 @@ use syn::{Expr, Type};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
-/// The work of one expansion: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
+/// The work of one expansion, for each of its methods: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
 /// the systems of the tests take less than a tenth of it.
 pub const WORK: u64 = 20_000_000;
 
@@ -34,7 +34,9 @@ pub(crate) fn within<T>(
     stages: impl FnOnce(&Cell<Stage>) -> Result<T, Diagnostics>,
 ) -> Result<T, Diagnostics> {
     let stage = Cell::new(Stage::Model);
-    work::within(WORK, || stages(&stage)).unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
+    let programs = 1 + declaration.methods.len() as u64;
+    work::within(programs * WORK, || stages(&stage))
+        .unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
 }
 
 /// What to write where the whole is too large.
@@ -81,6 +83,7 @@ fn culprit(declaration: &Declaration) -> Option<(Place, &'static str, &'static s
     let is_small = |without: Without| {
         let mut rest = declaration.clone();
         without(&mut rest);
+        rest.methods.clear();
         let stages = || crate::program(&Graph::new(), &rest, &Cell::new(Stage::Model)).is_ok();
         work::within(WORK / 4, stages) == Ok(true)
     };
