@@ -456,7 +456,7 @@ impl Formulas<'_> {
     }
 
     /// Whether F of a factor has its momentum from the constants of free rotation.
-    pub fn is_free_rotation(&self, k: usize) -> bool {
+    pub(super) fn is_free_rotation(&self, k: usize) -> bool {
         exact::is_free_rotation(&self.model, k)
     }
 
@@ -510,7 +510,7 @@ impl Formulas<'_> {
     }
 
     /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.
-    pub fn is_solved_after_others(&self, equation: &Equation<'_>) -> bool {
+    pub(super) fn is_solved_after_others(&self, equation: &Equation<'_>) -> bool {
         let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));
         equation.formula.is_some_and(holds)
     }

@@ -74,7 +74,7 @@ impl<'g> Formulas<'g> {
     }
 
     /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
-    pub fn advance(&self) -> Vec<Expr<'g>> {
+    pub(super) fn advance(&self) -> Vec<Expr<'g>> {
         if self.is_compensated() { self.displacements() } else { self.at_increments(&self.model.action) }
     }
 

@@ -22,13 +22,13 @@ impl<'g> Formulas<'g> {
     }
 
     /// Φ_{I+D}(q) − q for each leaf of the configuration.
-    pub fn displacements(&self) -> Vec<Expr<'g>> {
+    pub(super) fn displacements(&self) -> Vec<Expr<'g>> {
         let (inverses, added) = (self.inverses(), self.displacements_by_letters());
         added.into_iter().map(|added| added.substitute(&inverses)).collect()
     }
 
     /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
-    pub fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+    pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         let (inverses, momenta) = (self.inverses(), self.symbols.momenta.iter().zip(&substep.unchanged).enumerate());
         let added = |(k, (m, unchanged)): (usize, (&Expr<'g>, &bool))| match unchanged {
             true => self.model.graph.zero(m.shape()),
@@ -38,13 +38,13 @@ impl<'g> Formulas<'g> {
     }
 
     /// Whether the move leaves the momentum as it is.
-    pub fn keeps_momentum(&self, substep: &Substep<'g>) -> bool {
+    pub(super) fn keeps_momentum(&self, substep: &Substep<'g>) -> bool {
         let carries = substep.unchanged.contains(&false) || (substep.rest.is_some() && !self.is_compensated());
         substep.other.is_none() && !carries
     }
 
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
-    pub fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+    pub(super) fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {
             return None;
         }

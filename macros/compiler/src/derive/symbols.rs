@@ -73,7 +73,7 @@ impl<'g> Symbols<'g> {
     }
 
     /// The chart coordinates of a factor in one vector.
-    pub fn stacked_coordinates(&self, factor: usize) -> Expr<'g> {
+    pub(super) fn stacked_coordinates(&self, factor: usize) -> Expr<'g> {
         let shape = self.logarithms[factor].shape();
         let blocks = self.blocks.iter().filter(|block| block.factor == factor);
         let start = self.blocks.iter().find(|block| block.factor == factor).map_or(0, |block| block.offset);
@@ -124,12 +124,12 @@ impl<'g> Symbols<'g> {
     }
 
     /// The element of a factor in its chart.
-    pub fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+    pub(super) fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
         self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))
     }
 
     /// The increment F − I of a factor in its chart, without cancellation.
-    pub fn chart_increment(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+    pub(super) fn chart_increment(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
         let (numerator, denominator) =
             self.charts[factor].increment(model.factors[factor].group, &self.coordinates(factor));
         numerator / denominator

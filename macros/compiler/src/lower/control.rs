@@ -1,9 +1,8 @@
 //! The kernels of a choice of inputs: the step that inputs make, price, bounds and the price of the end, each with its derivatives.
 
-use super::kernel::kernel;
-use super::stepping::of_row;
+use super::made::{of_matrices, of_row, plain, stack};
 use super::variation::orbit_metric;
-use super::{Hoisting, Kernel, Scalars, of_matrices, plain, stack};
+use super::{Hoisting, Kernel, Scalars};
 use crate::derive::{Bend, Choice, Formulas, Id, MatrixForm};
 
 /// The kernels of a choice of inputs.
@@ -63,11 +62,11 @@ pub(super) fn control(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<
     let step = steering.step.as_ref().map(|step| step_of_inputs(formulas, &choice.step_expanded(step), scalars));
     let bend = bend.map(|bend| bend_kernels(&choice, bend, scalars));
     let orbit_metric = orbit_metric(formulas, scalars);
-    let approach = stack(scalars, &steering.approach);
+    let approach = stack(scalars, &steering.approach, Hoisting::Nothing);
     let price = plain(scalars, &[steering.price.value]);
     let price_expanded = bend.as_ref().map(|_| made(scalars, &choice.price_expanded()));
     let price_of_time = made(scalars, &[choice.price_of_time()]);
-    let bounds = stack(scalars, formulas.value(Id::Bounds).unwrap_or_default());
+    let bounds = stack(scalars, formulas.value(Id::Bounds).unwrap_or_default(), Hoisting::Nothing);
     let bounds_expanded = made(scalars, &choice.bounds_expanded());
     Some(ControlKernels {
         step,
@@ -94,21 +93,13 @@ fn made(scalars: &mut Scalars, matrices: &[MatrixForm<'_>]) -> Kernel {
 }
 
 fn step_of_inputs(formulas: &Formulas<'_>, expanded: &[MatrixForm<'_>], scalars: &mut Scalars) -> StepOfInputs {
-    let expanded = super::outputs(scalars, expanded);
-    StepOfInputs {
-        increment: of_row(formulas, Id::Increment, scalars),
-        advance: of_row(formulas, Id::Advance, scalars),
-        expand: kernel(scalars, &expanded, Hoisting::Nothing),
-    }
+    let expand = made(scalars, expanded);
+    let increment = of_row(formulas, Id::Increment, scalars);
+    StepOfInputs { increment, advance: of_row(formulas, Id::Advance, scalars), expand }
 }
 
 fn bend_kernels<'g>(choice: &Choice<'_, 'g>, bend: &Bend<'g>, scalars: &mut Scalars) -> BendKernels {
-    let by_input = super::outputs(scalars, &choice.by_input(bend));
-    let curvature = super::outputs(scalars, &[choice.bend_curvature(bend)]);
-    let bracket = super::outputs(scalars, &[choice.bracket(bend)]);
-    BendKernels {
-        bracket: kernel(scalars, &bracket, Hoisting::Nothing),
-        by_input: kernel(scalars, &by_input, Hoisting::Nothing),
-        curvature: kernel(scalars, &curvature, Hoisting::Nothing),
-    }
+    let by_input = made(scalars, &choice.by_input(bend));
+    let curvature = made(scalars, &[choice.bend_curvature(bend)]);
+    BendKernels { by_input, curvature, bracket: made(scalars, &[choice.bracket(bend)]) }
 }

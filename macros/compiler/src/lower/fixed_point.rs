@@ -3,8 +3,8 @@
 //! The iteration contracts like h|ω|: for h|ω| from 0.001 to 0.05 it takes five to eight residuals where Newton's method takes two
 //! linearisations with their linear systems, whose code is long.
 
-use super::kernel::kernel;
-use super::{Code, Hoisted, Hoisting, Kernel, Scalars, grids, matrices};
+use super::made::separate;
+use super::{Code, Hoisted, Hoisting, Kernel, Scalars, matrices};
 use crate::derive::{Equation, Formulas, Solution};
 use crate::model::Solver;
 
@@ -36,8 +36,8 @@ pub(super) fn residual<'g>(
         return None;
     }
     let (mut constants, mut more) = (hoisted.clone(), terms.clone());
-    let outputs = grids(scalars, &[formulas.residual_by_halves(equation)]);
-    let residual = kernel(scalars, &outputs, Hoisting::Terms(&mut constants, &mut more));
+    let residual =
+        separate(scalars, &[formulas.residual_by_halves(equation)], Hoisting::Terms(&mut constants, &mut more));
     let m = equation.components.len();
     let iteration = operations(&residual) + operations(predict) + 4 * m;
     let linearization = operations(newton.linearize) + 2 * m * m * (m + 3) / 3;

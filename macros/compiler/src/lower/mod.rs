@@ -12,6 +12,7 @@ mod fixed_point;
 mod form;
 mod grid;
 mod kernel;
+mod made;
 mod matrices;
 mod names;
 mod pairs;
@@ -27,10 +28,11 @@ mod variation;
 use clebsch_symbolic::{Expr, Shape};
 
 use crate::Method;
-use crate::derive::{self, Formulas, Id, MatrixForm, Stencil};
+use crate::derive::{self, Formulas, Id, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Isotropy};
 
+use made::{entries, grids, plain, stack};
 use rare::Rare;
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
@@ -152,7 +154,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
     let rare = Rare::of(&formulas);
     // steps of order 16 carry covectors along
     let lift = match formulas.collocation {
-        Some(_) => stepping::of_row(&formulas, Id::Lift, &mut scalars),
+        Some(_) => made::of_row(&formulas, Id::Lift, &mut scalars),
         None => rare.kernel(&mut scalars, formulas.value(Id::Lift).unwrap_or_default()),
     };
     let variations = variation::variations(&formulas, &mut scalars, &mut hoisted);
@@ -175,22 +177,27 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
         act: asked(Id::Action, &mut scalars),
         // steps of sites map covectors
         momentum_map: if formulas.model.power.is_some() {
-            stack(&mut scalars, &formulas.momentum_map)
+            stack(&mut scalars, &formulas.momentum_map, Hoisting::Nothing)
         } else {
             stacked(Id::MomentumMap, &mut scalars)
         },
-        momentum_of_step: formulas.collocation.as_ref().map(|_| stack(&mut scalars, &formulas.momentum_map)),
+        momentum_of_step: formulas
+            .collocation
+            .as_ref()
+            .map(|_| stack(&mut scalars, &formulas.momentum_map, Hoisting::Nothing)),
         coadjoint: stacked(Id::Coadjoint, &mut scalars),
         legendre: stacked(Id::Legendre, &mut scalars),
         legendre_next: stacked(Id::LegendreNext, &mut scalars),
-        stagger: formulas.value(Id::SynchronizedMomentum).map(|stagger| stack(&mut scalars, stagger)),
+        stagger: formulas
+            .value(Id::SynchronizedMomentum)
+            .map(|stagger| stack(&mut scalars, stagger, Hoisting::Nothing)),
         potential: plain(&mut scalars, formulas.value(Id::PotentialEnergy).unwrap_or_default()),
         inertia: inertia(&formulas, &mut scalars),
         energy_coefficients: (!form.keeps_matrices()).then(|| energy_coefficients(&formulas, &mut scalars)),
         momentum_matrix: asked(Id::MomentumMatrix, &mut scalars),
         momentum_components: stacked(Id::MomentumComponents, &mut scalars),
         velocity: velocity(&formulas, &mut scalars),
-        gyroscopic: formulas.value(Id::Gyroscopic).map(|slope| stack(&mut scalars, slope)),
+        gyroscopic: formulas.value(Id::Gyroscopic).map(|slope| stack(&mut scalars, slope, Hoisting::Nothing)),
         conserved: formulas.value(Id::ConservedMomenta).map(|values| rare.list(&mut scalars, values)),
         membership: membership(&formulas, &mut scalars),
         generator: generator(&formulas, &mut scalars),
@@ -261,66 +268,12 @@ fn gathered<'g>(
     (!links.is_empty() && gathered <= added).then_some(Gathered { stencil, whole, rest })
 }
 
-/// Several expressions, one output each, nothing taken out.
-fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
-    if scalars.keeps_matrices {
-        return matrices::kernel(expressions);
-    }
-    let grids = grids(scalars, expressions);
-    kernel::kernel(scalars, &grids, Hoisting::Nothing)
-}
-
-/// Vectors, one after the other in one output.
-fn stack(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
-    if scalars.keeps_matrices {
-        return matrices::stack(expressions);
-    }
-    let entries: Vec<Scalar> = grids(scalars, expressions).into_iter().flat_map(|(_, entries)| entries).collect();
-    kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing)
-}
-
-fn grids(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
-    let mut lowering = Lowering { scalars };
-    expressions.iter().map(|&expr| (expr.shape(), lowering.grid(expr).entries.clone())).collect()
-}
-
-/// The outputs of a kernel that computes matrices.
-fn outputs(scalars: &mut Scalars, matrices: &[MatrixForm<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
-    matrices.iter().map(|matrix| output(scalars, matrix)).collect()
-}
-
-fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> (Shape, Vec<Scalar>) {
-    let mut entries = |parts: &[Expr<'_>]| -> Vec<Scalar> {
-        grids(scalars, parts).into_iter().flat_map(|(_, entries)| entries).collect()
-    };
-    match matrix {
-        MatrixForm::Whole(expression) => (expression.shape(), entries(&[*expression])),
-        MatrixForm::Entries(shape, parts) => (*shape, entries(parts)),
-        MatrixForm::Columns(columns) => {
-            let columns: Vec<Vec<Scalar>> = columns.iter().map(|parts| entries(parts)).collect();
-            let shape = Shape::new(columns.first().map_or(0, Vec::len), columns.len());
-            (shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
-        }
-    }
-}
-
-/// A kernel that computes matrices: with whole matrices where all of them are such.
-fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoisting: Hoisting<'_>) -> Kernel {
-    match MatrixForm::wholes(forms).filter(|_| scalars.keeps_matrices) {
-        Some(wholes) => matrices::kernel(&wholes),
-        None => {
-            let outputs = outputs(scalars, forms);
-            kernel::kernel(scalars, &outputs, hoisting)
-        }
-    }
-}
-
 /// κ of an inertia κI, else Σ; where matrices are kept Σξ.
 fn inertia(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
     match formulas.uniform_inertia {
         Some(kappa) => plain(scalars, &[kappa]),
         None if !scalars.keeps_matrices => plain(scalars, &[formulas.inertia]),
-        None => stack(scalars, formulas.value(Id::Inertia).unwrap_or_default()),
+        None => stack(scalars, formulas.value(Id::Inertia).unwrap_or_default(), Hoisting::Nothing),
     }
 }
 
@@ -330,7 +283,7 @@ fn generator(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> {
         return None;
     }
     Some(match formulas.projection.as_ref().filter(|_| scalars.keeps_matrices) {
-        Some(projection) => stack(scalars, projection),
+        Some(projection) => stack(scalars, projection, Hoisting::Nothing),
         None => plain(scalars, &[formulas.generator_matrix()]),
     })
 }
@@ -366,8 +319,8 @@ fn membership(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Option<Kernel> 
     if scalars.keeps_matrices {
         return Some(matrices::largest(equations));
     }
-    let entries = grids(scalars, equations).into_iter().flat_map(|(_, entries)| entries);
-    let entries: Vec<Scalar> = entries.filter(|&entry| !scalars.is_zero(entry)).collect();
+    let all = entries(scalars, equations).into_iter();
+    let entries: Vec<Scalar> = all.filter(|&entry| !scalars.is_zero(entry)).collect();
     (!entries.is_empty())
         .then(|| kernel::kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Nothing))
 }

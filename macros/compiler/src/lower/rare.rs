@@ -2,7 +2,8 @@
 
 use clebsch_symbolic::Expr;
 
-use super::{Kernel, Scalars, matrices, plain, stack};
+use super::made::{plain, stack};
+use super::{Hoisting, Kernel, Scalars, matrices};
 use crate::derive::Formulas;
 use crate::lower::form::has_quaternions;
 
@@ -24,11 +25,19 @@ impl Rare {
 
     /// Vectors, one after the other in one output.
     pub(super) fn stack(&self, scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
-        if self.writes_entries { stack(scalars, expressions) } else { matrices::short_stack(expressions) }
+        if self.writes_entries {
+            stack(scalars, expressions, Hoisting::Nothing)
+        } else {
+            matrices::short_stack(expressions)
+        }
     }
 
     /// Numbers, one after the other in one output.
     pub(super) fn list(&self, scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
-        if self.writes_entries { stack(scalars, expressions) } else { matrices::short_list(expressions) }
+        if self.writes_entries {
+            stack(scalars, expressions, Hoisting::Nothing)
+        } else {
+            matrices::short_list(expressions)
+        }
     }
 }

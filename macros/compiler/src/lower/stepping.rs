@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Expr, Role, Shape, Zero};
+use clebsch_symbolic::{Role, Zero};
 
 use super::fixed_point;
 use super::kernel::kernel;
+use super::made::{of_matrices, of_row, plain, separate, stack};
 use super::matrices;
-use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalar, Scalars, grids, of_matrices, plain};
+use super::{Code, Cost, Hoisted, Hoisting, Kernel, Scalars};
 use crate::derive::{Formulas, Id, Solution, Structure};
 
 /// The kernels of one substep.
@@ -141,8 +142,8 @@ pub(super) fn splitting(
     let splitting = formulas.splitting.as_ref()?;
     let gradient = formulas.value(Id::SplittingGradient)?;
     Some(SplittingKernels {
-        kick: stack(scalars, hoisted, &splitting.kick),
-        gradient: separate(scalars, hoisted, gradient),
+        kick: stack(scalars, &splitting.kick, Hoisting::Constants(hoisted)),
+        gradient: separate(scalars, gradient, Hoisting::Constants(hoisted)),
     })
 }
 
@@ -155,9 +156,9 @@ pub(super) fn collocation(
     let collocation = formulas.collocation.as_ref()?;
     let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
     Some(CollocationKernels {
-        guess: stack(scalars, hoisted, formulas.value(Id::Guess)?),
-        slope: separate(scalars, hoisted, &slopes),
-        lift: separate(scalars, hoisted, &collocation.lift),
+        guess: stack(scalars, formulas.value(Id::Guess)?, Hoisting::Constants(hoisted)),
+        slope: separate(scalars, &slopes, Hoisting::Constants(hoisted)),
+        lift: separate(scalars, &collocation.lift, Hoisting::Constants(hoisted)),
     })
 }
 
@@ -165,25 +166,29 @@ fn step(formulas: &Formulas<'_>, index: usize, scalars: &mut Scalars, hoisted: &
     let substep = &formulas.substeps[index];
     let numbers = 0..substep.equations.len();
     let solves = numbers.map(|number| solve(formulas, (index, number), scalars, hoisted)).collect();
-    let mut stacked = |id: Id| formulas.value(id).map(|parts| stack(scalars, hoisted, parts));
+    let mut stacked = |id: Id| formulas.value(id).map(|parts| stack(scalars, parts, Hoisting::Constants(hoisted)));
     let start_force = stacked(Id::StartForce(index));
     let start_moving = stacked(Id::MovingForce(index));
     let end_force = stacked(Id::EndForce(index));
     let start = stacked(Id::StartKick(index));
     let end = stacked(Id::EndKick(index));
-    let mut separated = |id: Id| formulas.value(id).map(|parts| separate(scalars, hoisted, parts));
+    let mut separated = |id: Id| formulas.value(id).map(|parts| separate(scalars, parts, Hoisting::Constants(hoisted)));
     let start_gradient = separated(Id::StartGradient(index));
     let end_gradient = separated(Id::EndGradient(index));
-    let rest = formulas.value(Id::RestKick(index)).map(|rest| stack(scalars, hoisted, rest));
+    let rest = formulas.value(Id::RestKick(index)).map(|rest| stack(scalars, rest, Hoisting::Constants(hoisted)));
     let coupled_gradient = formulas.value(Id::CoupledGradient(index));
-    let coupled_gradient = coupled_gradient.map(|gradients| separate(scalars, hoisted, gradients));
+    let coupled_gradient = coupled_gradient.map(|gradients| separate(scalars, gradients, Hoisting::Constants(hoisted)));
     let couples = substep.other.is_some();
     let advance = of_row(formulas, Id::Advance, scalars);
     // where F − I and the next momentum are found at once, none is made of the other
     let increment = of_row(formulas, Id::Increment, scalars);
-    let update = formulas
-        .value(Id::MomentumAfter(index))
-        .map(|after| if couples { stack(scalars, hoisted, after) } else { super::stack(scalars, after) });
+    let update = formulas.value(Id::MomentumAfter(index)).map(|after| {
+        if couples {
+            stack(scalars, after, Hoisting::Constants(hoisted))
+        } else {
+            stack(scalars, after, Hoisting::Nothing)
+        }
+    });
     let by_increments = match update.is_some() {
         // the increments are made in any case
         true => advance.cost().total(),
@@ -212,28 +217,6 @@ fn step(formulas: &Formulas<'_>, index: usize, scalars: &mut Scalars, hoisted: &
     }
 }
 
-/// The kernel of a formula, nothing taken out.
-pub(super) fn of_row(formulas: &Formulas<'_>, id: Id, scalars: &mut Scalars) -> Kernel {
-    plain(scalars, formulas.value(id).unwrap_or_default())
-}
-
-/// Vectors in one output, constants taken out.
-fn stack(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) -> Kernel {
-    if scalars.keeps_matrices {
-        return matrices::stack(parts);
-    }
-    let entries: Vec<Scalar> = grids(scalars, parts).into_iter().flat_map(|(_, entries)| entries).collect();
-    kernel(scalars, &[(Shape::vector(entries.len()), entries)], Hoisting::Constants(hoisted))
-}
-
-fn separate(scalars: &mut Scalars, hoisted: &mut Hoisted, parts: &[Expr<'_>]) -> Kernel {
-    if scalars.keeps_matrices {
-        return matrices::kernel(parts);
-    }
-    let grids = grids(scalars, parts);
-    kernel(scalars, &grids, Hoisting::Constants(hoisted))
-}
-
 fn solve<'g>(
     formulas: &Formulas<'g>,
     (index, number): (usize, usize),
@@ -248,8 +231,9 @@ fn solve<'g>(
         (None, _) if scalars.keeps_matrices => formulas.whole_predictor(index, number),
         (None, _) => formulas.value(Id::Predictor(index, number)).map(<[_]>::to_vec),
     };
-    let predict = start.map(|start| stack(scalars, hoisted, &start));
-    let sine_squared = equation.sine_squared.map(|sine_squared| stack(scalars, hoisted, &[sine_squared]));
+    let predict = start.map(|start| stack(scalars, &start, Hoisting::Constants(hoisted)));
+    let sine_squared =
+        equation.sine_squared.map(|sine_squared| stack(scalars, &[sine_squared], Hoisting::Constants(hoisted)));
     let mut residual = None;
     let system = match equation.solution {
         Solution::Linear => formulas.linear_system(equation, scalars.keeps_matrices).to_vec(),

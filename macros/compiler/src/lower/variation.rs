@@ -1,7 +1,7 @@
 //! The kernels of variations: motions of configurations, and edges with their second derivatives.
 
-use super::stepping::of_row;
-use super::{Hoisted, Hoisting, Kernel, Scalars, matrices, of_matrices};
+use super::made::{of_matrices, of_row};
+use super::{Hoisted, Hoisting, Kernel, Scalars, matrices};
 use crate::derive::{EdgeMatrices, Formulas, Id, MatrixForm, Variation};
 
 /// The kernels that variations need beside those of the step.

@@ -12,7 +12,7 @@ const FEWEST_OF_SYLVESTER: usize = 21;
 
 impl<'g> Equation<'g> {
     /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
-    pub fn large_jacobian_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
+    pub(in crate::derive) fn large_jacobian_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
         let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;
         if is_large { self.sylvester_factor(formulas) } else { None }
     }
