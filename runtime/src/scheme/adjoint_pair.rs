@@ -1,9 +1,10 @@
 //! Half a step, and half a step of its adjoint.
 
 use super::kick_drift_kick::{After, changed, first_left};
-use super::substep::{Before, Carry, LeftOf, Moving, inverse_legendre, symmetric};
+use super::substep::{Before, Carry, LeftOf, inverse_legendre, substep, symmetric};
 use super::{Parted, Scheme};
 use crate::parts::Substep;
+use crate::summation::Sums;
 use crate::{Error, Method};
 use core::marker::PhantomData;
 
@@ -86,12 +87,12 @@ fn step<S: Substep<0, M> + Substep<1, M>, M: Method<S>, C: Carry<S>>(
     (q, mu, left): Before<'_, S, M, C::Impulse>,
     u: &S::Input,
 ) -> Result<After<S, M, C>, Error> {
-    let (mut state, impulse) = Moving::start(q, mu, left);
+    let (impulse, rests) = S::Sums::parted(left);
     let kick = C::kick(impulse, || Substep::<0, M>::start_kick(system, constants, t, q));
-    state.substep::<0>(system, constants, t, kick, u)?;
-    state.push(Substep::<0, M>::end_kick(system, constants, t, &state.q));
-    let kick = Substep::<1, M>::start_kick(system, constants, t, &state.q);
-    state.substep::<1>(system, constants, t, kick, u)?;
+    let mut half = substep::<S, M, 0>(system, constants, t, (q, mu), rests, kick, u)?;
+    half.push(Substep::<0, M>::end_kick(system, constants, t, &half.q));
+    let kick = Substep::<1, M>::start_kick(system, constants, t, &half.q);
+    let mut state = substep::<S, M, 1>(system, constants, t, (&half.q, &half.mu), half.rests, kick, u)?;
     let kick = Substep::<1, M>::end_kick(system, constants, t, &state.q);
     state.push(kick);
     Ok(state.end(C::impulse(kick)))

@@ -1,6 +1,6 @@
 //! Kick, drift, kick; or drift and kick, of first order.
 
-use super::substep::{Before, Carry, LeftOf, Moving, inverse_legendre, symmetric};
+use super::substep::{Before, Carry, LeftOf, inverse_legendre, substep, symmetric};
 use super::{Parted, Scheme};
 use crate::parts::{Parts, Substep};
 use crate::summation::Sums;
@@ -109,9 +109,9 @@ fn step<S: Substep<0, M>, M: Method<S>, C: Carry<S>>(
     (q, mu, left): Before<'_, S, M, C::Impulse>,
     u: &S::Input,
 ) -> Result<After<S, M, C>, Error> {
-    let (mut state, impulse) = Moving::start(q, mu, left);
+    let (impulse, rests) = S::Sums::parted(left);
     let kick = C::kick(impulse, || system.start_kick(constants, t, q));
-    state.substep::<0>(system, constants, t, kick, u)?;
+    let mut state = substep::<S, M, 0>(system, constants, t, (q, mu), rests, kick, u)?;
     let kick = system.end_kick(constants, t, &state.q);
     state.push(kick);
     Ok(state.end(C::impulse(kick)))

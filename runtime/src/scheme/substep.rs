@@ -24,7 +24,7 @@ pub(super) type Before<'a, S, M, I> =
 pub(super) struct Moving<S: Parts<M>, M: Method<S>> {
     pub q: S::Configuration,
     pub mu: S::Momentum,
-    rests: RestsOf<S, M>,
+    pub rests: RestsOf<S, M>,
 }
 
 impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
@@ -86,34 +86,66 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
             self.mu = S::Sums::made(&self.mu, &mut self.rests.1, updated);
         }
     }
+}
 
-    /// One substep, from its first kick to the one before its last.
-    ///
-    /// # Errors
-    /// Those of the solve.
-    #[inline(always)]
-    pub fn substep<const K: usize>(
-        &mut self,
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        kick: Option<S::Momentum>,
-        u: &S::Input,
-    ) -> Result<(), Error>
-    where
-        S: Substep<K, M>,
-    {
-        self.push(kick);
-        self.push(system.start_force(constants, t, &self.q, u));
-        let x = system.solve(constants, t, &self.q, &at_rest::<S, M, K>(system, constants, t, &self.q, self.mu), u)?;
-        let motion = system.motion(&x, || system.increment(&x));
-        self.push(system.moving_force(constants, t, &self.q, &x, u));
-        let from = self.q;
-        self.advance(system, &motion);
-        self.update(system.update(constants, t, &from, &self.mu, &motion));
-        self.push(system.end_force(constants, t, &self.q, &x, u));
-        Ok(())
+/// One substep, from its first kick to the one before its last.
+///
+/// What does not change stays where it is, and is not copied.
+///
+/// # Errors
+/// Those of the solve.
+#[inline(always)]
+pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
+    system: &S,
+    constants: &M::Constants,
+    t: S::Scalar,
+    (q, mu): (&S::Configuration, &S::Momentum),
+    mut rests: RestsOf<S, M>,
+    kick: Option<S::Momentum>,
+    u: &S::Input,
+) -> Result<Moving<S, M>, Error> {
+    let add = |mu: &S::Momentum, kick: &S::Momentum, rest: &mut _| S::Sums::sum(mu, rest, kick);
+    let mut kicked = None;
+    let mut forced = None;
+    let mut at_rest = None;
+    let mut moving = None;
+    let mu = with(mu, kick, &mut kicked, |mu, kick| add(mu, kick, &mut rests.1));
+    let force = system.start_force(constants, t, q, u);
+    let mu = with(mu, force, &mut forced, |mu, kick| add(mu, kick, &mut rests.1));
+    let rest = rest_apart::<S, M, K>(system, constants, t, q);
+    let target = with(mu, rest, &mut at_rest, |mu, rest| plus(*mu, Some(*rest)));
+    let x = system.solve(constants, t, q, target, u)?;
+    let motion = system.motion(&x, || system.increment(&x));
+    let force = system.moving_force(constants, t, q, &x, u);
+    let mu = with(mu, force, &mut moving, |mu, kick| add(mu, kick, &mut rests.1));
+    let next = S::Sums::made(q, &mut rests.0, system.advance(q, &motion));
+    let mu = match system.update(constants, t, q, mu, &motion) {
+        Some(updated) => S::Sums::made(mu, &mut rests.1, updated),
+        None => *mu,
+    };
+    let mut state = Moving { q: next, mu, rests };
+    state.push(system.end_force(constants, t, &next, &x, u));
+    Ok(state)
+}
+
+/// A sum in its place, or the number itself where there is nothing to add.
+#[inline(always)]
+fn with<'a, V>(number: &'a V, part: Option<V>, place: &'a mut Option<V>, add: impl FnOnce(&V, &V) -> V) -> &'a V {
+    match part {
+        Some(part) => place.insert(add(number, &part)),
+        None => number,
     }
+}
+
+/// −r(I) where it is not in the first kick.
+#[inline(always)]
+fn rest_apart<S: Substep<K, M>, M: Method<S>, const K: usize>(
+    system: &S,
+    constants: &M::Constants,
+    t: S::Scalar,
+    q: &S::Configuration,
+) -> Option<S::Momentum> {
+    if S::Sums::ARE_COMPENSATED { system.rest(constants, t, q) } else { None }
 }
 
 /// The momentum to solve for. What is solved for is M − r(I), and what the move carries is M; compensated sums keep both apart.
@@ -125,7 +157,7 @@ fn at_rest<S: Substep<K, M>, M: Method<S>, const K: usize>(
     q: &S::Configuration,
     mu: S::Momentum,
 ) -> S::Momentum {
-    if S::Sums::ARE_COMPENSATED { plus(mu, system.rest(constants, t, q)) } else { mu }
+    plus(mu, rest_apart::<S, M, K>(system, constants, t, q))
 }
 
 /// The sum with a part that may not be there.
