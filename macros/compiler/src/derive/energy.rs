@@ -234,20 +234,14 @@ fn lost_direction<'g>(model: &Model<'g>, inertia: Expr<'g>) -> Lost {
 
 /// Σ, the Hessian of ½ ξ·Σξ.
 pub(super) fn inertia<'g>(symbols: &Symbols<'g>, energy: Expr<'g>) -> Expr<'g> {
-    let graph = energy.graph();
     let dimension: usize = symbols.algebra.iter().map(|xi| xi.shape().rows).sum();
-    let gradients: Vec<Expr<'g>> = symbols.algebra.iter().map(|xi| energy.gradient(*xi)).collect();
-    let mut blocks = graph.zero(Shape::square(dimension));
+    let shape = Shape::square(dimension);
     let mut row = 0;
-    for gradient in &gradients {
-        let mut column = 0;
-        for xi in &symbols.algebra {
-            blocks = blocks + gradient.jacobian(*xi).embed(Shape::square(dimension), row, column);
-            column += xi.shape().rows;
-        }
-        row += gradient.shape().rows;
-    }
-    blocks
+    symbols.algebra.iter().fold(energy.graph().zero(shape), |sum, xi| {
+        let placed = symbols.slopes(energy.gradient(*xi)).embed(shape, row, 0);
+        row += xi.shape().rows;
+        sum + placed
+    })
 }
 
 /// κ, where Σξ = κξ.
