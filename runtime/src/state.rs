@@ -109,7 +109,7 @@ impl<S: Clebsch, M: Method<S>> Debug for State<S, M> {
 
 /// A configuration q with a covector p at it, checked by [`Stepper::cotangent_state`](crate::Stepper::cotangent_state).
 ///
-/// p has the shape of q and pairs with velocities of q entry by entry: ⟨p, v⟩ = tr(pᵀv).
+/// p has the shape of q and pairs with velocities of q entry by entry: ⟨p, v⟩ = tr(pᵀv). It belongs to no method: with `order = 1` p is half a kick ahead, as N is.
 /// It has a [`time`](Self::time) where the cost or the potential depends on it.
 pub struct CotangentState<S: Clebsch> {
     pub(crate) time: S::Time,
