@@ -35,7 +35,8 @@ pub use crate::parameters::{
     projection,
 };
 pub use crate::parts::{
-    FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks, Substep, Varied, VariedSubstep,
+    ByBoth, ByCoordinates, ByIncrement, FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks,
+    Substep, Varied, VariedSubstep,
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
 pub use crate::scheme::{

@@ -12,8 +12,8 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.
     type Coordinates;
-    /// What moves q and N: the increment D = F − I, the coordinates x where those are enough, or both.
-    type Motion;
+    /// What moves q and N.
+    type Moves: Moves<Self::Coordinates, Self::Element>;
 
     /// Whether a step has so few operations that it is inlined wherever it is called: a call hands states through memory.
     const IS_SHORT: bool = false;
@@ -28,10 +28,13 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
     fn element(d: &Self::Element) -> Self::Element;
 
     /// What of x and D the move takes; D is made where it is needed.
-    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> Self::Motion;
+    #[inline(always)]
+    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> Motion<Self, M> {
+        Self::Moves::of(x, d)
+    }
 
     /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
-    fn advance(&self, q: &Self::Configuration, motion: &Self::Motion) -> Self::Configuration;
+    fn advance(&self, q: &Self::Configuration, motion: &Motion<Self, M>) -> Self::Configuration;
 
     /// (TΦ_F)^{-*} p at q⁺, the covector carried along by F = I + D.
     #[inline(always)]
@@ -47,6 +50,58 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
         (q, rest)
     }
 }
+
+/// What moves q and N: the increment D = F − I, the coordinates x where those are enough, or both.
+pub trait Moves<X, D> {
+    /// That.
+    type Motion;
+
+    /// What of x and D it is.
+    fn of(x: &X, d: impl FnOnce() -> D) -> Self::Motion;
+}
+
+/// By D.
+#[derive(Clone, Copy, Debug)]
+pub struct ByIncrement;
+
+impl<X, D> Moves<X, D> for ByIncrement {
+    type Motion = D;
+
+    #[inline(always)]
+    fn of(_: &X, d: impl FnOnce() -> D) -> D {
+        d()
+    }
+}
+
+/// By x.
+#[derive(Clone, Copy, Debug)]
+pub struct ByCoordinates;
+
+impl<X: Copy, D> Moves<X, D> for ByCoordinates {
+    type Motion = X;
+
+    #[inline(always)]
+    fn of(x: &X, _: impl FnOnce() -> D) -> X {
+        *x
+    }
+}
+
+/// q by x, N by D.
+#[derive(Clone, Copy, Debug)]
+pub struct ByBoth;
+
+impl<X: Copy, D> Moves<X, D> for ByBoth {
+    type Motion = (X, D);
+
+    #[inline(always)]
+    fn of(x: &X, d: impl FnOnce() -> D) -> (X, D) {
+        (*x, d())
+    }
+}
+
+/// What moves q and N in a step of S by M.
+pub type Motion<S, M = Declared> =
+    <<S as Parts<M>>::Moves as Moves<<S as Parts<M>>::Coordinates, <S as Clebsch>::Element>>::Motion;
 
 /// The coordinates that a solve finds.
 pub type Solved<X> = Result<X, Error>;
@@ -180,7 +235,7 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
-        motion: &Self::Motion,
+        motion: &Motion<Self, M>,
     ) -> Option<Self::Momentum> {
         let _ = (constants, t, q, mu, motion);
         None

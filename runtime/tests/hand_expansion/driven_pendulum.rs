@@ -176,7 +176,7 @@ const _: () = {
     impl ::clebsch::__private::Parts for DrivenPendulum {
         type Sums = ::clebsch::__private::Plain;
         type Coordinates = SMatrix<f64, 3, 3>;
-        type Motion = SMatrix<f64, 3, 3>;
+        type Moves = ::clebsch::__private::ByCoordinates;
         const IS_SHORT: bool = true;
 
         /// What is solved for is F − I itself.
@@ -189,11 +189,6 @@ const _: () = {
         #[inline]
         fn element(d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
             ::clebsch::__private::from_increment(d)
-        }
-
-        #[inline]
-        fn motion(&self, d: &SMatrix<f64, 3, 3>, _: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
-            *d
         }
 
         /// q⁺ = q + Dq

@@ -178,7 +178,7 @@ const _: () = {
     impl ::clebsch::__private::Parts for HeavyTop {
         type Sums = ::clebsch::__private::Plain;
         type Coordinates = SVector<f64, 3>;
-        type Motion = SMatrix<f64, 3, 3>;
+        type Moves = ::clebsch::__private::ByIncrement;
         const IS_SHORT: bool = true;
 
         /// F − I
@@ -191,11 +191,6 @@ const _: () = {
         #[inline]
         fn element(d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
             ::clebsch::__private::from_increment(d)
-        }
-
-        #[inline]
-        fn motion(&self, _: &SVector<f64, 3>, d: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
-            d()
         }
 
         /// R⁺ = R F = R + R(F − I)

@@ -8,7 +8,7 @@ use super::code::Nesting;
 use super::{Emitter, code, docs};
 use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
-use crate::model::Space;
+use crate::model::{Layout, Space};
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
 const SHORT_STEP: usize = 192;
@@ -140,7 +140,12 @@ impl Emitter<'_, '_> {
     fn shared_parts(&self) -> TokenStream {
         let private = &self.paths.private;
         let sums = if self.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
-        let (coordinates, motion_type) = (self.coordinates_type(), self.motion_type());
+        let coordinates = self.coordinates_type();
+        let moves = match self.motion() {
+            Motion::Increment => quote!(ByIncrement),
+            Motion::Coordinates => quote!(ByCoordinates),
+            Motion::Both => quote!(ByBoth),
+        };
         let is_short = self.is_short().then(|| {
             quote!(
                 const IS_SHORT: ::core::primitive::bool = true;
@@ -152,7 +157,7 @@ impl Emitter<'_, '_> {
                 const HAS_COVECTORS: ::core::primitive::bool = false;
             )
         });
-        let (increment, element, motion) = (self.increment(), self.element_of_increment(), self.motion_of_step());
+        let (increment, element) = (self.increment(), self.element_of_increment());
         // points on large spheres are turned in (q, w)
         let advance = self.advance();
         let lift = has_covectors.then(|| self.lift());
@@ -163,13 +168,12 @@ impl Emitter<'_, '_> {
             quote! {
                 type Sums = #private::#sums;
                 type Coordinates = #coordinates;
-                type Motion = #motion_type;
+                type Moves = #private::#moves;
                 #is_short
                 #no_covectors
 
                 #increment
                 #element
-                #motion
                 #advance
                 #lift
                 #on_space
@@ -210,26 +214,8 @@ impl Emitter<'_, '_> {
             }
         });
         quote! {
-            #[inline]
             fn element(d: &#element) -> #element {
                 #sum
-            }
-        }
-    }
-
-    fn motion_of_step(&self) -> TokenStream {
-        let coordinates = self.coordinates_type();
-        let element = self.element_type();
-        let motion = self.motion_type();
-        let body = match self.motion() {
-            Motion::Increment => quote!(d()),
-            Motion::Coordinates => quote!(*x),
-            Motion::Both => quote!((*x, d())),
-        };
-        quote! {
-            #[inline]
-            fn motion(&self, x: &#coordinates, d: impl ::core::ops::FnOnce() -> #element) -> #motion {
-                #body
             }
         }
     }
@@ -300,6 +286,17 @@ impl Emitter<'_, '_> {
             return None;
         }
         let configuration = self.configuration_type();
+        if let ([leaf], Layout::Leaf(_)) = (&self.model.configurations[..], &self.model.configuration)
+            && !(leaf.is_quaternion || self.is_compensated())
+        {
+            let function = if leaf.space == Space::Unit { quote!(of_length_one) } else { quote!(orthogonal) };
+            return Some(quote! {
+                #[inline]
+                fn on_space(q: #configuration, rest: ()) -> (#configuration, ()) {
+                    (#private::#function(q), rest)
+                }
+            });
+        }
         let (pattern, rest) =
             if self.is_compensated() { (quote!(mut rest), configuration.clone()) } else { (quote!(rest), quote!(())) };
         Some(quote! {
@@ -452,16 +449,14 @@ impl Emitter<'_, '_> {
         let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
         let (configuration, momentum, input) = (self.configuration_type(), self.momentum_type(), self.input_type());
         let coordinates = self.coordinates_type();
-        let (title, body) = if self.program.formulas.turns_whole() {
+        let body = if self.program.formulas.turns_whole() {
             let free_motion = self.call_of_parts("FreeMotion", &[]);
             let kept = quote!(#free_motion::kept(self, c, mu));
-            let followed = quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d));
-            (" F − I of the group element whose momentum is μ.", followed)
+            quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d))
         } else {
-            (" The chart coordinates x of the group element whose momentum is μ.", self.coordinates_of(index, step))
+            self.coordinates_of(index, step)
         };
         quote! {
-            #[doc = #title]
             #[inline]
             fn solve(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum, u: &#input) -> #private::Solved<#coordinates> {
                 #body

@@ -408,7 +408,6 @@ impl Emitter<'_, '_> {
         let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != Space::Vectors);
         let defect = is_promised.then(|| self.orbit_defect())?;
         Some(quote! {
-            /// By how much q violates what the declaration promises.
             fn orbit_defect(&self, q: &#configuration) -> #scalar {
                 #defect
             }
@@ -436,11 +435,9 @@ impl Emitter<'_, '_> {
             )
         };
         Some(quote! {
-            /// The size of the component of μ that no motion of q can have.
             fn isotropy_defect(&self, q: &#configuration, mu: &#momentum) -> #scalar {
                 #defect
             }
-            /// The momentum without that component.
             fn project_momentum(&self, q: &#configuration, mu: &#momentum) -> #momentum {
                 #projection
             }
