@@ -9,7 +9,7 @@ use clebsch_symbolic::work::{self, Exhausted};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
 /// The work of one expansion, for each of its methods: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
@@ -18,7 +18,7 @@ pub const WORK: u64 = 20_000_000;
 
 /// The stages behind the first one.
 #[derive(Copy, Clone, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub(crate) enum CompilerStage {
     Model,
     Derive,
     Lower,
@@ -31,9 +31,9 @@ pub(crate) enum Stage {
 /// Those of the stages, and one that names the declaration too large.
 pub(crate) fn within<T>(
     declaration: &Declaration,
-    stages: impl FnOnce(&Cell<Stage>) -> Result<T, Diagnostics>,
+    stages: impl FnOnce(&Cell<CompilerStage>) -> Result<T, Diagnostics>,
 ) -> Result<T, Diagnostics> {
-    let stage = Cell::new(Stage::Model);
+    let stage = Cell::new(CompilerStage::Model);
     let programs = 1 + declaration.methods.len() as u64;
     work::within(programs * WORK, || stages(&stage))
         .unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
@@ -43,14 +43,14 @@ pub(crate) fn within<T>(
 const LESS: &str = "use a smaller group or fewer factors, or a struct for each part that moves by itself";
 
 /// The error for a declaration on which the budget was used up.
-fn too_large(declaration: &Declaration, stage: Stage) -> Diagnostic {
-    let kinetic = || Place::of(&declaration.kinetic.closure().body);
+fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
+    let kinetic = || Location::of(&declaration.kinetic.closure().body);
     let (place, what, instead) = match (culprit(declaration), stage) {
         (Some(culprit), _) => culprit,
-        (None, Stage::Model) => (Place::of(&declaration.action.body), "the laws of this action take", LESS),
-        (None, Stage::Derive) => (kinetic(), "the formulas that are derived from this take", LESS),
-        (None, Stage::Lower) => (kinetic(), "the code of a step with this takes", LESS),
-        (None, Stage::Emit) => (kinetic(), "the text of a step with this takes", LESS),
+        (None, CompilerStage::Model) => (Location::of(&declaration.action.body), "the laws of this action take", LESS),
+        (None, CompilerStage::Derive) => (kinetic(), "the formulas that are derived from this take", LESS),
+        (None, CompilerStage::Lower) => (kinetic(), "the code of a step with this takes", LESS),
+        (None, CompilerStage::Emit) => (kinetic(), "the text of a step with this takes", LESS),
     };
     let message = format!("`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
     let error = Diagnostic::new(place, message);
@@ -61,7 +61,7 @@ fn too_large(declaration: &Declaration, stage: Stage) -> Diagnostic {
 }
 
 /// What the declaration is small without, and what to write instead: the first closure that can be left out, without which a quarter of the budget is enough.
-fn culprit(declaration: &Declaration) -> Option<(Place, &'static str, &'static str)> {
+fn culprit(declaration: &Declaration) -> Option<(Location, &'static str, &'static str)> {
     type Without = fn(&mut Declaration);
     let potential = declaration.potential.as_ref().and_then(Potential::closure);
     let rows: [(Option<&Closure>, Without, &str, &str); 4] = [
@@ -84,11 +84,11 @@ fn culprit(declaration: &Declaration) -> Option<(Place, &'static str, &'static s
         let mut rest = declaration.clone();
         without(&mut rest);
         rest.methods.clear();
-        let stages = || crate::program(&Graph::new(), &rest, &Cell::new(Stage::Model)).is_ok();
+        let stages = || crate::program(&Graph::new(), &rest, &Cell::new(CompilerStage::Model)).is_ok();
         work::within(WORK / 4, stages) == Ok(true)
     };
     rows.into_iter().find_map(|(closure, without, what, instead)| {
-        closure.filter(|_| is_small(without)).map(|closure| (Place::of(&closure.body), what, instead))
+        closure.filter(|_| is_small(without)).map(|closure| (Location::of(&closure.body), what, instead))
     })
 }
 

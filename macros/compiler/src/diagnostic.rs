@@ -7,25 +7,25 @@ use quote::{ToTokens, quote_spanned};
 
 /// A stretch of the user's source, from the first to the last token.
 #[derive(Copy, Clone, Debug)]
-pub struct Place {
+pub struct Location {
     start: Span,
     end: Span,
 }
 
-impl Place {
+impl Location {
     /// The place of everything that a syntax tree was made from.
-    pub fn of(tokens: &(impl ToTokens + ?Sized)) -> Place {
+    pub fn of(tokens: &(impl ToTokens + ?Sized)) -> Location {
         let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
             TokenTree::Group(group) => (group.span_open(), group.span_close()),
             other => (other.span(), other.span()),
         });
         let first = spans.next().unwrap_or_else(|| (Span::call_site(), Span::call_site()));
-        Place { start: first.0, end: spans.last().unwrap_or(first).1 }
+        Location { start: first.0, end: spans.last().unwrap_or(first).1 }
     }
 
     /// The place from one token to another.
-    pub fn between(start: Span, end: Span) -> Place {
-        Place { start, end }
+    pub fn between(start: Span, end: Span) -> Location {
+        Location { start, end }
     }
 
     /// The place's first token.
@@ -34,16 +34,16 @@ impl Place {
     }
 }
 
-impl From<Span> for Place {
-    fn from(span: Span) -> Place {
-        Place { start: span, end: span }
+impl From<Span> for Location {
+    fn from(span: Span) -> Location {
+        Location { start: span, end: span }
     }
 }
 
 /// One error: a first line, then lines of help and notes in the order in which they were added.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    place: Place,
+    place: Location,
     message: String,
     lines: Vec<String>,
     comes_later: bool,
@@ -51,7 +51,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// What is wrong: lower case, no full stop, the user's names in backticks.
-    pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
+    pub fn new(place: impl Into<Location>, message: impl Into<String>) -> Diagnostic {
         Diagnostic { place: place.into(), message: message.into(), lines: Vec::new(), comes_later: false }
     }
 
@@ -74,7 +74,7 @@ impl Diagnostic {
     }
 
     /// Says that something is part of the language, but not of this version.
-    pub fn later(place: impl Into<Place>, what: impl fmt::Display) -> Diagnostic {
+    pub fn later(place: impl Into<Location>, what: impl fmt::Display) -> Diagnostic {
         let error = Diagnostic::new(place, format!("{what} is not supported yet"));
         Diagnostic { comes_later: true, ..error }
     }
@@ -85,7 +85,7 @@ impl Diagnostic {
     }
 
     fn to_compile_error(&self) -> TokenStream {
-        let Place { start, end } = self.place;
+        let Location { start, end } = self.place;
         let text = self.to_string();
         let arguments = quote_spanned!(end=> { #text });
         quote_spanned!(start=> ::core::compile_error! #arguments)

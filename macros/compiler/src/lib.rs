@@ -24,7 +24,7 @@ pub use budget::WORK;
 pub use clebsch_symbolic::Graph;
 use clebsch_symbolic::work;
 
-use crate::budget::Stage;
+use crate::budget::CompilerStage;
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 pub use crate::methods::Method;
@@ -50,7 +50,7 @@ fn integrator(item: TokenStream) -> Result<TokenStream, Diagnostics> {
     let (graph, declaration) = (Graph::new(), parse::parse(item)?);
     budget::within(&declaration, |stage| {
         let program = program(&graph, &declaration, stage)?;
-        stage.set(Stage::Emit);
+        stage.set(CompilerStage::Emit);
         Ok(emit::emit(&program))
     })
 }
@@ -72,7 +72,11 @@ pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnost
 }
 
 /// The program of a declaration with those of its methods, which have the same system and other dials.
-fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Cell<Stage>) -> Result<Program<'g>, Diagnostics> {
+fn program<'g>(
+    graph: &'g Graph,
+    declaration: &Declaration,
+    stage: &Cell<CompilerStage>,
+) -> Result<Program<'g>, Diagnostics> {
     let mut program = program_of_steps(graph, declaration, stage)?;
     let mut diagnostics = Diagnostics::new();
     // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
@@ -91,12 +95,12 @@ fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Cell<Stage>)
 fn program_of_steps<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
-    stage: &Cell<Stage>,
+    stage: &Cell<CompilerStage>,
 ) -> Result<Program<'g>, Diagnostics> {
-    stage.set(Stage::Model);
+    stage.set(CompilerStage::Model);
     let model = model::model(graph, declaration)?;
-    stage.set(Stage::Derive);
+    stage.set(CompilerStage::Derive);
     let formulas = derive::derive(model)?;
-    stage.set(Stage::Lower);
+    stage.set(CompilerStage::Lower);
     lower::lower(formulas)
 }

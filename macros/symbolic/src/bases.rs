@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use crate::memory::Map;
-use crate::node::{Node, Term};
+use crate::node::{ExprNode, Term};
 use crate::{Algebra, Expr, Graph, Group, Rational, Shape, integer};
 
 impl<'g> Expr<'g> {
@@ -26,14 +26,14 @@ impl<'g> Expr<'g> {
         if algebra.dimension() == 1 {
             return self.wedge_of_scalar(algebra);
         }
-        if let Node::Literal(entries) = &*self.node() {
+        if let ExprNode::Literal(entries) = &*self.node() {
             let basis = self.graph.basis_matrices(algebra);
             let terms = entries.iter().zip(basis).map(|(entry, element)| element.times(entry));
             return terms.fold(self.graph.zero(shape), |sum, term| sum + term);
         }
         self.linear(shape, |plain| match &*plain.node() {
-            Node::Literal(_) if plain != self => plain.wedge(algebra),
-            _ => plain.atom_of(Node::Wedge(algebra, plain.id), shape),
+            ExprNode::Literal(_) if plain != self => plain.wedge(algebra),
+            _ => plain.atom_of(ExprNode::Wedge(algebra, plain.id), shape),
         })
     }
 
@@ -45,7 +45,7 @@ impl<'g> Expr<'g> {
             let plain = graph.collect(Shape::scalar(), [Term { coefficient: Rational::one(), scalars, word }]);
             let element = match plain.as_number() {
                 Some(number) => graph.basis_matrices(algebra)[0].times(&number),
-                None => self.atom_of(Node::Wedge(algebra, plain.id), shape),
+                None => self.atom_of(ExprNode::Wedge(algebra, plain.id), shape),
             };
             sum + element.times(&coefficient)
         })
@@ -62,7 +62,7 @@ impl<'g> Expr<'g> {
 
     fn components_by_terms(self, algebra: Algebra, shape: Shape) -> Expr<'g> {
         self.linear(shape, |plain| {
-            if let Node::Wedge(other, inner) = &*plain.node()
+            if let ExprNode::Wedge(other, inner) = &*plain.node()
                 && *other == algebra
             {
                 let (inner, basis) = (plain.graph.expr(*inner), plain.graph.basis(algebra));
@@ -78,7 +78,7 @@ impl<'g> Expr<'g> {
                 return plain.graph.pairings(algebra, &entries);
             }
             if !algebra.is_skew() {
-                return plain.atom_of(Node::Components(algebra, plain.id), shape);
+                return plain.atom_of(ExprNode::Components(algebra, plain.id), shape);
             }
             // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both
             let Term { coefficient, scalars, word } = plain.transpose().factor();
@@ -86,8 +86,10 @@ impl<'g> Expr<'g> {
             let word = plain.graph.collect(plain.shape(), [Term { coefficient: Rational::one(), scalars, word }]);
             match sign == integer(1) || sign == integer(-1) {
                 true if word == plain && sign == integer(1) => plain.graph.zero(shape),
-                true if word.id < plain.id => plain.atom_of(Node::Components(algebra, word.id), shape).times(&-sign),
-                _ => plain.atom_of(Node::Components(algebra, plain.id), shape),
+                true if word.id < plain.id => {
+                    plain.atom_of(ExprNode::Components(algebra, word.id), shape).times(&-sign)
+                }
+                _ => plain.atom_of(ExprNode::Components(algebra, plain.id), shape),
             }
         })
     }
@@ -96,7 +98,7 @@ impl<'g> Expr<'g> {
     fn constant_entries(self) -> Option<Vec<Rational>> {
         let one_at = |(i, j)| if i == j { Rational::one() } else { Rational::zero() };
         match &*self.node() {
-            Node::Literal(entries) => Some(entries.clone()),
+            ExprNode::Literal(entries) => Some(entries.clone()),
             _ if self.is_identity() => Some(self.shape().positions().map(one_at).collect()),
             _ => None,
         }

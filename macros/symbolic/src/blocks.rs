@@ -1,6 +1,6 @@
 //! Blocks of matrices, and matrices made of blocks.
 
-use crate::node::{Id, Node};
+use crate::node::{ExprNode, Id};
 use crate::{Expr, Rational, Shape, integer};
 use num_traits::One;
 
@@ -27,18 +27,18 @@ impl<'g> Expr<'g> {
         let columns = self.shape().columns;
         let positions = || shape.positions().map(move |(i, j)| (row + i) * columns + column + j);
         match &*self.node() {
-            Node::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
-            Node::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
-            Node::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
-            Node::Hadamard(a, b) => {
+            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
+            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
+            ExprNode::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
+            ExprNode::Hadamard(a, b) => {
                 let [a, b] = [a, b].map(|factor| graph.expr(*factor).block(row, column, shape));
                 a.hadamard(b)
             }
-            Node::DiagonalMatrix(inner) if shape.is_scalar() => match row == column {
+            ExprNode::DiagonalMatrix(inner) if shape.is_scalar() => match row == column {
                 true => graph.expr(*inner).entry(row, 0),
                 false => graph.zero(shape),
             },
-            Node::Embed(inner, r, c) => {
+            ExprNode::Embed(inner, r, c) => {
                 let given = graph.shape(*inner);
                 let (last_row, last_column) = (row + shape.rows, column + shape.columns);
                 let inside =
@@ -58,14 +58,14 @@ impl<'g> Expr<'g> {
                     }
                 }
             }
-            Node::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {
+            ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {
                 self.block_of_word(&terms[0].word, row, column, shape)
             }
-            Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
+            ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
                 let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
                 graph.literal(shape, shape.positions().map(one_at).collect())
             }
-            _ => self.atom_of(Node::Block(self.id, row, column), shape),
+            _ => self.atom_of(ExprNode::Block(self.id, row, column), shape),
         }
     }
 
@@ -73,9 +73,9 @@ impl<'g> Expr<'g> {
     fn block_of_word(self, word: &[Id], row: usize, column: usize, shape: Shape) -> Expr<'g> {
         let graph = self.graph;
         let (first, last) = (graph.expr(word[0]), graph.expr(word[word.len() - 1]));
-        let sparse = |letter: Expr<'g>| matches!(&*letter.node(), Node::Embed(..));
+        let sparse = |letter: Expr<'g>| matches!(&*letter.node(), ExprNode::Embed(..));
         if !sparse(first) && !sparse(last) {
-            return self.atom_of(Node::Block(self.id, row, column), shape);
+            return self.atom_of(ExprNode::Block(self.id, row, column), shape);
         }
         let rows = first.block(row, 0, Shape::new(shape.rows, first.shape().columns));
         let columns = last.block(0, column, Shape::new(last.shape().rows, shape.columns));
@@ -96,17 +96,17 @@ impl<'g> Expr<'g> {
             return self * self.graph.unit(shape, row, column);
         }
         self.linear(shape, |plain| match &*plain.node() {
-            Node::Embed(inner, r, c) => plain.graph.expr(*inner).embed(shape, row + r, column + c),
-            Node::Literal(entries) => {
+            ExprNode::Embed(inner, r, c) => plain.graph.expr(*inner).embed(shape, row + r, column + c),
+            ExprNode::Literal(entries) => {
                 let positions = plain.shape().positions().zip(entries);
                 let moved = positions.map(|((i, j), value)| (i + row, j + column, value.clone()));
                 plain.graph.sparse_literal(shape, &moved.collect())
             }
-            Node::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
+            ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
                 let moved = (0..plain.shape().rows).map(|i| (i + row, i + column, Rational::one()));
                 plain.graph.sparse_literal(shape, &moved.collect())
             }
-            _ => plain.atom_of(Node::Embed(plain.id, row, column), shape),
+            _ => plain.atom_of(ExprNode::Embed(plain.id, row, column), shape),
         })
     }
 }

@@ -2,11 +2,11 @@
 
 use num_traits::{One, Zero};
 
-use crate::node::{Analytic, Id, Node, Term};
+use crate::node::{Analytic, ExprNode, Id, Term};
 use crate::{Expr, Graph, Property, Rational, Shape};
 
 impl<'g> Expr<'g> {
-    pub(crate) fn atom_of(self, node: Node, shape: Shape) -> Expr<'g> {
+    pub(crate) fn atom_of(self, node: ExprNode, shape: Shape) -> Expr<'g> {
         self.graph.intern(node, shape)
     }
 
@@ -28,7 +28,7 @@ impl<'g> Expr<'g> {
             return self;
         }
         self.remembered(&graph.transposed, || match &*self.node() {
-            Node::Sum(_) => self.linear(self.shape().transposed(), |plain| {
+            ExprNode::Sum(_) => self.linear(self.shape().transposed(), |plain| {
                 let word = plain.factor().word;
                 word.iter().rev().map(|&letter| graph.expr(letter).transpose()).reduce(Expr::product).unwrap_or(plain)
             }),
@@ -40,29 +40,29 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let shape = self.shape().transposed();
         match &*self.node() {
-            Node::Sum(_) => self.transpose(),
-            Node::Transpose(inner) => graph.expr(*inner),
-            Node::Inverse(inner) => graph.expr(*inner).transpose().inverse(),
-            Node::DiagonalMatrix(_) => self,
-            Node::Analytic(function, inner) => graph.expr(*inner).transpose().analytic(*function),
-            Node::Wedge(algebra, _) if algebra.is_skew() => -self,
-            Node::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
-            Node::Symbol(id) => match graph.symbol_data(*id).property {
+            ExprNode::Sum(_) => self.transpose(),
+            ExprNode::Transpose(inner) => graph.expr(*inner),
+            ExprNode::Inverse(inner) => graph.expr(*inner).transpose().inverse(),
+            ExprNode::DiagonalMatrix(_) => self,
+            ExprNode::Analytic(function, inner) => graph.expr(*inner).transpose().analytic(*function),
+            ExprNode::Wedge(algebra, _) if algebra.is_skew() => -self,
+            ExprNode::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
+            ExprNode::Symbol(id) => match graph.symbol_data(*id).property {
                 Property::Symmetric | Property::Diagonal => self,
                 Property::Skew => -self,
-                _ => self.atom_of(Node::Transpose(self.id), shape),
+                _ => self.atom_of(ExprNode::Transpose(self.id), shape),
             },
-            Node::Literal(entries) => {
+            ExprNode::Literal(entries) => {
                 let entry = |(i, j): (usize, usize)| entries[j * self.shape().columns + i].clone();
                 graph.literal(shape, shape.positions().map(entry).collect())
             }
-            Node::Stack(entries) => {
+            ExprNode::Stack(entries) => {
                 let entry = |(i, j): (usize, usize)| graph.expr(entries[j * self.shape().columns + i]);
                 graph.stack(shape, shape.positions().map(entry).collect())
             }
-            Node::Block(inner, row, column) => graph.expr(*inner).transpose().block(*column, *row, shape),
-            Node::Embed(inner, row, column) => graph.expr(*inner).transpose().embed(shape, *column, *row),
-            _ => self.atom_of(Node::Transpose(self.id), shape),
+            ExprNode::Block(inner, row, column) => graph.expr(*inner).transpose().block(*column, *row, shape),
+            ExprNode::Embed(inner, row, column) => graph.expr(*inner).transpose().embed(shape, *column, *row),
+            _ => self.atom_of(ExprNode::Transpose(self.id), shape),
         }
     }
 
@@ -93,33 +93,33 @@ impl<'g> Expr<'g> {
                 let inverses = word.iter().rev().map(|&letter| graph.expr(letter).inverse_letter());
                 scale * inverses.fold(graph.identity(self.shape().rows), Expr::product)
             }
-            false => self.atom_of(Node::Inverse(self.id), self.shape()),
+            false => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
         }
     }
 
     fn inverse_letter(self) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
-            Node::Inverse(inner) => graph.expr(*inner),
-            Node::Transpose(inner) if graph.is_orthogonal(*inner) => graph.expr(*inner),
-            Node::Symbol(_) if graph.is_orthogonal(self.id) => self.transpose(),
-            Node::Analytic(Analytic::Exponential, inner) => (-graph.expr(*inner)).exponential(),
-            Node::Literal(_) => {
+            ExprNode::Inverse(inner) => graph.expr(*inner),
+            ExprNode::Transpose(inner) if graph.is_orthogonal(*inner) => graph.expr(*inner),
+            ExprNode::Symbol(_) if graph.is_orthogonal(self.id) => self.transpose(),
+            ExprNode::Analytic(Analytic::Exponential, inner) => (-graph.expr(*inner)).exponential(),
+            ExprNode::Literal(_) => {
                 let inverse = self.rational_inverse_of_literal();
-                inverse.unwrap_or_else(|| self.atom_of(Node::Inverse(self.id), self.shape()))
+                inverse.unwrap_or_else(|| self.atom_of(ExprNode::Inverse(self.id), self.shape()))
             }
-            Node::Sum(terms) => {
+            ExprNode::Sum(terms) => {
                 // I + c L rather than a I + b L: the form that the rules of `expand` know.
                 let unit = terms.iter().find(|term| term.word.is_empty() && term.scalars.is_empty());
                 match unit.map(|term| term.coefficient.clone()).filter(|coefficient| !coefficient.is_one()) {
                     Some(coefficient) => {
                         let monic = self.times(&coefficient.recip());
-                        self.atom_of(Node::Inverse(monic.id), self.shape()).times(&coefficient.recip())
+                        self.atom_of(ExprNode::Inverse(monic.id), self.shape()).times(&coefficient.recip())
                     }
-                    None => self.atom_of(Node::Inverse(self.id), self.shape()),
+                    None => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
                 }
             }
-            _ => self.atom_of(Node::Inverse(self.id), self.shape()),
+            _ => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
         }
     }
 
@@ -140,7 +140,7 @@ impl<'g> Expr<'g> {
                     graph.collect(self.shape(), [Term { coefficient: Rational::one(), scalars: Vec::new(), word }]);
                 let value = match plain.is_identity() {
                     true => graph.integer(1),
-                    false => self.atom_of(Node::Determinant(plain.id), Shape::scalar()),
+                    false => self.atom_of(ExprNode::Determinant(plain.id), Shape::scalar()),
                 };
                 scale.powi(n as i32) * value
             }
@@ -185,7 +185,7 @@ impl<'g> Expr<'g> {
         self.linear(shape, |left| {
             other.linear(shape, |right| {
                 let (a, b) = if left.id <= right.id { (left, right) } else { (right, left) };
-                left.atom_of(Node::Hadamard(a.id, b.id), shape)
+                left.atom_of(ExprNode::Hadamard(a.id, b.id), shape)
             })
         })
     }
@@ -194,11 +194,11 @@ impl<'g> Expr<'g> {
     pub fn diagonal_matrix(self) -> Expr<'g> {
         let shape = Shape::square(self.shape().rows);
         self.linear(shape, |plain| match &*plain.node() {
-            Node::Literal(entries) => {
+            ExprNode::Literal(entries) => {
                 let entry = |(i, j): (usize, usize)| if i == j { entries[i].clone() } else { Rational::zero() };
                 plain.graph.literal(shape, shape.positions().map(entry).collect())
             }
-            _ => plain.atom_of(Node::DiagonalMatrix(plain.id), shape),
+            _ => plain.atom_of(ExprNode::DiagonalMatrix(plain.id), shape),
         })
     }
 
@@ -206,9 +206,9 @@ impl<'g> Expr<'g> {
     pub fn diagonal(self) -> Expr<'g> {
         let shape = Shape::vector(self.shape().rows);
         self.linear(shape, |plain| match &*plain.node() {
-            Node::DiagonalMatrix(inner) => plain.graph.expr(*inner),
+            ExprNode::DiagonalMatrix(inner) => plain.graph.expr(*inner),
             _ if plain.is_identity() => plain.graph.literal(shape, vec![Rational::one(); shape.rows]),
-            _ => plain.atom_of(Node::Diagonal(plain.id), shape),
+            _ => plain.atom_of(ExprNode::Diagonal(plain.id), shape),
         })
     }
 }
@@ -236,19 +236,19 @@ impl Graph {
     fn trace_of_letter(&self, letter: Id) -> Expr<'_> {
         let expr = self.expr(letter);
         match &*self.node(letter) {
-            Node::Sum(_) => expr.trace(),
-            Node::Transpose(inner) => self.expr(*inner).trace(),
-            Node::Wedge(algebra, _) if algebra.is_skew() => self.integer(0),
-            Node::DiagonalMatrix(inner) => {
+            ExprNode::Sum(_) => expr.trace(),
+            ExprNode::Transpose(inner) => self.expr(*inner).trace(),
+            ExprNode::Wedge(algebra, _) if algebra.is_skew() => self.integer(0),
+            ExprNode::DiagonalMatrix(inner) => {
                 let n = self.shape(*inner).rows;
                 (0..n).map(|i| self.expr(*inner).entry(i, 0)).fold(self.integer(0), |sum, entry| sum + entry)
             }
-            Node::Literal(entries) => {
+            ExprNode::Literal(entries) => {
                 let n = self.shape(letter).rows;
                 self.number((0..n).map(|i| entries[i * n + i].clone()).sum())
             }
-            Node::Symbol(_) if self.has_property(letter, Property::Skew) => self.integer(0),
-            Node::Embed(inner, row, column) => {
+            ExprNode::Symbol(_) if self.has_property(letter, Property::Skew) => self.integer(0),
+            ExprNode::Embed(inner, row, column) => {
                 // the part on the diagonal of the whole
                 let (inner, first) = (self.expr(*inner), (*row).max(*column));
                 let last = (row + inner.shape().rows).min(column + inner.shape().columns);
@@ -257,7 +257,7 @@ impl Graph {
                     _ => self.integer(0),
                 }
             }
-            _ => self.intern(Node::Trace(vec![letter]), Shape::scalar()),
+            _ => self.intern(ExprNode::Trace(vec![letter]), Shape::scalar()),
         }
     }
 
@@ -276,6 +276,6 @@ impl Graph {
         if candidates.iter().any(|(other, other_sign)| *other == least && *other_sign != sign) {
             return self.integer(0);
         }
-        self.intern(Node::Trace(least), Shape::scalar()).times(&sign)
+        self.intern(ExprNode::Trace(least), Shape::scalar()).times(&sign)
     }
 }

@@ -1,6 +1,6 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
-use crate::node::{Analytic, Exponent, Function, Id, Node};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id};
 use crate::{Expr, Graph, Rational, Shape, Table, work};
 
 /// A field of numbers with elementary functions.
@@ -224,7 +224,7 @@ impl<'g> Expr<'g> {
         for id in self.reachable_where(|id| !known.contains(&id)) {
             let expr = self.graph.expr(id);
             let value = match &*expr.node() {
-                Node::Symbol(_) => values(expr),
+                ExprNode::Symbol(_) => values(expr),
                 _ => expr.evaluate_node(known),
             };
             known.insert(id, value);
@@ -240,38 +240,42 @@ impl<'g> Expr<'g> {
             Some(rest.iter().fold(known[first].clone(), |product, letter| product.multiply(&known[letter])))
         };
         match &*self.node() {
-            Node::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
-            Node::Pi => scalar(K::pi()),
-            Node::Literal(entries) => Matrix::new(shape, entries.iter().map(K::from_rational).collect()),
-            Node::Sum(terms) => terms.iter().fold(Matrix::from_fn(shape, |_| zero()), |sum, term| {
+            ExprNode::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
+            ExprNode::Pi => scalar(K::pi()),
+            ExprNode::Literal(entries) => Matrix::new(shape, entries.iter().map(K::from_rational).collect()),
+            ExprNode::Sum(terms) => terms.iter().fold(Matrix::from_fn(shape, |_| zero()), |sum, term| {
                 let powers = term.scalars.iter().map(|(base, exponent)| power(known[base].entries[0], *exponent));
                 let scale = powers.fold(K::from_rational(&term.coefficient), K::multiply);
                 let word = product(&term.word).unwrap_or_else(|| Matrix::scaled_identity(shape.rows, one()));
                 sum.add(&word.scale(scale))
             }),
-            Node::Stack(entries) => Matrix::new(shape, entries.iter().map(|entry| known[entry].entries[0]).collect()),
-            Node::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
-            Node::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
-            Node::Transpose(a) => known[a].transpose(),
-            Node::Inverse(a) => known[a].inverse().0,
-            Node::Determinant(a) => scalar(known[a].inverse().1),
-            Node::Function(function, a) => scalar(known[a].entries[0].function(*function)),
-            Node::Analytic(function, a) => K::analytic(*function, &known[a]),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Stack(entries) => {
+                Matrix::new(shape, entries.iter().map(|entry| known[entry].entries[0]).collect())
+            }
+            ExprNode::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
+            ExprNode::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
+            ExprNode::Transpose(a) => known[a].transpose(),
+            ExprNode::Inverse(a) => known[a].inverse().0,
+            ExprNode::Determinant(a) => scalar(known[a].inverse().1),
+            ExprNode::Function(function, a) => scalar(known[a].entries[0].function(*function)),
+            ExprNode::Analytic(function, a) => K::analytic(*function, &known[a]),
+            ExprNode::Opaque(name, output, arguments) => {
                 let arguments: Vec<&Matrix<K>> = arguments.iter().map(|argument| &known[argument]).collect();
                 K::opaque(name.0, *output, &arguments, shape)
             }
-            Node::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
-            Node::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
+            ExprNode::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
+            ExprNode::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
                 let inner = &known[a];
                 let inside =
                     i >= *row && j >= *column && i < row + inner.shape.rows && j < column + inner.shape.columns;
                 if inside { inner.at(i - row, j - column) } else { zero() }
             }),
-            Node::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
-            Node::DiagonalMatrix(a) => Matrix::from_fn(shape, |(i, j)| if i == j { known[a].at(i, 0) } else { zero() }),
-            Node::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
-            Node::Wedge(algebra, a) => {
+            ExprNode::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
+            ExprNode::DiagonalMatrix(a) => {
+                Matrix::from_fn(shape, |(i, j)| if i == j { known[a].at(i, 0) } else { zero() })
+            }
+            ExprNode::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
+            ExprNode::Wedge(algebra, a) => {
                 let mut matrix = Matrix::from_fn(shape, |_| zero::<K>());
                 for (k, entries) in self.graph.basis(*algebra).elements.iter().enumerate() {
                     for (i, j, value) in entries {
@@ -281,7 +285,7 @@ impl<'g> Expr<'g> {
                 }
                 matrix
             }
-            Node::Components(algebra, a) => {
+            ExprNode::Components(algebra, a) => {
                 let component = |entries: &crate::Sparse| {
                     let product = |(i, j, value): &(usize, usize, Rational)| {
                         known[a].at(*i, *j).multiply(K::from_rational(value))

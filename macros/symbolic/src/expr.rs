@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use num_traits::{One, Zero};
 
-use crate::node::{Id, Node};
+use crate::node::{ExprNode, Id};
 use crate::{Graph, Rational, Shape, Symbol, integer};
 
 /// A matrix-valued expression; scalars are 1×1. Copying is free, equality is structural.
@@ -35,14 +35,14 @@ impl<'g> Expr<'g> {
         self.id.0 as usize
     }
 
-    pub(crate) fn node(self) -> Rc<Node> {
+    pub(crate) fn node(self) -> Rc<ExprNode> {
         self.graph.node(self.id)
     }
 
     /// The symbol, if it is one.
     pub fn as_symbol(self) -> Option<Symbol> {
         match &*self.node() {
-            Node::Symbol(id) => Some(self.graph.symbol_data(*id)),
+            ExprNode::Symbol(id) => Some(self.graph.symbol_data(*id)),
             _ => None,
         }
     }
@@ -50,7 +50,7 @@ impl<'g> Expr<'g> {
     /// The value, if it is a rational number.
     pub fn as_number(self) -> Option<Rational> {
         match &*self.node() {
-            Node::Sum(terms) if self.shape().is_scalar() => match terms.as_slice() {
+            ExprNode::Sum(terms) if self.shape().is_scalar() => match terms.as_slice() {
                 [] => Some(Rational::zero()),
                 [term] if term.scalars.is_empty() => Some(term.coefficient.clone()),
                 _ => None,
@@ -61,7 +61,7 @@ impl<'g> Expr<'g> {
 
     /// Whether it is the zero of its shape.
     pub fn is_zero(self) -> bool {
-        matches!(&*self.node(), Node::Sum(terms) if terms.is_empty())
+        matches!(&*self.node(), ExprNode::Sum(terms) if terms.is_empty())
     }
 
     /// Whether it is the identity matrix, or the number one.

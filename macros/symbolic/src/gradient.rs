@@ -1,7 +1,7 @@
 //! Derivatives: gradients by reverse accumulation, directional derivatives by the product rule.
 
 use crate::memory::{self, Images, Map};
-use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Term};
 use crate::{Expr, Rational, Shape, Table};
 
 impl<'g> Expr<'g> {
@@ -29,41 +29,41 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let expr = |id: &Id| graph.expr(*id);
         match &*self.node() {
-            Node::Symbol(_) | Node::Pi | Node::Literal(_) => {}
-            Node::Sum(terms) => terms.iter().for_each(|term| self.pull_back_term(term, adjoint, add)),
-            Node::Word(word) => self.pull_back_word(word, adjoint, add),
-            Node::Trace(word) => {
+            ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => {}
+            ExprNode::Sum(terms) => terms.iter().for_each(|term| self.pull_back_term(term, adjoint, add)),
+            ExprNode::Word(word) => self.pull_back_word(word, adjoint, add),
+            ExprNode::Trace(word) => {
                 let n = graph.shape(word[0]).rows;
                 self.pull_back_word(word, adjoint * graph.identity(n), add);
             }
-            Node::Stack(entries) => {
+            ExprNode::Stack(entries) => {
                 for ((i, j), entry) in self.shape().positions().zip(entries) {
                     add(*entry, adjoint.entry(i, j));
                 }
             }
-            Node::Transpose(a) => add(*a, adjoint.transpose()),
-            Node::Inverse(a) => add(*a, -(self.transpose() * adjoint * self.transpose())),
-            Node::Determinant(a) => add(*a, adjoint * self * expr(a).inverse().transpose()),
-            Node::Function(function, a) => add(*a, adjoint * function.derivative(expr(a), self)),
+            ExprNode::Transpose(a) => add(*a, adjoint.transpose()),
+            ExprNode::Inverse(a) => add(*a, -(self.transpose() * adjoint * self.transpose())),
+            ExprNode::Determinant(a) => add(*a, adjoint * self * expr(a).inverse().transpose()),
+            ExprNode::Function(function, a) => add(*a, adjoint * function.derivative(expr(a), self)),
             // the adjoint of D ↦ Df(A)D with respect to tr(AᵀB) is G ↦ Df(Aᵀ)G
-            Node::Analytic(function, a) => add(*a, expr(a).transpose().analytic_slope(*function, adjoint)),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Analytic(function, a) => add(*a, expr(a).transpose().analytic_slope(*function, adjoint)),
+            ExprNode::Opaque(name, output, arguments) => {
                 assert_eq!(*output, 0, "the second derivative of a method");
                 for (index, argument) in arguments.iter().enumerate() {
                     let gradient = graph.opaque_of(*name, index + 1, self.arguments(arguments), graph.shape(*argument));
                     add(*argument, adjoint * gradient);
                 }
             }
-            Node::Block(a, row, column) => add(*a, adjoint.embed(graph.shape(*a), *row, *column)),
-            Node::Embed(a, row, column) => add(*a, adjoint.block(*row, *column, graph.shape(*a))),
-            Node::Hadamard(a, b) => {
+            ExprNode::Block(a, row, column) => add(*a, adjoint.embed(graph.shape(*a), *row, *column)),
+            ExprNode::Embed(a, row, column) => add(*a, adjoint.block(*row, *column, graph.shape(*a))),
+            ExprNode::Hadamard(a, b) => {
                 add(*a, adjoint.hadamard(expr(b)));
                 add(*b, adjoint.hadamard(expr(a)));
             }
-            Node::DiagonalMatrix(a) => add(*a, adjoint.diagonal()),
-            Node::Diagonal(a) => add(*a, adjoint.diagonal_matrix()),
-            Node::Wedge(algebra, a) => add(*a, adjoint.components(*algebra)),
-            Node::Components(algebra, a) => add(*a, adjoint.wedge(*algebra)),
+            ExprNode::DiagonalMatrix(a) => add(*a, adjoint.diagonal()),
+            ExprNode::Diagonal(a) => add(*a, adjoint.diagonal_matrix()),
+            ExprNode::Wedge(algebra, a) => add(*a, adjoint.components(*algebra)),
+            ExprNode::Components(algebra, a) => add(*a, adjoint.wedge(*algebra)),
         }
     }
 
@@ -129,19 +129,19 @@ impl<'g> Expr<'g> {
             return zero;
         }
         match &*self.node() {
-            Node::Symbol(_) | Node::Pi | Node::Literal(_) => zero,
-            Node::Sum(terms) => {
+            ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => zero,
+            ExprNode::Sum(terms) => {
                 graph.total(self.shape(), terms.iter().map(|term| self.push_forward_term(term, tangents)))
             }
-            Node::Word(word) => self.push_forward_word(word, tangents),
-            Node::Trace(word) => self.push_forward_word(word, tangents).trace(),
-            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),
-            Node::Transpose(a) => tangent(a).transpose(),
-            Node::Inverse(a) => -(self * tangent(a) * self),
-            Node::Determinant(a) => self * (expr(a).inverse() * tangent(a)).trace(),
-            Node::Function(function, a) => function.derivative(expr(a), self) * tangent(a),
-            Node::Analytic(function, a) => expr(a).analytic_slope(*function, tangent(a)),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Word(word) => self.push_forward_word(word, tangents),
+            ExprNode::Trace(word) => self.push_forward_word(word, tangents).trace(),
+            ExprNode::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),
+            ExprNode::Transpose(a) => tangent(a).transpose(),
+            ExprNode::Inverse(a) => -(self * tangent(a) * self),
+            ExprNode::Determinant(a) => self * (expr(a).inverse() * tangent(a)).trace(),
+            ExprNode::Function(function, a) => function.derivative(expr(a), self) * tangent(a),
+            ExprNode::Analytic(function, a) => expr(a).analytic_slope(*function, tangent(a)),
+            ExprNode::Opaque(name, output, arguments) => {
                 assert_eq!(*output, 0, "the second derivative of a method");
                 let gradient = |(index, argument): (usize, &Id)| {
                     let shape = graph.shape(*argument);
@@ -149,13 +149,13 @@ impl<'g> Expr<'g> {
                 };
                 arguments.iter().enumerate().map(gradient).fold(zero, |sum, term| sum + term)
             }
-            Node::Block(a, row, column) => tangent(a).block(*row, *column, self.shape()),
-            Node::Embed(a, row, column) => tangent(a).embed(self.shape(), *row, *column),
-            Node::Hadamard(a, b) => tangent(a).hadamard(expr(b)) + expr(a).hadamard(tangent(b)),
-            Node::DiagonalMatrix(a) => tangent(a).diagonal_matrix(),
-            Node::Diagonal(a) => tangent(a).diagonal(),
-            Node::Wedge(algebra, a) => tangent(a).wedge(*algebra),
-            Node::Components(algebra, a) => tangent(a).components(*algebra),
+            ExprNode::Block(a, row, column) => tangent(a).block(*row, *column, self.shape()),
+            ExprNode::Embed(a, row, column) => tangent(a).embed(self.shape(), *row, *column),
+            ExprNode::Hadamard(a, b) => tangent(a).hadamard(expr(b)) + expr(a).hadamard(tangent(b)),
+            ExprNode::DiagonalMatrix(a) => tangent(a).diagonal_matrix(),
+            ExprNode::Diagonal(a) => tangent(a).diagonal(),
+            ExprNode::Wedge(algebra, a) => tangent(a).wedge(*algebra),
+            ExprNode::Components(algebra, a) => tangent(a).components(*algebra),
         }
     }
 

@@ -9,13 +9,13 @@ use crate::algebra::Basis;
 use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
-use crate::node::{Id, Node, OpaqueId, SymbolId, Term};
+use crate::node::{ExprNode, Id, OpaqueId, SymbolId, Term};
 use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
 pub struct Graph {
-    nodes: RefCell<Interner<(Rc<Node>, Shape)>>,
+    nodes: RefCell<Interner<(Rc<ExprNode>, Shape)>>,
     symbols: RefCell<Vec<Symbol>>,
     bases: RefCell<Vec<Rc<Basis>>>,
     blocks: RefCell<Table<Group, Rc<[Block]>>>,
@@ -49,7 +49,7 @@ impl Graph {
         self.len() == 0
     }
 
-    pub(crate) fn intern(&self, node: Node, shape: Shape) -> Expr<'_> {
+    pub(crate) fn intern(&self, node: ExprNode, shape: Shape) -> Expr<'_> {
         work::spend(node.size());
         let (position, _) = self.nodes.borrow_mut().intern((Rc::new(node), shape));
         self.expr(Id(position as u32))
@@ -59,7 +59,7 @@ impl Graph {
         Expr { graph: self, id }
     }
 
-    pub(crate) fn node(&self, id: Id) -> Rc<Node> {
+    pub(crate) fn node(&self, id: Id) -> Rc<ExprNode> {
         self.nodes.borrow().value(id.0 as usize).0.clone()
     }
 
@@ -112,7 +112,7 @@ impl Graph {
             self.symbols.borrow_mut().push(symbol);
             self.symbols.borrow().len() - 1
         });
-        self.intern(Node::Symbol(SymbolId(index as u32)), shape)
+        self.intern(ExprNode::Symbol(SymbolId(index as u32)), shape)
     }
 
     /// What a method of the user's gives for some arguments: its value for `output` 0, its gradient with respect to argument i for
@@ -133,7 +133,7 @@ impl Graph {
         arguments: Vec<Expr<'g>>,
         shape: Shape,
     ) -> Expr<'g> {
-        self.intern(Node::Opaque(name, output, arguments.iter().map(|argument| argument.id).collect()), shape)
+        self.intern(ExprNode::Opaque(name, output, arguments.iter().map(|argument| argument.id).collect()), shape)
     }
 
     pub(crate) fn opaque_name(&self, name: OpaqueId) -> String {
@@ -157,7 +157,7 @@ impl Graph {
 
     /// π.
     pub fn pi(&self) -> Expr<'_> {
-        self.intern(Node::Pi, Shape::scalar())
+        self.intern(ExprNode::Pi, Shape::scalar())
     }
 
     /// The n×n identity matrix.
@@ -167,7 +167,7 @@ impl Graph {
 
     /// The zero matrix.
     pub fn zero(&self, shape: Shape) -> Expr<'_> {
-        self.intern(Node::Sum(Vec::new()), shape)
+        self.intern(ExprNode::Sum(Vec::new()), shape)
     }
 
     fn scaled_identity(&self, value: Rational, n: usize) -> Expr<'_> {
@@ -175,7 +175,7 @@ impl Graph {
             true => Vec::new(),
             false => vec![Term { coefficient: value, scalars: Vec::new(), word: Vec::new() }],
         };
-        self.intern(Node::Sum(terms), Shape::square(n))
+        self.intern(ExprNode::Sum(terms), Shape::square(n))
     }
 
     /// A matrix of numbers, row by row.
@@ -191,7 +191,7 @@ impl Graph {
         if shape.is_square() && shape.positions().map(diagonal).eq(entries.iter().cloned()) {
             return self.scaled_identity(entries[0].clone(), shape.rows);
         }
-        self.intern(Node::Literal(entries), shape)
+        self.intern(ExprNode::Literal(entries), shape)
     }
 
     /// The matrix with a one at (row, column) and zeros elsewhere.
@@ -209,6 +209,6 @@ impl Graph {
         if let Some(numbers) = entries.iter().map(|entry| entry.as_number()).collect::<Option<Vec<_>>>() {
             return self.literal(shape, numbers);
         }
-        self.intern(Node::Stack(entries.iter().map(|entry| entry.id).collect()), shape)
+        self.intern(ExprNode::Stack(entries.iter().map(|entry| entry.id).collect()), shape)
     }
 }

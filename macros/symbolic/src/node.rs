@@ -62,7 +62,7 @@ pub enum Analytic {
 
 /// An expression without its shape, which the graph keeps beside it.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub(crate) enum Node {
+pub(crate) enum ExprNode {
     Symbol(SymbolId),
     Pi,
     Sum(Vec<Term>),
@@ -93,13 +93,15 @@ pub(crate) enum Node {
     Components(Algebra, Id),
 }
 
-impl Node {
+impl ExprNode {
     /// About the work that it takes to make it once its parts are there.
     pub(crate) fn size(&self) -> usize {
         2 + match self {
-            Node::Sum(terms) => terms.iter().map(Term::size).sum(),
-            Node::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum(),
-            Node::Stack(parts) | Node::Word(parts) | Node::Trace(parts) | Node::Opaque(_, _, parts) => parts.len(),
+            ExprNode::Sum(terms) => terms.iter().map(Term::size).sum(),
+            ExprNode::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum(),
+            ExprNode::Stack(parts) | ExprNode::Word(parts) | ExprNode::Trace(parts) | ExprNode::Opaque(_, _, parts) => {
+                parts.len()
+            }
             _ => 0,
         }
     }

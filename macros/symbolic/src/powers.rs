@@ -2,7 +2,7 @@
 
 use num_traits::{One, Zero};
 
-use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Term};
 use crate::{Expr, Graph, Rational, Shape, rational};
 
 impl<'g> Expr<'g> {
@@ -63,15 +63,15 @@ impl<'g> Expr<'g> {
             (Analytic::Exponential, _) if (self * self).is_zero() => identity + self,
             (Analytic::Phi, _) if (self * self).is_zero() => identity + self / 2,
             (Analytic::Logarithm, _) if self.is_identity() => graph.zero(self.shape()),
-            (Analytic::Logarithm, Node::Analytic(Analytic::Exponential, inner)) => graph.expr(*inner),
-            _ => self.atom_of(Node::Analytic(function, self.id), self.shape()),
+            (Analytic::Logarithm, ExprNode::Analytic(Analytic::Exponential, inner)) => graph.expr(*inner),
+            _ => self.atom_of(ExprNode::Analytic(function, self.id), self.shape()),
         }
     }
 
     /// The inverse of a matrix of numbers, by exact elimination.
     pub(crate) fn rational_inverse_of_literal(self) -> Option<Expr<'g>> {
         let n = self.shape().rows;
-        let Node::Literal(entries) = &*self.node() else { return None };
+        let ExprNode::Literal(entries) = &*self.node() else { return None };
         let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
         let row = |i: usize| -> Vec<Rational> {
             entries[i * n..(i + 1) * n].iter().cloned().chain((0..n).map(|j| unit(i, j))).collect()
@@ -102,7 +102,7 @@ impl<'g> Expr<'g> {
                 graph.rational(1, (1..=i64::from(k)).product())
             }
             _ if function == Function::Ln && self.is_identity() => graph.integer(0),
-            _ => self.atom_of(Node::Function(function, self.id), Shape::scalar()),
+            _ => self.atom_of(ExprNode::Function(function, self.id), Shape::scalar()),
         }
     }
 }

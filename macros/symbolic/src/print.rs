@@ -4,7 +4,7 @@ use std::fmt;
 
 use num_traits::One;
 
-use crate::node::{Analytic, Exponent, Function, Id, Node, Term};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
 
 /// How a formula is written.
@@ -63,24 +63,26 @@ impl Printer<'_> {
         };
         let latex = self.style == Style::Latex;
         match &*self.graph.node(id) {
-            Node::Symbol(symbol) => atom(self.symbol(&self.graph.symbol_data(*symbol).name)),
-            Node::Pi => atom(if latex { "\\pi".into() } else { "π".into() }),
-            Node::Sum(terms) => self.sum(terms, self.graph.shape(id)),
-            Node::Literal(entries) => atom(self.rows(id, entries.iter().map(|entry| self.rational(entry)).collect())),
-            Node::Stack(entries) => {
+            ExprNode::Symbol(symbol) => atom(self.symbol(&self.graph.symbol_data(*symbol).name)),
+            ExprNode::Pi => atom(if latex { "\\pi".into() } else { "π".into() }),
+            ExprNode::Sum(terms) => self.sum(terms, self.graph.shape(id)),
+            ExprNode::Literal(entries) => {
+                atom(self.rows(id, entries.iter().map(|entry| self.rational(entry)).collect()))
+            }
+            ExprNode::Stack(entries) => {
                 atom(self.rows(id, entries.iter().map(|&entry| self.print(entry, Binding::Sum)).collect()))
             }
-            Node::Word(word) => (self.word(word), Binding::Product),
-            Node::Trace(word) => atom(format!(
+            ExprNode::Word(word) => (self.word(word), Binding::Product),
+            ExprNode::Trace(word) => atom(format!(
                 "{}{}",
                 if latex { "\\operatorname{tr}" } else { "tr" },
                 self.parenthesized(&self.word(word))
             )),
-            Node::Transpose(a) => atom(self.raised(*a, "ᵀ", "\\mathsf T")),
-            Node::Inverse(a) => atom(self.raised(*a, "⁻¹", "-1")),
-            Node::Determinant(a) => call(if latex { "\\det" } else { "det" }, *a),
-            Node::Function(Function::Stumpff(k), a) => call(&self.subscripted("c", *k), *a),
-            Node::Analytic(function, a) => call(
+            ExprNode::Transpose(a) => atom(self.raised(*a, "ᵀ", "\\mathsf T")),
+            ExprNode::Inverse(a) => atom(self.raised(*a, "⁻¹", "-1")),
+            ExprNode::Determinant(a) => call(if latex { "\\det" } else { "det" }, *a),
+            ExprNode::Function(Function::Stumpff(k), a) => call(&self.subscripted("c", *k), *a),
+            ExprNode::Analytic(function, a) => call(
                 match (function, latex) {
                     (Analytic::Exponential, true) => "\\exp",
                     (Analytic::Exponential, false) => "exp",
@@ -91,7 +93,7 @@ impl Printer<'_> {
                 },
                 *a,
             ),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Opaque(name, output, arguments) => {
                 let arguments: Vec<String> = arguments.iter().map(|&a| self.print(a, Binding::Sum)).collect();
                 let name = self.symbol(&self.graph.opaque_name(*name));
                 let nabla = if latex { "\\nabla " } else { "∇" };
@@ -99,20 +101,22 @@ impl Printer<'_> {
                 let name = if *output == 0 { name } else { format!("{nabla}{number}{name}") };
                 atom(format!("{name}({})", arguments.join(", ")))
             }
-            Node::Function(function, a) => call(&format!("{}{}", if latex { "\\" } else { "" }, function.name()), *a),
-            Node::Block(a, row, column) => atom(self.block(*a, *row, *column, self.graph.shape(id))),
-            Node::Embed(a, row, column) => {
+            ExprNode::Function(function, a) => {
+                call(&format!("{}{}", if latex { "\\" } else { "" }, function.name()), *a)
+            }
+            ExprNode::Block(a, row, column) => atom(self.block(*a, *row, *column, self.graph.shape(id))),
+            ExprNode::Embed(a, row, column) => {
                 let name = if latex { "\\operatorname{embed}" } else { "embed" };
                 atom(format!("{name}({}, {row}, {column})", self.print(*a, Binding::Sum)))
             }
-            Node::Hadamard(a, b) => {
+            ExprNode::Hadamard(a, b) => {
                 let symbol = if latex { " \\circ " } else { " ∘ " };
                 (format!("{}{symbol}{}", self.print(*a, Binding::Atom), self.print(*b, Binding::Atom)), Binding::Sum)
             }
-            Node::DiagonalMatrix(a) => call(if latex { "\\operatorname{diag}" } else { "diag" }, *a),
-            Node::Diagonal(a) => call(if latex { "\\operatorname{diagonal}" } else { "diagonal" }, *a),
-            Node::Wedge(_, a) => atom(self.raised(*a, "^", "\\wedge")),
-            Node::Components(_, a) => {
+            ExprNode::DiagonalMatrix(a) => call(if latex { "\\operatorname{diag}" } else { "diag" }, *a),
+            ExprNode::Diagonal(a) => call(if latex { "\\operatorname{diagonal}" } else { "diagonal" }, *a),
+            ExprNode::Wedge(_, a) => atom(self.raised(*a, "^", "\\wedge")),
+            ExprNode::Components(_, a) => {
                 let inner = self.print(*a, Binding::Sum);
                 atom(if latex { format!("\\langle {inner}, E \\rangle") } else { format!("⟨{inner}, E⟩") })
             }

@@ -3,38 +3,38 @@
 use num_traits::{One, Zero};
 
 use crate::memory::{self, Images, Map};
-use crate::node::{Exponent, Id, Node, Term};
+use crate::node::{Exponent, ExprNode, Id, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
 
-impl Node {
+impl ExprNode {
     /// Hands the identities of the direct children on, one after the other.
     pub(crate) fn each_child(&self, mut visit: impl FnMut(Id)) {
         match self {
-            Node::Symbol(_) | Node::Pi | Node::Literal(_) => {}
-            Node::Sum(terms) => {
+            ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => {}
+            ExprNode::Sum(terms) => {
                 for term in terms {
                     term.scalars.iter().for_each(|(base, _)| visit(*base));
                     term.word.iter().for_each(|letter| visit(*letter));
                 }
             }
-            Node::Stack(ids) | Node::Word(ids) | Node::Trace(ids) | Node::Opaque(_, _, ids) => {
+            ExprNode::Stack(ids) | ExprNode::Word(ids) | ExprNode::Trace(ids) | ExprNode::Opaque(_, _, ids) => {
                 ids.iter().for_each(|id| visit(*id));
             }
-            Node::Hadamard(a, b) => {
+            ExprNode::Hadamard(a, b) => {
                 visit(*a);
                 visit(*b);
             }
-            Node::Transpose(a)
-            | Node::Inverse(a)
-            | Node::Determinant(a)
-            | Node::Function(_, a)
-            | Node::Analytic(_, a)
-            | Node::Block(a, _, _)
-            | Node::Embed(a, _, _)
-            | Node::DiagonalMatrix(a)
-            | Node::Diagonal(a)
-            | Node::Wedge(_, a)
-            | Node::Components(_, a) => visit(*a),
+            ExprNode::Transpose(a)
+            | ExprNode::Inverse(a)
+            | ExprNode::Determinant(a)
+            | ExprNode::Function(_, a)
+            | ExprNode::Analytic(_, a)
+            | ExprNode::Block(a, _, _)
+            | ExprNode::Embed(a, _, _)
+            | ExprNode::DiagonalMatrix(a)
+            | ExprNode::Diagonal(a)
+            | ExprNode::Wedge(_, a)
+            | ExprNode::Components(_, a) => visit(*a),
         }
     }
 
@@ -72,7 +72,7 @@ impl<'g> Expr<'g> {
     /// The symbols that occur, in the order of their creation.
     pub fn symbols(self) -> Vec<Expr<'g>> {
         let reachable = self.reachable().into_iter().map(|id| self.graph.expr(id));
-        reachable.filter(|expr| matches!(&*expr.node(), Node::Symbol(_))).collect()
+        reachable.filter(|expr| matches!(&*expr.node(), ExprNode::Symbol(_))).collect()
     }
 
     /// Whether the symbol occurs.
@@ -82,7 +82,7 @@ impl<'g> Expr<'g> {
 
     /// Whether the inverse of a matrix occurs.
     pub fn has_inverse(self) -> bool {
-        self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), Node::Inverse(_)))
+        self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), ExprNode::Inverse(_)))
     }
 
     /// Whether it divides by what depends on one of these symbols, or takes the inverse of a matrix that does: where that vanishes it has a pole.
@@ -93,8 +93,8 @@ impl<'g> Expr<'g> {
             divisors.any(|(scalar, _)| depends(self.graph.expr(*scalar)))
         };
         self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
-            Node::Inverse(matrix) => depends(self.graph.expr(*matrix)),
-            Node::Sum(terms) => terms.iter().any(divides),
+            ExprNode::Inverse(matrix) => depends(self.graph.expr(*matrix)),
+            ExprNode::Sum(terms) => terms.iter().any(divides),
             _ => false,
         })
     }
@@ -104,8 +104,8 @@ impl<'g> Expr<'g> {
         let fractional =
             |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| e.as_integer().is_none()));
         self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
-            Node::Function(..) | Node::Analytic(..) | Node::Opaque(..) => true,
-            Node::Sum(terms) => fractional(terms),
+            ExprNode::Function(..) | ExprNode::Analytic(..) | ExprNode::Opaque(..) => true,
+            ExprNode::Sum(terms) => fractional(terms),
             _ => false,
         })
     }
@@ -128,8 +128,8 @@ impl<'g> Expr<'g> {
         let image = |part: &Id| images.of(graph, part);
         let product = |word: &[Id]| word.iter().map(image).reduce(|a, b| a * b);
         match &*node {
-            Node::Symbol(_) | Node::Pi | Node::Literal(_) => self,
-            Node::Sum(terms) => {
+            ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => self,
+            ExprNode::Sum(terms) => {
                 let image = |term: &Term| {
                     let powers = term.scalars.iter().map(|(base, e)| image(base).power(Rational::short(*e)));
                     let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
@@ -138,25 +138,25 @@ impl<'g> Expr<'g> {
                 };
                 graph.total(self.shape(), terms.iter().map(image))
             }
-            Node::Stack(entries) => graph.stack(self.shape(), entries.iter().map(image).collect()),
+            ExprNode::Stack(entries) => graph.stack(self.shape(), entries.iter().map(image).collect()),
             // by construction: words of `Word` and `Trace` nodes are not empty
-            Node::Word(word) => product(word).expect("a word has letters"),
-            Node::Trace(word) => product(word).expect("a word has letters").trace(),
-            Node::Transpose(a) => image(a).transpose(),
-            Node::Inverse(a) => image(a).inverse(),
-            Node::Determinant(a) => image(a).determinant(),
-            Node::Function(function, a) => image(a).function(*function),
-            Node::Analytic(function, a) => image(a).analytic(*function),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Word(word) => product(word).expect("a word has letters"),
+            ExprNode::Trace(word) => product(word).expect("a word has letters").trace(),
+            ExprNode::Transpose(a) => image(a).transpose(),
+            ExprNode::Inverse(a) => image(a).inverse(),
+            ExprNode::Determinant(a) => image(a).determinant(),
+            ExprNode::Function(function, a) => image(a).function(*function),
+            ExprNode::Analytic(function, a) => image(a).analytic(*function),
+            ExprNode::Opaque(name, output, arguments) => {
                 graph.opaque_of(*name, *output, arguments.iter().map(image).collect(), self.shape())
             }
-            Node::Block(a, row, column) => image(a).block(*row, *column, self.shape()),
-            Node::Embed(a, row, column) => image(a).embed(self.shape(), *row, *column),
-            Node::Hadamard(a, b) => image(a).hadamard(image(b)),
-            Node::DiagonalMatrix(a) => image(a).diagonal_matrix(),
-            Node::Diagonal(a) => image(a).diagonal(),
-            Node::Wedge(algebra, a) => image(a).wedge(*algebra),
-            Node::Components(algebra, a) => image(a).components(*algebra),
+            ExprNode::Block(a, row, column) => image(a).block(*row, *column, self.shape()),
+            ExprNode::Embed(a, row, column) => image(a).embed(self.shape(), *row, *column),
+            ExprNode::Hadamard(a, b) => image(a).hadamard(image(b)),
+            ExprNode::DiagonalMatrix(a) => image(a).diagonal_matrix(),
+            ExprNode::Diagonal(a) => image(a).diagonal(),
+            ExprNode::Wedge(algebra, a) => image(a).wedge(*algebra),
+            ExprNode::Components(algebra, a) => image(a).components(*algebra),
         }
     }
 
@@ -180,19 +180,19 @@ impl<'g> Expr<'g> {
         !self
             .reachable()
             .into_iter()
-            .any(|id| matches!(&*self.graph.node(id), Node::Sum(terms) if terms.iter().any(fails)))
+            .any(|id| matches!(&*self.graph.node(id), ExprNode::Sum(terms) if terms.iter().any(fails)))
     }
 
     fn expand_node(self, images: &Images) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
-            Node::Function(..) => self,
-            Node::Sum(terms) => {
+            ExprNode::Function(..) => self,
+            ExprNode::Sum(terms) => {
                 let shape = self.shape();
                 graph.total(shape, terms.iter().map(|term| graph.expand_term(term, shape, images)))
             }
-            Node::Word(word) => graph.expand_word(word, images, Shape::scalar()),
-            Node::Trace(word) => {
+            ExprNode::Word(word) => graph.expand_word(word, images, Shape::scalar()),
+            ExprNode::Trace(word) => {
                 let n = graph.shape(word[0]).rows;
                 graph.expand_word(word, images, Shape::square(n)).trace()
             }
@@ -291,8 +291,8 @@ impl Graph {
 
     /// The pair (a, L), if the letter is (I + aL)⁻¹.
     fn resolvent(&self, letter: Id) -> Option<(Rational, Id)> {
-        let Node::Inverse(inner) = &*self.node(letter) else { return None };
-        let Node::Sum(terms) = &*self.node(*inner) else { return None };
+        let ExprNode::Inverse(inner) = &*self.node(letter) else { return None };
+        let ExprNode::Sum(terms) = &*self.node(*inner) else { return None };
         let [first, second] = terms.as_slice() else { return None };
         let unit = |term: &Term| term.scalars.is_empty() && term.word.is_empty() && term.coefficient.is_one();
         let (_, other) = if unit(first) { (first, second) } else { (second, first) };

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use num_traits::{One, Zero};
 
-use crate::node::{Exponent, Id, Node, Term};
+use crate::node::{Exponent, ExprNode, Id, Term};
 use crate::rational::product;
 use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
 
@@ -91,7 +91,7 @@ impl Graph {
                 _ => {}
             }
         }
-        self.intern(Node::Sum(terms), shape)
+        self.intern(ExprNode::Sum(terms), shape)
     }
 }
 
@@ -99,7 +99,7 @@ impl<'g> Expr<'g> {
     /// The terms whose sum this is; an atom is one term.
     pub(crate) fn terms(self) -> Vec<Term> {
         match &*self.node() {
-            Node::Sum(terms) => terms.clone(),
+            ExprNode::Sum(terms) => terms.clone(),
             _ => vec![self.atom()],
         }
     }
@@ -117,7 +117,7 @@ impl<'g> Expr<'g> {
     /// A single term: the only one of the sum, or the whole expression as a factor.
     pub(crate) fn factor(self) -> Term {
         match &*self.node() {
-            Node::Sum(terms) if terms.len() == 1 => terms[0].clone(),
+            ExprNode::Sum(terms) if terms.len() == 1 => terms[0].clone(),
             _ => self.atom(),
         }
     }
@@ -213,7 +213,7 @@ impl Graph {
             }
         }
         let single = term.word.len() == 1 && term.scalars.is_empty();
-        if single && let Node::Sum(terms) = &*self.node(term.word[0]) {
+        if single && let ExprNode::Sum(terms) = &*self.node(term.word[0]) {
             let scaled =
                 terms.iter().map(|inner| Term { coefficient: &inner.coefficient * &term.coefficient, ..inner.clone() });
             return self.collect(shape, scaled);
@@ -233,7 +233,7 @@ impl Graph {
 
     /// Appends a letter: a letter that is a single term is merged, neighbours that cancel are dropped, literals are multiplied.
     fn push_letter(&self, term: &mut Term, word: &mut Vec<Id>, letter: Id) {
-        if let Node::Sum(terms) = &*self.node(letter)
+        if let ExprNode::Sum(terms) = &*self.node(letter)
             && let [inner] = terms.as_slice()
         {
             term.coefficient = product(&term.coefficient, &inner.coefficient);
@@ -253,23 +253,23 @@ impl Graph {
     /// The product of two neighbouring letters, where it is simpler than the pair.
     fn merge(&self, left: Id, right: Id) -> Option<Expr<'_>> {
         let inverse = |a: Id, b: Id| match &*self.node(a) {
-            Node::Transpose(inner) => *inner == b && self.is_orthogonal(b),
-            Node::Inverse(inner) => *inner == b,
+            ExprNode::Transpose(inner) => *inner == b && self.is_orthogonal(b),
+            ExprNode::Inverse(inner) => *inner == b,
             _ => false,
         };
         if inverse(left, right) || inverse(right, left) {
             return Some(self.identity(self.shape(left).rows));
         }
         match (&*self.node(left), &*self.node(right)) {
-            (Node::Literal(a), Node::Literal(b)) => {
+            (ExprNode::Literal(a), ExprNode::Literal(b)) => {
                 Some(self.multiply_literals(a, self.shape(left), b, self.shape(right)))
             }
-            (Node::Embed(a, row, column), Node::Embed(b, other_row, other_column)) => {
+            (ExprNode::Embed(a, row, column), ExprNode::Embed(b, other_row, other_column)) => {
                 let shape = Shape::new(self.shape(left).rows, self.shape(right).columns);
                 let (a, b) = (self.expr(*a), self.expr(*b));
                 Some(self.overlap((a, *column), (b, *other_row)).embed_any(shape, *row, *other_column))
             }
-            (Node::Literal(_), Node::Embed(b, row, column)) => {
+            (ExprNode::Literal(_), ExprNode::Embed(b, row, column)) => {
                 let b = self.expr(*b);
                 let (literal, rows) = (self.expr(left), self.shape(left).rows);
                 let columns = literal.block(0, *row, Shape::new(rows, b.shape().rows));
@@ -277,7 +277,7 @@ impl Graph {
                     (part * b).embed_any(Shape::new(rows, self.shape(right).columns), first, *column)
                 })
             }
-            (Node::Embed(a, row, column), Node::Literal(_)) => {
+            (ExprNode::Embed(a, row, column), ExprNode::Literal(_)) => {
                 let a = self.expr(*a);
                 let (literal, columns) = (self.expr(right), self.shape(right).columns);
                 let rows = literal.block(*column, 0, Shape::new(a.shape().columns, columns));
@@ -285,7 +285,7 @@ impl Graph {
                     (a * part.transpose()).embed_any(Shape::new(self.shape(left).rows, columns), *row, first)
                 })
             }
-            (Node::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => {
+            (ExprNode::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => {
                 Some(self.integer(1))
             }
             _ => None,
@@ -388,14 +388,14 @@ impl Graph {
             None => (Rational::one(), word.clone()),
         };
         match reversed < word {
-            true => self.intern(Node::Word(reversed), Shape::scalar()).times(&sign),
+            true => self.intern(ExprNode::Word(reversed), Shape::scalar()).times(&sign),
             false if reversed == word && sign == integer(-1) => self.integer(0),
-            false => self.intern(Node::Word(word), Shape::scalar()),
+            false => self.intern(ExprNode::Word(word), Shape::scalar()),
         }
     }
 
     fn is_unit_square(&self, left: Id, right: Id) -> bool {
-        matches!(&*self.node(left), Node::Transpose(inner) if *inner == right)
+        matches!(&*self.node(left), ExprNode::Transpose(inner) if *inner == right)
             && self.has_property(right, Property::Unit)
     }
 

@@ -1,6 +1,6 @@
 //! Looking into an expression from outside of this crate: what the lowering to scalars walks over.
 
-use crate::node::{Analytic, Function, Id, Node, Term};
+use crate::node::{Analytic, ExprNode, Function, Id, Term};
 use crate::{Algebra, Expr, Rational, Symbol};
 
 /// The outermost operation of an expression.
@@ -102,28 +102,28 @@ impl<'g> Expr<'g> {
     pub fn view(self) -> View<'g> {
         let expr = |id: &Id| self.graph.expr(*id);
         match &*self.node() {
-            Node::Symbol(id) => View::Symbol(self.graph.symbol_data(*id)),
-            Node::Pi => View::Pi,
-            Node::Sum(_) => View::Sum(self.word_terms()),
-            Node::Literal(entries) => View::Literal(entries.clone()),
-            Node::Stack(entries) => View::Stack(self.exprs(entries)),
-            Node::Word(word) => View::Word(self.exprs(word)),
-            Node::Trace(word) => View::Trace(self.exprs(word)),
-            Node::Transpose(a) => View::Transpose(expr(a)),
-            Node::Inverse(a) => View::Inverse(expr(a)),
-            Node::Determinant(a) => View::Determinant(expr(a)),
-            Node::Function(function, a) => View::Function(*function, expr(a)),
-            Node::Analytic(function, a) => View::Analytic(*function, expr(a)),
-            Node::Opaque(name, output, arguments) => {
+            ExprNode::Symbol(id) => View::Symbol(self.graph.symbol_data(*id)),
+            ExprNode::Pi => View::Pi,
+            ExprNode::Sum(_) => View::Sum(self.word_terms()),
+            ExprNode::Literal(entries) => View::Literal(entries.clone()),
+            ExprNode::Stack(entries) => View::Stack(self.exprs(entries)),
+            ExprNode::Word(word) => View::Word(self.exprs(word)),
+            ExprNode::Trace(word) => View::Trace(self.exprs(word)),
+            ExprNode::Transpose(a) => View::Transpose(expr(a)),
+            ExprNode::Inverse(a) => View::Inverse(expr(a)),
+            ExprNode::Determinant(a) => View::Determinant(expr(a)),
+            ExprNode::Function(function, a) => View::Function(*function, expr(a)),
+            ExprNode::Analytic(function, a) => View::Analytic(*function, expr(a)),
+            ExprNode::Opaque(name, output, arguments) => {
                 View::Opaque(self.graph.opaque_name(*name), *output, self.exprs(arguments))
             }
-            Node::Block(a, row, column) => View::Block(expr(a), *row, *column),
-            Node::Embed(a, row, column) => View::Embed(expr(a), *row, *column),
-            Node::Hadamard(a, b) => View::Hadamard(expr(a), expr(b)),
-            Node::DiagonalMatrix(a) => View::DiagonalMatrix(expr(a)),
-            Node::Diagonal(a) => View::Diagonal(expr(a)),
-            Node::Wedge(algebra, a) => View::Wedge(*algebra, expr(a)),
-            Node::Components(algebra, a) => View::Components(*algebra, expr(a)),
+            ExprNode::Block(a, row, column) => View::Block(expr(a), *row, *column),
+            ExprNode::Embed(a, row, column) => View::Embed(expr(a), *row, *column),
+            ExprNode::Hadamard(a, b) => View::Hadamard(expr(a), expr(b)),
+            ExprNode::DiagonalMatrix(a) => View::DiagonalMatrix(expr(a)),
+            ExprNode::Diagonal(a) => View::Diagonal(expr(a)),
+            ExprNode::Wedge(algebra, a) => View::Wedge(*algebra, expr(a)),
+            ExprNode::Components(algebra, a) => View::Components(*algebra, expr(a)),
         }
     }
 }

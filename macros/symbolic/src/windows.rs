@@ -6,7 +6,7 @@
 use num_traits::Zero;
 
 use crate::memory::Images;
-use crate::node::{Id, Node, Term};
+use crate::node::{ExprNode, Id, Term};
 use crate::{Expr, Shape};
 
 /// A matrix that is zero outside of a part of it.
@@ -24,7 +24,7 @@ impl<'g> Expr<'g> {
         let images = Images::default();
         let image = |part: &Id| images.of(self.graph, part);
         self.mapped(&images, |expr| match &*expr.node() {
-            Node::Sum(terms) => {
+            ExprNode::Sum(terms) => {
                 let image = |term: &Term| {
                     let scale = Term { word: Vec::new(), ..term.clone() };
                     let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
@@ -36,9 +36,9 @@ impl<'g> Expr<'g> {
                 };
                 self.graph.total(expr.shape(), terms.iter().map(image))
             }
-            Node::Word(word) => product(word.iter().map(image)),
-            Node::Trace(word) => product(word.iter().map(image)).trace(),
-            Node::Block(inner, row, column) => image(inner).cut(*row, *column, expr.shape()),
+            ExprNode::Word(word) => product(word.iter().map(image)),
+            ExprNode::Trace(word) => product(word.iter().map(image)).trace(),
+            ExprNode::Block(inner, row, column) => image(inner).cut(*row, *column, expr.shape()),
             _ => expr.rebuild(&images),
         })
     }
@@ -66,10 +66,10 @@ impl<'g> Expr<'g> {
     fn window(self) -> Window<'g> {
         let shape = self.shape();
         match &*self.node() {
-            Node::Embed(inner, row, column) => {
+            ExprNode::Embed(inner, row, column) => {
                 Window { part: self.graph.expr(*inner), row: *row, column: *column, shape }
             }
-            Node::Literal(entries) => {
+            ExprNode::Literal(entries) => {
                 let filled = || shape.positions().zip(entries).filter(|(_, entry)| !entry.is_zero()).map(|(at, _)| at);
                 let extent = |of: fn((usize, usize)) -> usize| {
                     (filled().map(of).min().unwrap_or(0), filled().map(of).max().unwrap_or(0) + 1)

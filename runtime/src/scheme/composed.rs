@@ -220,7 +220,7 @@ impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
 
 /// One of the steps of a composed step.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<'a, T, C> {
+pub struct SizedStep<'a, T, C> {
     /// What no step of its size changes.
     pub constants: &'a C,
     /// c_i h, the time from the start of the composed step to its own.
@@ -234,15 +234,15 @@ pub struct Stage<'a, T, C> {
 impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
     /// The step number `number` < 2K − 1.
     #[inline]
-    pub fn stage(&self, number: usize) -> Stage<'_, T, C> {
+    pub fn stage(&self, number: usize) -> SizedStep<'_, T, C> {
         let before = (0..number).filter_map(|number| self.at(number));
         let start = before.fold(T::zero(), |sum, (_, size)| sum + size);
         let (constants, size) = self.at(number).unwrap_or((&self.whole, self.h));
-        Stage { constants, start, size, whole: self.h }
+        SizedStep { constants, start, size, whole: self.h }
     }
 }
 
-impl<T: Scalar, C> Stage<'_, T, C> {
+impl<T: Scalar, C> SizedStep<'_, T, C> {
     /// The slopes of its momenta along h and t, given those along its own size and time: γ_i ∂/∂h_i + c_i ∂/∂t_i for the column of h.
     #[inline]
     pub fn slopes<const M: usize, const P: usize>(

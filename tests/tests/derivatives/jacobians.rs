@@ -1,7 +1,7 @@
 //! Residuals and Jacobians of all implicit equations, and the formulas that replace them.
 
 use clebsch_compiler::Graph;
-use clebsch_compiler::derive::{Equation, Solution};
+use clebsch_compiler::derive::{MomentumEquation, Solution};
 use clebsch_compiler::lower::{Program, Solve};
 use clebsch_symbolic::Expr;
 use clebsch_tests::oracle::random::Random;
@@ -87,7 +87,7 @@ fn place(program: &Program<'_>, component: usize) -> (usize, usize) {
 }
 
 /// ρ where component `i` of a chart has moved by `e`.
-fn moved<'g>(values: &mut Values, equation: &Equation<'g>, chart: Expr<'g>, i: usize, e: f64) -> Vec<f64> {
+fn moved<'g>(values: &mut Values, equation: &MomentumEquation<'g>, chart: Expr<'g>, i: usize, e: f64) -> Vec<f64> {
     let here = values.get(chart).to_vec();
     let mut there = here.clone();
     there[i] += e;
@@ -98,7 +98,7 @@ fn moved<'g>(values: &mut Values, equation: &Equation<'g>, chart: Expr<'g>, i: u
 }
 
 /// Where there is a formula for the solution, it solves the equation, for momenta that motions have.
-fn assert_solved<'g>(program: &Program<'g>, values: &mut Values, equation: &Equation<'g>, solve: &Solve) {
+fn assert_solved<'g>(program: &Program<'g>, values: &mut Values, equation: &MomentumEquation<'g>, solve: &Solve) {
     let formulas = &program.formulas;
     for (k, mu) in formulas.symbols.momenta.iter().enumerate() {
         // p small enough for sin θ < 1

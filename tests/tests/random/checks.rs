@@ -177,7 +177,7 @@ fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
     let program = compile(&graph, tokens).map_err(|errors| format!("refused without a potential:\n{errors}"))?;
     // where the equation has inverses or exponentials of matrices, its residual is a difference, and x not right to its own last digits
     let formulas = &program.formulas;
-    let is_difference = |equation: &derive::Equation<'_>| {
+    let is_difference = |equation: &derive::MomentumEquation<'_>| {
         let has = |chart| equation.factors.iter().any(|&k| formulas.symbols.charts[k] == chart);
         let by_logarithm = matches!(free.kinetic, Kinetic::Lagrangian(_, Discretization::Exponential));
         let is_cost = matches!(free.kinetic, Kinetic::Cost(_));

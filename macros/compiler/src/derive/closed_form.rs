@@ -4,7 +4,7 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::equation::{Sources, chart_slope, is_moving, own_part, without_part};
 use super::trivialisation::Covector;
-use super::{Equation, Substep, Symbols};
+use super::{MomentumEquation, Substep, Symbols};
 use crate::model::Model;
 
 /// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
@@ -109,7 +109,7 @@ pub(super) fn closed_form<'g>(
 pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<'g>]) {
     let count = substeps.len();
     for block in symbols.blocks.clone() {
-        let mut own: Vec<&mut Equation<'g>> = substeps
+        let mut own: Vec<&mut MomentumEquation<'g>> = substeps
             .iter_mut()
             .filter_map(|substep| {
                 substep.equations.iter_mut().find(|equation| equation.components.iter().copied().eq(block.components()))

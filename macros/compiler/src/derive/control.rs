@@ -6,7 +6,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape};
 
-use super::{Symbols, Variation, action};
+use super::{EdgeDerivatives, Symbols, action};
 use crate::model::{Discretization, Factor, Kinetic, Model, Side};
 
 /// The direction in which symbols move.
@@ -294,7 +294,7 @@ pub struct Bend<'g> {
 /// What a choice of the inputs of forces needs of an edge.
 pub(super) fn bend<'g>(
     model: &Model<'g>,
-    variation: &Variation<'g>,
+    variation: &EdgeDerivatives<'g>,
     (costate, multiplier): (Expr<'g>, Expr<'g>),
     ends: &[Direction<'g>],
 ) -> Bend<'g> {

@@ -2,8 +2,8 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{Formulas, MatrixForm, Variation, increments, inserted, inverse_by};
-use crate::model::{Configuration, Space};
+use super::{EdgeDerivatives, Formulas, MatrixForm, increments, inserted, inverse_by};
+use crate::model::{Configuration, LeafSpace};
 
 /// What the kernels of an edge compute.
 pub struct EdgeMatrices<'g> {
@@ -26,7 +26,9 @@ impl<'g> Inserted<'g> {
     pub(super) fn of(formulas: &Formulas<'g>) -> Inserted<'g> {
         let leaves = formulas.model.configurations.iter().zip(&formulas.symbols.images);
         let inverses = leaves.flat_map(|(leaf, image): (&Configuration<'g>, &Expr<'g>)| match leaf.space {
-            Space::Group(group) => [leaf.symbol, *image].into_iter().flat_map(|q| inverse_by(group, q, q)).collect(),
+            LeafSpace::Group(group) => {
+                [leaf.symbol, *image].into_iter().flat_map(|q| inverse_by(group, q, q)).collect()
+            }
             _ => Vec::new(),
         });
         Inserted { elements: increments(formulas).into_iter().chain(inverses).collect() }
@@ -51,7 +53,7 @@ impl<'g> Inserted<'g> {
 
 impl<'g> Formulas<'g> {
     /// What the kernels of an edge compute: with whole matrices derivatives along one motion, of which loops make the columns.
-    pub fn edge_matrices(&self, variation: &Variation<'g>, keeps_matrices: bool) -> EdgeMatrices<'g> {
+    pub fn edge_matrices(&self, variation: &EdgeDerivatives<'g>, keeps_matrices: bool) -> EdgeMatrices<'g> {
         let at = Inserted::of(self);
         let basis = self.symbols.basis();
         let along_motions = |derivative: Expr<'g>| {
@@ -61,7 +63,7 @@ impl<'g> Formulas<'g> {
             let columns: Vec<_> = basis.iter().map(|element| derivative.substitute(element)).collect();
             at.columns(&columns)
         };
-        let Variation { before_by_start, before_by_end, after_by_end, .. } = *variation;
+        let EdgeDerivatives { before_by_start, before_by_end, after_by_end, .. } = *variation;
         let carried = &variation.carried;
         let momenta = [variation.lagrangian, variation.before, variation.after].map(|value| at.whole(value));
         let derivatives = [before_by_start, before_by_end, after_by_end].map(along_motions);

@@ -13,7 +13,7 @@ use crate::model::Model;
 
 /// The momentum equation of coordinates that depend on each other.
 #[derive(Clone)]
-pub struct Equation<'g> {
+pub struct MomentumEquation<'g> {
     /// Its coordinates, by their indices among those of all factors.
     pub components: Vec<usize>,
     /// The factors that they belong to, by index.
@@ -76,7 +76,7 @@ pub(super) fn equations<'g>(
     sources: &Sources<'_, 'g>,
     before: &[Covector<'g>],
     coupling: Option<&[Expr<'g>]>,
-) -> Vec<Equation<'g>> {
+) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, sources.symbols);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
     for k in 0..model.factors.len() {
@@ -288,7 +288,7 @@ fn equation<'g>(
     before: &[Covector<'g>],
     residuals: &[Residual<'g>],
     blocks: Vec<usize>,
-) -> Equation<'g> {
+) -> MomentumEquation<'g> {
     let (model, symbols) = (sources.model, sources.symbols);
     if let [only] = blocks.as_slice()
         && exact::is_free_rotation(model, symbols.blocks[*only].factor)
@@ -304,7 +304,7 @@ fn equation<'g>(
         row += symbols.blocks[i].dimension();
     }
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
-    let mut equation = Equation::new(sources, components, residual, cleared);
+    let mut equation = MomentumEquation::new(sources, components, residual, cleared);
     let moves = equation.moves;
     let closed_form = match blocks.as_slice() {
         [only] if !moves && !sources.forced => closed_form(sources, before, residual, *only),
@@ -323,14 +323,14 @@ fn equation<'g>(
     equation
 }
 
-impl<'g> Equation<'g> {
+impl<'g> MomentumEquation<'g> {
     /// An equation for Newton's method.
     pub(super) fn new(
         sources: &Sources<'_, 'g>,
         components: Vec<usize>,
         residual: Expr<'g>,
         cleared: bool,
-    ) -> Equation<'g> {
+    ) -> MomentumEquation<'g> {
         let (model, symbols) = (sources.model, sources.symbols);
         let blocks = symbols.blocks_of(&components);
         let mut factors: Vec<usize> = blocks.iter().map(|&i| symbols.blocks[i].factor).collect();
@@ -340,7 +340,7 @@ impl<'g> Equation<'g> {
         let moves = is_moving(model, residual);
         let slope = residual.differential(&directions);
         let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
-        Equation {
+        MomentumEquation {
             components,
             factors,
             residual,

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identit
 
 use super::equation::{Sources, is_diagonal};
 use super::structure::Structure;
-use super::{DiscreteLagrangian, Equation, Solution, Substep, Symbols, action, velocity};
+use super::{DiscreteLagrangian, MomentumEquation, Solution, Substep, Symbols, action, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Kinetic, Model, Order, Side};
@@ -100,7 +100,7 @@ pub(super) fn turns_whole(model: &Model<'_>) -> bool {
 /// The equation d x − m^ x = m of a free rotation with the Gibbs vector x and m = h μ/2, d of the modified inertia.
 ///
 /// In four dimensions F̃J̃ − J̃F̃ᵀ = m, J̃ of the modified body and F̃ the motion but for a turn that the momentum gives.
-pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> Equation<'g> {
+pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquation<'g> {
     let (graph, block) = (sources.model.graph, sources.symbols.blocks[i]);
     let n = block.dimension();
     let m = graph.symbol("m", Shape::vector(n), Role::Letter, Property::General);
@@ -118,7 +118,7 @@ pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> Equation<'g> 
             (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
         }
     };
-    Equation {
+    MomentumEquation {
         components: block.components().collect(),
         factors: vec![block.factor],
         residual,
@@ -148,7 +148,7 @@ pub(super) fn legendre<'g>(model: &Model<'g>, symbols: &Symbols<'g>, k: usize) -
 /// Whether a step without its kicks is the exact flow of the kinetic energy.
 pub(super) fn drifts_exactly(model: &Model<'_>, symbols: &Symbols<'_>, substeps: &[Substep<'_>]) -> bool {
     let [substep] = substeps else { return false };
-    let is_known = |equation: &Equation<'_>| match equation.solution {
+    let is_known = |equation: &MomentumEquation<'_>| match equation.solution {
         Solution::FreeRotation => true,
         Solution::Explicit => {
             let chart = symbols.charts[equation.factors[0]];

@@ -48,7 +48,7 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Isotropy, Model, Order, Space};
+use crate::model::{Isotropy, LeafSpace, Model, Order};
 
 pub use catalogue::{Entry, Heat, Id};
 pub(crate) use cayley::of_increment as cayley_coordinates;
@@ -59,13 +59,13 @@ pub use derivation::{Iteration, Lowered, derivation};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use edges::EdgeMatrices;
 pub use energy::Energy;
-pub use equation::{Equation, Solution};
+pub use equation::{MomentumEquation, Solution};
 pub use exact::Splitting;
 pub use force::EdgeForce;
 pub use formula::Formula;
 use increments::{from_increment, increments, inserted, inverse_by};
 pub use matrix_form::MatrixForm;
-pub use power::{Home, Link, Stencil, stencil};
+pub use power::{Home, SiteTerm, Stencil, stencil};
 pub(crate) use predictor::stacked;
 pub use reference::Reference;
 use rows::MOST_LISTED;
@@ -73,7 +73,7 @@ pub use structure::Structure;
 pub use symbols::{ChartBlock, Symbols};
 pub use symmetry::{ConservedMomentum, Symmetries};
 use trivialisation::Covector;
-pub use variation::{Quantity, Variation};
+pub use variation::{EdgeDerivatives, Quantity};
 
 /// What is derived, as matrix expressions.
 pub struct Formulas<'g> {
@@ -106,7 +106,7 @@ pub struct Formulas<'g> {
     /// Whether a step of first order is one of second order but for that shift.
     pub is_staggered: bool,
     /// What ties the sites of a power to each other.
-    pub links: Vec<Link<'g>>,
+    pub links: Vec<SiteTerm<'g>>,
     /// What is conserved.
     pub symmetries: Symmetries<'g>,
     /// The declared discrete Lagrangian.
@@ -158,7 +158,7 @@ pub struct Substep<'g> {
     /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
     pub end: Option<Vec<Expr<'g>>>,
     /// The momentum equations, each for the factors that depend on each other.
-    pub equations: Vec<Equation<'g>>,
+    pub equations: Vec<MomentumEquation<'g>>,
     /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
     pub unchanged: Vec<bool>,
     /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
@@ -167,7 +167,7 @@ pub struct Substep<'g> {
     /// What acts beside the potential; `None` if nothing does.
     pub force: Option<EdgeForce<'g>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
-    pub variation: Option<Variation<'g>>,
+    pub variation: Option<EdgeDerivatives<'g>>,
 }
 
 /// Derives the formulas of a model.
@@ -489,7 +489,7 @@ impl Formulas<'_> {
         else {
             return false;
         };
-        let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == Space::Unit;
+        let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == LeafSpace::Unit;
         let turns = || factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
         rotates
             && self.generator[0] == turns()
@@ -510,7 +510,7 @@ impl Formulas<'_> {
     }
 
     /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.
-    pub(super) fn is_solved_after_others(&self, equation: &Equation<'_>) -> bool {
+    pub(super) fn is_solved_after_others(&self, equation: &MomentumEquation<'_>) -> bool {
         let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));
         equation.formula.is_some_and(holds)
     }

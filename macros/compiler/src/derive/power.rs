@@ -5,7 +5,7 @@ use clebsch_symbolic::{Expr, Property, Role};
 use crate::model::{Configuration, Linear, Model, Power, SiteIndex, Term};
 
 /// A term of the potential of a power with its gradient.
-pub struct Link<'g> {
+pub struct SiteTerm<'g> {
     /// The term.
     pub term: Term<'g>,
     /// ∂/∂q for each place that the term reads, by its number: one expression for each leaf of the configuration there.
@@ -22,7 +22,7 @@ pub struct Home<'g> {
     pub is_everywhere: bool,
 }
 
-impl<'g> Link<'g> {
+impl<'g> SiteTerm<'g> {
     /// For each place of the gradient, the term that has a given site there: at most one of a sum over one index, or of none. `None` where there are more.
     pub fn homes(&self, power: &Power<'g>) -> Option<Vec<Home<'g>>> {
         self.gradient.iter().map(|(place, _)| self.home(power, &power.places[*place])).collect()
@@ -54,7 +54,7 @@ pub struct Stencil<'g> {
 }
 
 /// The gradient of one site; `None` where terms cannot be told by the sites that they read, such as those of sums over pairs.
-pub fn stencil<'g>(model: &Model<'g>, links: &[Link<'g>]) -> Option<Stencil<'g>> {
+pub fn stencil<'g>(model: &Model<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<'g>> {
     let power = model.power.as_ref()?;
     let zero = |leaf: &Configuration<'g>| model.graph.zero(leaf.shape);
     let gradient = model.configurations.iter().map(zero).collect();
@@ -112,7 +112,7 @@ fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
 }
 
 /// The terms of a power, with their gradients; nothing else has any.
-pub(super) fn links<'g>(model: &Model<'g>) -> Vec<Link<'g>> {
+pub(super) fn links<'g>(model: &Model<'g>) -> Vec<SiteTerm<'g>> {
     let Some(power) = &model.power else { return Vec::new() };
     let link = |term: &Term<'g>| {
         let symbols = term.value.symbols();
@@ -124,7 +124,7 @@ pub(super) fn links<'g>(model: &Model<'g>) -> Vec<Link<'g>> {
         let leaves = 0..model.configurations.len();
         let read = (0..power.places.len()).filter(|&place| leaves.clone().any(|leaf| at(place, leaf).is_some()));
         let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).collect())).collect();
-        Link { term: term.clone(), gradient }
+        SiteTerm { term: term.clone(), gradient }
     };
     power.terms.iter().map(link).collect()
 }
@@ -136,8 +136,8 @@ fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr
 }
 
 /// The change of each term where all of its sites move alike: by `motion`, given for the site itself.
-pub(super) fn moved<'g>(model: &Model<'g>, links: &[Link<'g>], motion: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let of_link = |link: &Link<'g>| {
+pub(super) fn moved<'g>(model: &Model<'g>, links: &[SiteTerm<'g>], motion: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let of_link = |link: &SiteTerm<'g>| {
         let symbols = link.term.value.symbols();
         let mut change = model.graph.integer(0);
         for (place, gradient) in &link.gradient {

@@ -4,17 +4,17 @@ use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::equation::chart_slope;
 use super::exact::{by_inertia, inertia_inverse};
-use super::{Equation, Formulas, MatrixForm, Solution, Substep};
+use super::{Formulas, MatrixForm, MomentumEquation, Solution, Substep};
 
 impl<'g> Formulas<'g> {
     /// Whether an equation is started from, or solved by, what is right to first order in h: Σ does not change, and nothing better is known.
-    pub(super) fn is_predicted(&self, equation: &Equation<'g>) -> bool {
+    pub(super) fn is_predicted(&self, equation: &MomentumEquation<'g>) -> bool {
         let is_known = matches!(equation.solution, Solution::Linear | Solution::FreeRotation);
         equation.formula.is_none() && !is_known && !self.inertia_moves()
     }
 
     /// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity, component by component.
-    pub(super) fn predictor(&self, substep: &Substep<'g>, equation: &Equation<'g>) -> Vec<Expr<'g>> {
+    pub(super) fn predictor(&self, substep: &Substep<'g>, equation: &MomentumEquation<'g>) -> Vec<Expr<'g>> {
         let graph = self.model.graph;
         let count = equation.components.len();
         let components = [equation.components.as_slice(), &equation.coupled].concat();
@@ -44,7 +44,7 @@ impl<'g> Formulas<'g> {
     fn predictor_by_blocks(
         &self,
         substep: &Substep<'g>,
-        equation: &Equation<'g>,
+        equation: &MomentumEquation<'g>,
         inverse: Expr<'g>,
     ) -> Option<Vec<Expr<'g>>> {
         let (symbols, h) = (&self.symbols, self.model.step_size);
@@ -75,7 +75,11 @@ impl<'g> Formulas<'g> {
     }
 
     /// The predictor as it is printed, with Σ for the inertia.
-    pub(super) fn printed_predictor(&self, substep: &Substep<'g>, equation: &Equation<'g>) -> Option<Vec<Expr<'g>>> {
+    pub(super) fn printed_predictor(
+        &self,
+        substep: &Substep<'g>,
+        equation: &MomentumEquation<'g>,
+    ) -> Option<Vec<Expr<'g>>> {
         let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
         self.predictor_by_blocks(substep, equation, inertia.inverse())
     }
@@ -91,7 +95,7 @@ impl<'g> Formulas<'g> {
     }
 
     /// −ρ(0) and Dρ(0), of an equation that is linear in the chart: column by column, or along one direction.
-    pub fn linear_system(&self, equation: &Equation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
+    pub fn linear_system(&self, equation: &MomentumEquation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
         let zero = self.chart_at_zero();
         let right_side = -equation.residual.substitute(&zero);
         if keeps_matrices {
@@ -102,7 +106,7 @@ impl<'g> Formulas<'g> {
     }
 
     /// ρ(x) and Dρ(x), of an equation that Newton's method solves: column by column, or along one direction, of bodies as B(x).
-    pub fn newton_system(&self, equation: &Equation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
+    pub fn newton_system(&self, equation: &MomentumEquation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
         let jacobian = match keeps_matrices {
             true => MatrixForm::Whole(equation.large_jacobian_factor(self).unwrap_or(equation.directional)),
             false => MatrixForm::of_columns(equation.columns(&self.symbols)),
@@ -111,10 +115,13 @@ impl<'g> Formulas<'g> {
     }
 
     /// ρ(x) with the slopes of exponentials on so(4) by its halves.
-    pub fn residual_by_halves(&self, equation: &Equation<'g>) -> Expr<'g> {
+    pub fn residual_by_halves(&self, equation: &MomentumEquation<'g>) -> Expr<'g> {
         let slopes = equation.factors.iter().flat_map(|&k| {
             let (group, x) = (self.model.factors[k].group, self.symbols.stacked_coordinates(k));
-            let by_halves = move |x| Some((group.exponential_slope(x), group.exponential_slope_by_halves(x)?));
+            let by_halves = move |x| {
+                let halves = group.exponential_slope_by_halves(x)?;
+                Some((group.exponential_slope(x), halves))
+            };
             [x, -x].into_iter().filter_map(by_halves)
         });
         let slopes: Vec<_> = slopes.collect();

@@ -9,7 +9,7 @@ use clebsch_symbolic::{Expr, Property};
 
 use super::increments::inverse_by;
 use super::{Formula, Formulas, Id};
-use crate::model::{Factor, Kinetic, Space};
+use crate::model::{Factor, Kinetic, LeafSpace};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -141,7 +141,7 @@ impl<'g> Formulas<'g> {
     /// What vanishes where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
     fn row_of_membership(&self) -> Formula<'g> {
         let equations = self.model.configurations.iter().flat_map(|leaf| match leaf.space {
-            Space::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
+            LeafSpace::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
             _ => Vec::new(),
         });
         Formula::new(Id::Membership, "0", &equations.collect::<Vec<_>>())
@@ -163,12 +163,12 @@ impl<'g> Formulas<'g> {
     /// The terms of the potential of a power, and their gradients.
     fn rows_of_terms(&self) -> Vec<Formula<'g>> {
         let Some(power) = &self.model.power else { return Vec::new() };
-        let term = |(number, link): (usize, &super::Link<'g>)| {
+        let term = |(number, link): (usize, &super::SiteTerm<'g>)| {
             let symbol = format!("V_{}, for each {}", number + 1, link.term.indices());
             let symbol = symbol.trim_end_matches(", for each ").to_string();
             Formula::shorter(Id::Term(number), symbol, &[link.term.value])
         };
-        let gradients = |(number, link): (usize, &super::Link<'g>)| {
+        let gradients = |(number, link): (usize, &super::SiteTerm<'g>)| {
             let gradient = |(place, slopes): &(usize, Vec<Expr<'g>>)| {
                 let symbol = format!("∂V_{}/∂{}[{}]", number + 1, self.q(), power.places[*place].text());
                 Formula::shorter(Id::TermGradient(number, *place), symbol, slopes)
@@ -210,7 +210,7 @@ impl<'g> Formulas<'g> {
     /// The values of all conserved momenta, with the inverses of configurations by the formulas of their groups.
     fn row_of_conserved_momenta(&self) -> Formula<'g> {
         let leaves = self.model.configurations.iter().filter_map(|leaf| match leaf.space {
-            Space::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
+            LeafSpace::Group(group) => Some(inverse_by(group, leaf.symbol, leaf.symbol)),
             _ => None,
         });
         let inverses: Vec<_> = leaves.flatten().collect();

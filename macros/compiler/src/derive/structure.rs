@@ -8,7 +8,7 @@ mod sylvester;
 
 use clebsch_symbolic::{Expr, Shape, identity};
 
-use super::equation::{Equation, Solution, Sources, chart_slope, is_moving};
+use super::equation::{MomentumEquation, Solution, Sources, chart_slope, is_moving};
 use super::symbols::ChartBlock;
 use pattern::Pattern;
 
@@ -32,13 +32,13 @@ pub enum Structure {
 ///
 /// Coordinates whose slope in their own equation is constant are put into the others and follow when these are solved, as long as
 /// those stay affine in the momentum, which the path from the identity relies on, or become linear and regular for every momentum.
-pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>) -> Vec<Equation<'g>> {
+pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquation<'g>) -> Vec<MomentumEquation<'g>> {
     if equation.solution != Solution::Newton {
         return vec![equation];
     }
     if equation.components.len() > LARGEST {
         let is_inertial = pattern::is_inertial_as_a_whole(sources, &equation);
-        return vec![Equation { is_inertial, ..equation }];
+        return vec![MomentumEquation { is_inertial, ..equation }];
     }
     let mut whole = Reduced::new(sources, equation, Vec::new());
     whole.equation.is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
@@ -54,22 +54,26 @@ pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: Equation<'g>)
 /// An equation without the coordinates that the others determine.
 struct Reduced<'a, 'b, 'g> {
     sources: &'a Sources<'b, 'g>,
-    equation: Equation<'g>,
+    equation: MomentumEquation<'g>,
     columns: Vec<Expr<'g>>,
     pattern: Pattern,
     /// The equations of the coordinates that were put in, in the order in which they were.
-    eliminated: Vec<Equation<'g>>,
+    eliminated: Vec<MomentumEquation<'g>>,
 }
 
 impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
-    fn new(sources: &'a Sources<'b, 'g>, equation: Equation<'g>, eliminated: Vec<Equation<'g>>) -> Reduced<'a, 'b, 'g> {
+    fn new(
+        sources: &'a Sources<'b, 'g>,
+        equation: MomentumEquation<'g>,
+        eliminated: Vec<MomentumEquation<'g>>,
+    ) -> Reduced<'a, 'b, 'g> {
         let columns = equation.columns(sources.symbols);
         let pattern = Pattern::of(sources, &equation, &columns);
         Reduced { sources, equation, columns, pattern, eliminated }
     }
 
     /// The solution by substitution, where coordinate after coordinate has a constant slope and needs only those before it.
-    fn substituted(&self) -> Option<Equation<'g>> {
+    fn substituted(&self) -> Option<MomentumEquation<'g>> {
         let mut rest = self.without(&self.leaves())?;
         while !rest.equation.components.is_empty() {
             rest = rest.without(&rest.leaves())?;
@@ -82,7 +86,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         };
         let values: Vec<Expr<'g>> = self.equation.components.iter().filter_map(value).collect();
         let formula = self.sources.model.graph.stack(Shape::vector(values.len()), values);
-        Some(Equation { solution: Solution::Explicit, formula: Some(formula), ..self.equation.clone() })
+        Some(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..self.equation.clone() })
     }
 
     /// Puts coordinates into the equations of the others as long as that can be done and is of use.
@@ -143,15 +147,15 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
             }
         };
         let own = identity::without_vanishing_terms(rows(whole.residual, positions));
-        let own = Equation::new(sources, gone.clone(), own, whole.cleared);
+        let own = MomentumEquation::new(sources, gone.clone(), own, whole.cleared);
         let mut eliminated = self.eliminated.clone();
-        eliminated.push(Equation { solution: Solution::Explicit, formula: Some(formula), ..own });
+        eliminated.push(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..own });
         let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).collect();
         let residual = self.with(&gone, formula, rows(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_iter().map(|i| whole.components[i]).collect();
         let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
-        Some(Reduced::new(sources, Equation::new(sources, left, residual, cleared), eliminated))
+        Some(Reduced::new(sources, MomentumEquation::new(sources, left, residual, cleared), eliminated))
     }
 
     /// The constant ∂ρ_i/∂x_i, from the inertia where it is that: Σ_ii/(s·h).
@@ -212,7 +216,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     }
 
     /// One equation for each set of coordinates that depend on each other.
-    fn parts(&self) -> Vec<Equation<'g>> {
+    fn parts(&self) -> Vec<MomentumEquation<'g>> {
         let sets = self.pattern.connected();
         match sets.len() {
             1 => vec![self.whole()],
@@ -220,8 +224,8 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         }
     }
 
-    fn whole(&self) -> Equation<'g> {
-        Equation {
+    fn whole(&self) -> MomentumEquation<'g> {
+        MomentumEquation {
             solution: if self.pattern.is_linear() { Solution::Linear } else { Solution::Newton },
             structure: self.pattern.structure(),
             coupled: self.coupled(),
@@ -230,7 +234,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     }
 
     /// The equation of coordinates that do not depend on the others.
-    fn part(&self, positions: &[usize]) -> Equation<'g> {
+    fn part(&self, positions: &[usize]) -> MomentumEquation<'g> {
         let (sources, whole) = (self.sources, &self.equation);
         let is_other = |i: &usize| !positions.contains(i);
         let others: Vec<usize> = (0..self.columns.len()).filter(is_other).map(|i| whole.components[i]).collect();
@@ -238,8 +242,8 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = self.with(&others, absent, rows(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let components = positions.iter().map(|&i| whole.components[i]).collect();
-        let part = Equation::new(sources, components, residual, whole.cleared);
-        let part = Reduced::new(sources, Equation { is_inertial: whole.is_inertial, ..part }, Vec::new());
+        let part = MomentumEquation::new(sources, components, residual, whole.cleared);
+        let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part }, Vec::new());
         part.substituted().unwrap_or_else(|| part.whole())
     }
 }

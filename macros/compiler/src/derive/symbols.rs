@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use super::{Equation, Solution, Substep};
+use super::{MomentumEquation, Solution, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Kinetic, Model};
@@ -213,8 +213,9 @@ pub(super) fn check_poles(
     let by_cayley = matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Cayley, .. });
     let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
     let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
-    let has_poles =
-        |equation: &Equation<'_>| equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates);
+    let has_poles = |equation: &MomentumEquation<'_>| {
+        equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates)
+    };
     let Some(chosen) = chosen else { return Ok(()) };
     features::check((Feature::ExponentialChart, Found::at(chosen.span)), |feature| {
         let mut equations = substeps.iter().flat_map(|substep| &substep.equations);

@@ -10,7 +10,7 @@ use crate::model::features::{self, Feature, Found};
 use crate::model::{Factor, Model, Side};
 
 /// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors.
-pub struct Variation<'g> {
+pub struct EdgeDerivatives<'g> {
     /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, q⁺).
     pub lagrangian: Expr<'g>,
     /// F⁻ℓd.
@@ -135,7 +135,7 @@ impl<'g> Source<'_, 'g> {
         lagrangian: &DiscreteLagrangian<'g>,
         (begins, ends): (Expr<'g>, Expr<'g>),
         force: Option<&EdgeForce<'g>>,
-    ) -> Variation<'g> {
+    ) -> EdgeDerivatives<'g> {
         let model = self.model;
         let rational = cayley::replacements(model);
         let lagrangian = &DiscreteLagrangian { kinetic: lagrangian.kinetic.substitute(&rational), ..*lagrangian };
@@ -160,7 +160,7 @@ impl<'g> Source<'_, 'g> {
             }
             last = last + self.at_image(self.later(self.stack(&force.end), ends)).substitute(&rational);
         }
-        let varied = Variation {
+        let varied = EdgeDerivatives {
             lagrangian: lagrangian.kinetic + start + end,
             before_by_start: first.differential(&self.at_start()),
             before_by_end: first.differential(&self.at_end()),
@@ -174,10 +174,10 @@ impl<'g> Source<'_, 'g> {
             bend: None,
         };
         let bend = model.control.as_ref().map(|_| self.bend(&varied));
-        Variation { bend, ..varied }
+        EdgeDerivatives { bend, ..varied }
     }
 
-    fn bend(&self, variation: &Variation<'g>) -> Bend<'g> {
+    fn bend(&self, variation: &EdgeDerivatives<'g>) -> Bend<'g> {
         let along = |motions: &[(Expr<'g>, Expr<'g>)]| -> Vec<control::Direction<'g>> {
             let motion = |element: &control::Direction<'g>| {
                 motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()

@@ -26,8 +26,8 @@ impl Scope<'_, '_> {
         };
         match operation {
             MatrixOperation::Argument(input) => match self.place(input.role, *shape) {
-                Place::Reference(name) => quote!(*#name),
-                Place::Value(value) => value,
+                Reached::Reference(name) => quote!(*#name),
+                Reached::Value(value) => value,
             },
             MatrixOperation::Zero => {
                 let (scalar, matrix) = (&self.paths.scalar, self.paths.matrix(shape.rows, shape.columns));
@@ -103,8 +103,8 @@ impl Scope<'_, '_> {
     /// A matrix as an argument of a function.
     fn by_reference(&self, operand: &Code) -> TokenStream {
         match self.argument(operand) {
-            Some(Place::Reference(name)) => name,
-            Some(Place::Value(value)) => quote!(&#value),
+            Some(Reached::Reference(name)) => name,
+            Some(Reached::Value(value)) => quote!(&#value),
             None => {
                 let value = self.operand(operand, Binding::Atom);
                 quote!(&#value)
@@ -124,7 +124,7 @@ impl Scope<'_, '_> {
 
     /// A matrix that is added or multiplied by a number, in brackets unless it binds as much as is asked.
     fn operand(&self, operand: &Code, least: Binding) -> TokenStream {
-        if let Some(Place::Reference(name)) = self.argument(operand) {
+        if let Some(Reached::Reference(name)) = self.argument(operand) {
             return name;
         }
         let value = self.code(operand, true);
@@ -134,14 +134,14 @@ impl Scope<'_, '_> {
     /// A matrix whose method is called.
     fn receiver(&self, operand: &Code) -> TokenStream {
         match self.argument(operand) {
-            Some(Place::Reference(name)) => name,
-            Some(Place::Value(value)) => value,
+            Some(Reached::Reference(name)) => name,
+            Some(Reached::Value(value)) => value,
             None => self.operand(operand, Binding::Atom),
         }
     }
 
     /// A matrix among the arguments of a function.
-    fn argument(&self, operand: &Code) -> Option<Place> {
+    fn argument(&self, operand: &Code) -> Option<Reached> {
         let Code::Whole(whole) = operand else { return None };
         let MatrixOperation::Argument(input) = &whole.operation else { return None };
         Some(self.place(input.role, whole.shape))
@@ -172,18 +172,18 @@ impl Scope<'_, '_> {
     }
 
     /// Where a matrix among the arguments of a function stands.
-    fn place(&self, role: Role, shape: Shape) -> Place {
+    fn place(&self, role: Role, shape: Shape) -> Reached {
         let leaf = |name: &str, access: &Access| {
             let name = format_ident!("{name}");
             if access.is_whole() {
-                return Place::Reference(quote!(#name));
+                return Reached::Reference(quote!(#name));
             }
             let access = accessor(access);
-            Place::Value(quote!(#name #access))
+            Reached::Value(quote!(#name #access))
         };
         let factor = |k: usize| &self.model.factors[k].accessor;
         match role {
-            Role::Parameter(leaf) => Place::Value(self.parameter(leaf, quote!())),
+            Role::Parameter(leaf) => Reached::Value(self.parameter(leaf, quote!())),
             Role::Configuration(i) => leaf("q", &self.model.configurations[i].accessor),
             Role::Image(i) => leaf("next", &self.model.configurations[i].accessor),
             Role::Input(i) => leaf("u", &self.model.inputs[i].accessor),
@@ -199,30 +199,30 @@ impl Scope<'_, '_> {
             }
             Role::InertiaInverse => {
                 let constants = &self.constants;
-                Place::Reference(quote!(#constants.inertia_inverse.matrix()))
+                Reached::Reference(quote!(#constants.inertia_inverse.matrix()))
             }
             Role::Direction(block) => self.part("delta", &self.coordinates, self.blocks[block], shape),
             // by construction: the other roles are numbers, or of systems that are written out
-            _ => Place::Value(quote!()),
+            _ => Reached::Value(quote!()),
         }
     }
 
     /// The part of a flat vector, which holds some of all components, that begins with one of them.
-    fn part(&self, vector: &str, held: &[usize], first: usize, shape: Shape) -> Place {
+    fn part(&self, vector: &str, held: &[usize], first: usize, shape: Shape) -> Reached {
         let private = &self.paths.private;
         let name = format_ident!("{vector}");
         if held.iter().copied().eq(first..first + shape.rows) {
-            return Place::Reference(quote!(#name));
+            return Reached::Reference(quote!(#name));
         }
         // by construction: kernels read what their vectors hold
         let of = |component: usize| held.iter().position(|&other| other == component).unwrap_or(0);
         let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
         let start = positions.first().copied().unwrap_or(0);
         if positions.iter().copied().eq(start..start + shape.rows) {
-            return Place::Value(block(quote!(#name), shape, (start, 0)));
+            return Reached::Value(block(quote!(#name), shape, (start, 0)));
         }
         let entries = positions.into_iter().map(Literal::usize_unsuffixed);
-        Place::Value(quote!(#private::vector([#(#name[#entries]),*])))
+        Reached::Value(quote!(#private::vector([#(#name[#entries]),*])))
     }
 
     /// The value of an opaque potential, or its gradient.
@@ -271,7 +271,7 @@ impl Binding {
 }
 
 /// How a matrix among the arguments is reached.
-enum Place {
+enum Reached {
     /// By a reference of this name.
     Reference(TokenStream),
     /// By value.

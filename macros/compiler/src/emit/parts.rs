@@ -8,7 +8,7 @@ use super::code::Nesting;
 use super::{Emitter, code, docs};
 use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Kernel, Solve, StepKernels};
-use crate::model::{Layout, Space};
+use crate::model::{Layout, LeafSpace};
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
 const SHORT_STEP: usize = 192;
@@ -275,10 +275,10 @@ impl Emitter<'_, '_> {
         let leaves = self.model.configurations.iter().filter_map(|leaf| {
             let access = code::accessor(&leaf.accessor);
             match leaf.space {
-                Space::Group(Group::UnitQuaternions) => Some(mended("of_length_one", &quote!(#access.coords))),
-                Space::Group(group) if group.is_orthogonal() => Some(mended("orthogonal", &access)),
-                Space::Unit => Some(mended("of_length_one", &access)),
-                Space::Vectors | Space::Group(_) => None,
+                LeafSpace::Group(Group::UnitQuaternions) => Some(mended("of_length_one", &quote!(#access.coords))),
+                LeafSpace::Group(group) if group.is_orthogonal() => Some(mended("orthogonal", &access)),
+                LeafSpace::Unit => Some(mended("of_length_one", &access)),
+                LeafSpace::Vectors | LeafSpace::Group(_) => None,
             }
         });
         let leaves: Vec<TokenStream> = leaves.collect();
@@ -289,7 +289,7 @@ impl Emitter<'_, '_> {
         if let ([leaf], Layout::Leaf(_)) = (&self.model.configurations[..], &self.model.configuration)
             && !(leaf.is_quaternion || self.is_compensated())
         {
-            let function = if leaf.space == Space::Unit { quote!(of_length_one) } else { quote!(orthogonal) };
+            let function = if leaf.space == LeafSpace::Unit { quote!(of_length_one) } else { quote!(orthogonal) };
             return Some(quote! {
                 #[inline]
                 fn on_space(q: #configuration, rest: ()) -> (#configuration, ()) {

@@ -9,7 +9,7 @@ use quote::quote;
 use super::code::{accessor, locals, nested_type};
 use super::{Emitter, Generics, docs};
 use crate::derive::Id;
-use crate::model::{Order, Parameter, Power, Promise, Space};
+use crate::model::{LeafSpace, Order, Parameter, Power, Promise};
 
 impl<'g> Emitter<'_, 'g> {
     /// The struct of a site and the implementation for all sites, where the declaration is a power.
@@ -69,9 +69,9 @@ impl<'g> Emitter<'_, 'g> {
         let gathers = self.program.gathered.is_some();
         let is_orthogonal = |group: Group| group.element_property() == Property::Orthogonal;
         let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
-            Space::Unit => true,
-            Space::Group(group) => is_orthogonal(group),
-            Space::Vectors => false,
+            LeafSpace::Unit => true,
+            LeafSpace::Group(group) => is_orthogonal(group),
+            LeafSpace::Vectors => false,
         });
         let gradient = match &self.program.gathered {
             Some(gathered) => self.gathered_gradient(power, gathered, &point),

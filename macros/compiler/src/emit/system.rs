@@ -9,7 +9,7 @@ use super::names::Names;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
-use crate::model::Space;
+use crate::model::LeafSpace;
 
 impl Emitter<'_, '_> {
     /// The impl block.
@@ -372,15 +372,15 @@ impl Emitter<'_, '_> {
         let defects = self.model.configurations.iter().filter_map(|leaf| {
             let access = code::accessor(&leaf.accessor);
             match leaf.space {
-                Space::Group(group) if group.element_property() == Property::Orthogonal => {
+                LeafSpace::Group(group) if group.element_property() == Property::Orthogonal => {
                     Some(quote!(#private::orthogonality_defect(&q #access)))
                 }
-                Space::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
+                LeafSpace::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
                     Some(quote!(#private::orientation_defect(&q #access)))
                 }
-                Space::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
-                Space::Unit => Some(quote!(#private::length_defect(&q #access))),
-                Space::Vectors | Space::Group(_) => None,
+                LeafSpace::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
+                LeafSpace::Unit => Some(quote!(#private::length_defect(&q #access))),
+                LeafSpace::Vectors | LeafSpace::Group(_) => None,
             }
         });
         let mut defects: Vec<_> = defects.collect();
@@ -405,7 +405,7 @@ impl Emitter<'_, '_> {
     fn check_of_orbit(&self) -> Option<TokenStream> {
         let [configuration, _, _] = self.names_of_types();
         let scalar = &self.paths.scalar;
-        let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != Space::Vectors);
+        let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != LeafSpace::Vectors);
         let defect = is_promised.then(|| self.orbit_defect())?;
         Some(quote! {
             fn orbit_defect(&self, q: &#configuration) -> #scalar {

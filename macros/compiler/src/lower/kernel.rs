@@ -9,7 +9,7 @@ use super::balance;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
 use super::signs;
-use super::{Code, Kernel, Node, Rate, Scalar, Scalars};
+use super::{Code, Kernel, Rate, Scalar, ScalarNode, Scalars};
 pub use hoisted::Hoisted;
 use shorten::delay_of_term;
 
@@ -111,8 +111,8 @@ impl Builder<'_, '_> {
     /// Whether a value is simply read: an argument, a number.
     fn is_entry(&self, scalar: Scalar) -> bool {
         match self.scalars.node(scalar) {
-            Node::Input(input) => input.role != Role::StepSize,
-            Node::Pi => true,
+            ScalarNode::Input(input) => input.role != Role::StepSize,
+            ScalarNode::Pi => true,
             _ => self.scalars.as_number(scalar).is_some(),
         }
     }
@@ -134,28 +134,28 @@ impl Builder<'_, '_> {
         let node = self.scalars.node(scalar).clone();
         let id = match node {
             _ if self.is_hoisted(scalar) || self.is_entry(scalar) => self.intern(Operation::Leaf(scalar)),
-            Node::Sum(constant, terms) => self.convert_sum(constant, terms),
-            Node::Product(factors) => {
+            ScalarNode::Sum(constant, terms) => self.convert_sum(constant, terms),
+            ScalarNode::Product(factors) => {
                 let (coefficient, product) = self.convert_product(integer(1), &factors);
                 self.scaled(coefficient, product)
             }
-            Node::Reciprocal(x) => {
+            ScalarNode::Reciprocal(x) => {
                 let x = self.convert(x);
                 self.intern(Operation::Reciprocal(x))
             }
-            Node::Root(x, exponent) => {
+            ScalarNode::Root(x, exponent) => {
                 let x = self.convert(x);
                 self.intern(Operation::Root(x, exponent))
             }
-            Node::Function(function, x) => {
+            ScalarNode::Function(function, x) => {
                 let x = self.convert(x);
                 self.intern(Operation::Function(function, x))
             }
-            Node::Output(call, output) => {
+            ScalarNode::Output(call, output) => {
                 let (id, callee) = self.convert_call(call);
                 self.intern(Operation::Output(id, callee, output))
             }
-            Node::Input(_) | Node::Pi => self.intern(Operation::Leaf(scalar)),
+            ScalarNode::Input(_) | ScalarNode::Pi => self.intern(Operation::Leaf(scalar)),
         };
         self.known.insert(scalar, id);
         id
@@ -196,7 +196,7 @@ impl Builder<'_, '_> {
         }
         for (term, coefficient) in self.collected(terms) {
             parts.push(match self.scalars.node(term).clone() {
-                Node::Product(factors) => self.convert_product(coefficient, &factors),
+                ScalarNode::Product(factors) => self.convert_product(coefficient, &factors),
                 _ => (coefficient, self.convert(term)),
             });
         }
@@ -243,7 +243,7 @@ impl Builder<'_, '_> {
 
     fn factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
         match self.scalars.node(term) {
-            Node::Product(factors) => factors.clone(),
+            ScalarNode::Product(factors) => factors.clone(),
             _ => vec![(term, 1)],
         }
     }
@@ -451,9 +451,9 @@ impl Builder<'_, '_> {
     /// What is simply read.
     fn entry(&self, scalar: Scalar) -> Code {
         match self.scalars.node(scalar) {
-            Node::Input(input) => Code::Read(input.clone()),
-            Node::Pi => Code::Pi,
-            Node::Sum(value, _) => Code::Number(value.clone()),
+            ScalarNode::Input(input) => Code::Read(input.clone()),
+            ScalarNode::Pi => Code::Pi,
+            ScalarNode::Sum(value, _) => Code::Number(value.clone()),
             // by construction: leaves are entries or have been taken out
             node => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
         }

@@ -42,7 +42,7 @@ pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
 pub use grid::{Grid, Lowering};
 pub use kernel::{Hoisted, Hoisting};
 pub(crate) use matrices::is_direction;
-pub use scalar::{Callee, Input, Node, Output, Rate, Scalar, Scalars};
+pub use scalar::{Callee, Input, Output, Rate, Scalar, ScalarNode, Scalars};
 pub use stepping::{CollocationKernels, Solve, SplittingKernels, StepKernels};
 pub use variation::{EdgeKernels, VariationKernels};
 
@@ -294,7 +294,7 @@ fn energy_coefficients(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel
     for i in 0..shape.rows {
         let diagonal = i * shape.columns + i;
         let halved = match scalars.node(entries[diagonal]).clone() {
-            Node::Sum(constant, terms) => {
+            ScalarNode::Sum(constant, terms) => {
                 let half = clebsch_symbolic::rational(1, 2);
                 let terms: Vec<_> = terms.into_iter().map(|(term, weight)| (term, weight * &half)).collect();
                 scalars.sum(constant * &half, terms)

@@ -5,7 +5,7 @@
 
 use clebsch_symbolic::{Analytic, One, Rational, Role, Zero, integer, work};
 
-use super::{Callee, Hoisted, Input, Node, Scalar, Scalars};
+use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};
 
 const LONGEST_NAME: usize = 48;
 
@@ -53,7 +53,7 @@ impl Names<'_> {
         work::spend(1);
         let sign = integer(if is_negative { -1 } else { 1 });
         let name = match self.scalars.node(scalar) {
-            Node::Sum(constant, terms) => {
+            ScalarNode::Sum(constant, terms) => {
                 let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.factors(*term));
                 self.sum(constant * &sign, terms.iter().map(term).collect())
             }
@@ -64,7 +64,7 @@ impl Names<'_> {
 
     fn factors(&self, scalar: Scalar) -> Factors {
         match self.scalars.node(scalar) {
-            Node::Product(factors) => factors.clone(),
+            ScalarNode::Product(factors) => factors.clone(),
             _ => vec![(scalar, 1)],
         }
     }
@@ -80,9 +80,10 @@ impl Names<'_> {
         };
         for (weight, factors) in terms {
             let is_sum =
-                |(base, power): &(Scalar, u32)| *power == 1 && matches!(self.scalars.node(*base), Node::Sum(..));
+                |(base, power): &(Scalar, u32)| *power == 1 && matches!(self.scalars.node(*base), ScalarNode::Sum(..));
             let position = factors.iter().position(is_sum);
-            let Some((position, Node::Sum(inner, terms))) = position.map(|at| (at, self.scalars.node(factors[at].0)))
+            let Some((position, ScalarNode::Sum(inner, terms))) =
+                position.map(|at| (at, self.scalars.node(factors[at].0)))
             else {
                 add(weight.clone(), factors.clone());
                 continue;
@@ -172,7 +173,7 @@ impl Names<'_> {
     /// The field and the index of an entry of a field that has several.
     fn entry(&self, scalar: Scalar) -> Option<(String, String)> {
         match self.scalars.node(scalar) {
-            Node::Input(input) if input.role != Role::StepSize && !self.is_single(input) => {
+            ScalarNode::Input(input) if input.role != Role::StepSize && !self.is_single(input) => {
                 Some((field(input), index(input)))
             }
             _ => None,
@@ -190,11 +191,11 @@ impl Names<'_> {
         let (mut sums, mut below) = (Vec::new(), Vec::new());
         for &(base, power) in factors {
             match self.scalars.node(base) {
-                Node::Reciprocal(x) => {
+                ScalarNode::Reciprocal(x) => {
                     let inner = self.factors(*x);
                     below.extend(inner.into_iter().map(|(base, inner)| (base, inner * power)));
                 }
-                Node::Sum(..) if power == 1 => sums.push(self.base(base)?),
+                ScalarNode::Sum(..) if power == 1 => sums.push(self.base(base)?),
                 _ => words.push(self.raised(base, power)?),
             }
         }
@@ -225,16 +226,16 @@ impl Names<'_> {
     /// The name of what is no product.
     fn base(&self, scalar: Scalar) -> Option<String> {
         match self.scalars.node(scalar) {
-            Node::Input(input) if input.role == Role::StepSize => Some("h".into()),
-            Node::Input(input) if self.is_single(input) => Some(field(input)),
-            Node::Input(input) => Some(format!("{}_{}", field(input), index(input))),
-            Node::Pi => Some("pi".into()),
-            Node::Root(x, (1, 2)) => Some(format!("root_of_{}", self.value(*x, false)?)),
-            Node::Root(x, (numerator, denominator)) => {
+            ScalarNode::Input(input) if input.role == Role::StepSize => Some("h".into()),
+            ScalarNode::Input(input) if self.is_single(input) => Some(field(input)),
+            ScalarNode::Input(input) => Some(format!("{}_{}", field(input), index(input))),
+            ScalarNode::Pi => Some("pi".into()),
+            ScalarNode::Root(x, (1, 2)) => Some(format!("root_of_{}", self.value(*x, false)?)),
+            ScalarNode::Root(x, (numerator, denominator)) => {
                 Some(format!("{}_to_{numerator}_over_{denominator}", self.value(*x, false)?))
             }
-            Node::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.value(*x, false)?)),
-            Node::Output(call, output) => {
+            ScalarNode::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.value(*x, false)?)),
+            ScalarNode::Output(call, output) => {
                 let name = match &self.scalars.call_of(*call).callee {
                     Callee::Analytic(Analytic::Exponential) => "exponential",
                     Callee::Analytic(Analytic::Phi) => "phi",
@@ -244,7 +245,7 @@ impl Names<'_> {
                 };
                 Some(format!("{name}_{}{}", output.row, output.column))
             }
-            Node::Sum(..) | Node::Product(_) | Node::Reciprocal(_) => self.value(scalar, false),
+            ScalarNode::Sum(..) | ScalarNode::Product(_) | ScalarNode::Reciprocal(_) => self.value(scalar, false),
         }
     }
 

@@ -77,7 +77,7 @@ pub struct Output {
 
 /// A scalar expression.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub enum Node {
+pub enum ScalarNode {
     /// An entry of an input.
     Input(Input),
     /// π.
@@ -96,12 +96,12 @@ pub enum Node {
     Output(CallId, Output),
 }
 
-impl Node {
+impl ScalarNode {
     /// About the work that it takes to make it once its parts are there.
     fn size(&self) -> usize {
         2 + match self {
-            Node::Sum(_, terms) => terms.len(),
-            Node::Product(factors) => factors.len() / 2,
+            ScalarNode::Sum(_, terms) => terms.len(),
+            ScalarNode::Product(factors) => factors.len() / 2,
             _ => 0,
         }
     }
@@ -114,7 +114,7 @@ pub struct Scalars {
     pub keeps_sums: bool,
     /// Whether kernels keep whole matrices and are not written out.
     pub keeps_matrices: bool,
-    nodes: Interner<Node>,
+    nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
     calls: Vec<Call>,
     /// The grids of expressions whose scalars are here.
@@ -123,12 +123,12 @@ pub struct Scalars {
 
 impl Scalars {
     /// The expression behind an identity.
-    pub fn node(&self, scalar: Scalar) -> &Node {
+    pub fn node(&self, scalar: Scalar) -> &ScalarNode {
         self.nodes.value(scalar.0 as usize)
     }
 
     /// The identity of an expression that is there.
-    pub(super) fn known(&self, node: &Node) -> Option<Scalar> {
+    pub(super) fn known(&self, node: &ScalarNode) -> Option<Scalar> {
         self.nodes.position(node).map(|position| Scalar(position as u32))
     }
 
@@ -137,7 +137,7 @@ impl Scalars {
         self.rates[scalar.0 as usize]
     }
 
-    fn intern(&mut self, node: Node, rate: Rate) -> Scalar {
+    fn intern(&mut self, node: ScalarNode, rate: Rate) -> Scalar {
         work::spend(node.size());
         let (position, is_new) = self.nodes.intern(node);
         if is_new {
@@ -157,24 +157,24 @@ impl Scalars {
             Role::Chart(_) => Rate::Iteration,
             _ => Rate::Step,
         };
-        self.intern(Node::Input(input), rate)
+        self.intern(ScalarNode::Input(input), rate)
     }
 
     /// Whether another entry of the same input occurs.
     pub fn has_other_entries(&self, input: &Input) -> bool {
         self.nodes.values().iter().any(|node| {
-            matches!(node, Node::Input(other) if other.role == input.role && (other.row, other.column) != (input.row, input.column))
+            matches!(node, ScalarNode::Input(other) if other.role == input.role && (other.row, other.column) != (input.row, input.column))
         })
     }
 
     /// π.
     pub fn pi(&mut self) -> Scalar {
-        self.intern(Node::Pi, Rate::Once)
+        self.intern(ScalarNode::Pi, Rate::Once)
     }
 
     /// A number.
     pub fn number(&mut self, value: Rational) -> Scalar {
-        self.intern(Node::Sum(value, Vec::new()), Rate::Once)
+        self.intern(ScalarNode::Sum(value, Vec::new()), Rate::Once)
     }
 
     /// The number zero.
@@ -185,7 +185,7 @@ impl Scalars {
     /// The value, if it is a number.
     pub fn as_number(&self, scalar: Scalar) -> Option<&Rational> {
         match self.node(scalar) {
-            Node::Sum(constant, terms) if terms.is_empty() => Some(constant),
+            ScalarNode::Sum(constant, terms) if terms.is_empty() => Some(constant),
             _ => None,
         }
     }
@@ -201,7 +201,7 @@ impl Scalars {
         let mut collected: Vec<(Scalar, Rational)> = Vec::new();
         for (scalar, coefficient) in terms {
             match self.node(scalar) {
-                Node::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
+                ScalarNode::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
                     if !inner.is_zero() {
                         total += product(inner, &coefficient);
                     }
@@ -216,7 +216,7 @@ impl Scalars {
             [(only, coefficient)] if total.is_zero() && coefficient.is_one() => *only,
             _ => {
                 let rate = self.rate_of(terms.iter().map(|(scalar, _)| *scalar));
-                self.intern(Node::Sum(total, terms), rate)
+                self.intern(ScalarNode::Sum(total, terms), rate)
             }
         }
     }
@@ -234,8 +234,8 @@ impl Scalars {
     /// A scalar as a number times the rest.
     pub fn factor(&self, scalar: Scalar) -> (Rational, Option<Scalar>) {
         match self.node(scalar) {
-            Node::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
-            Node::Sum(constant, terms) if terms.len() == 1 && constant.is_zero() => {
+            ScalarNode::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
+            ScalarNode::Sum(constant, terms) if terms.len() == 1 && constant.is_zero() => {
                 (terms[0].1.clone(), Some(terms[0].0))
             }
             _ => (integer(1), Some(scalar)),
@@ -250,7 +250,7 @@ impl Scalars {
             let (number, rest) = self.factor(factor);
             coefficient = product(&coefficient, &number);
             match rest.map(|rest| (rest, self.node(rest))) {
-                Some((_, Node::Product(inner))) => {
+                Some((_, ScalarNode::Product(inner))) => {
                     inner.iter().for_each(|&(base, exponent)| raise(&mut powers, base, exponent));
                 }
                 Some((rest, _)) => raise(&mut powers, rest, 1),
@@ -266,7 +266,7 @@ impl Scalars {
             [(only, 1)] => *only,
             _ => {
                 let rate = self.rate_of(powers.iter().map(|&(base, _)| base));
-                self.intern(Node::Product(powers), rate)
+                self.intern(ScalarNode::Product(powers), rate)
             }
         };
         self.scale(product, coefficient)
@@ -274,7 +274,7 @@ impl Scalars {
 
     fn cancel_reciprocals(&self, powers: &mut Vec<(Scalar, u32)>) {
         for position in 0..powers.len() {
-            if let Node::Reciprocal(inner) = self.node(powers[position].0)
+            if let ScalarNode::Reciprocal(inner) = self.node(powers[position].0)
                 && let Ok(other) = powers.binary_search_by_key(inner, |(base, _)| *base)
             {
                 let common = powers[other].1.min(powers[position].1);
@@ -294,10 +294,10 @@ impl Scalars {
             return self.number(number);
         };
         let inverse = match self.node(rest).clone() {
-            Node::Reciprocal(inner) => inner,
+            ScalarNode::Reciprocal(inner) => inner,
             _ => {
                 let rate = self.rate(rest);
-                self.intern(Node::Reciprocal(rest), rate)
+                self.intern(ScalarNode::Reciprocal(rest), rate)
             }
         };
         self.scale(inverse, number)
@@ -316,7 +316,7 @@ impl Scalars {
         let mut factors = vec![base; whole.unsigned_abs() as usize];
         if fraction != 0 {
             let rate = self.rate(x);
-            factors.push(self.intern(Node::Root(x, (fraction, denominator)), rate));
+            factors.push(self.intern(ScalarNode::Root(x, (fraction, denominator)), rate));
         }
         self.product(factors)
     }
@@ -324,7 +324,7 @@ impl Scalars {
     /// An elementary function.
     pub fn function(&mut self, function: Function, x: Scalar) -> Scalar {
         let rate = self.rate(x);
-        self.intern(Node::Function(function, x), rate)
+        self.intern(ScalarNode::Function(function, x), rate)
     }
 
     /// The entries of what a call returns.
@@ -335,7 +335,7 @@ impl Scalars {
             self.calls.push(call);
             self.calls.len() - 1
         });
-        let entry = |(row, column)| Node::Output(CallId(index as u32), Output { leaf, row, column, shape });
+        let entry = |(row, column)| ScalarNode::Output(CallId(index as u32), Output { leaf, row, column, shape });
         shape.positions().map(entry).map(|node| self.intern(node, rate)).collect()
     }
 

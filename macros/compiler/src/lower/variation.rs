@@ -2,7 +2,7 @@
 
 use super::made::{of_matrices, of_row};
 use super::{Hoisted, Hoisting, Kernel, Scalars, matrices};
-use crate::derive::{EdgeMatrices, Formulas, Id, MatrixForm, Variation};
+use crate::derive::{EdgeDerivatives, EdgeMatrices, Formulas, Id, MatrixForm};
 
 /// The kernels that variations need beside those of the step.
 pub struct VariationKernels {
@@ -62,7 +62,7 @@ pub(super) fn orbit_metric(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Ke
 
 fn edge<'g>(
     formulas: &Formulas<'g>,
-    variation: &Variation<'g>,
+    variation: &EdgeDerivatives<'g>,
     scalars: &mut Scalars,
     hoisted: &mut Hoisted,
 ) -> EdgeKernels {

@@ -5,8 +5,8 @@ use clebsch_symbolic::{Expr, Group, Shape, identity};
 use super::action_laws::Action;
 use super::elaborate::shortened;
 use super::membership::Verdict;
-use super::{Configuration, Factor, Space};
-use crate::diagnostic::{Diagnostic, Place};
+use super::{Configuration, Factor, LeafSpace};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 impl<'g> Action<'_, 'g> {
@@ -36,7 +36,7 @@ impl<'g> Action<'_, 'g> {
     /// A configuration does not stay where it is promised to be.
     pub(super) fn leaves_space(&self, leaf: &Configuration, moved: Expr<'g>, verdict: Verdict) -> Diagnostic {
         let promise = match leaf.space {
-            Space::Group(group) => format!("in {}", group.name(self.graph)),
+            LeafSpace::Group(group) => format!("in {}", group.name(self.graph)),
             _ => "a unit vector".to_string(),
         };
         let (key, name) = (&self.closure.key, &leaf.name);
@@ -45,7 +45,7 @@ impl<'g> Action<'_, 'g> {
         let formula = Some(ascii(moved)).filter(|formula| self.is_readable(formula));
         let moved = formula.unwrap_or_else(|| shortened(&spell(&self.closure.body)));
         let message = format!("the {key} moves `{name}` to `{moved}`, which {which} {promise}");
-        Diagnostic::new(Place::of(&self.closure.body), message)
+        Diagnostic::new(Location::of(&self.closure.body), message)
             .help(format!("write `{name}: {plain}` if any value is a configuration"))
     }
 
@@ -59,7 +59,7 @@ impl<'g> Action<'_, 'g> {
             _ if self.factors.len() > 1 => "the group".to_string(),
             _ => self.name_of(&self.factors[0]),
         };
-        Diagnostic::new(Place::of(&self.closure.body), format!("`{text}` is not an action of {group}"))
+        Diagnostic::new(Location::of(&self.closure.body), format!("`{text}` is not an action of {group}"))
     }
 
     pub(super) fn composition(&self, index: usize, composed: &[Expr<'g>]) -> String {
@@ -128,7 +128,7 @@ impl<'g> Action<'_, 'g> {
         let (one, other) = (&self.factors[first], &self.factors[second]);
         let declared = |factor: &Factor| format!("`{}: {}`", factor.name, self.name_of(factor));
         Diagnostic::new(
-            Place::of(&self.closure.body),
+            Location::of(&self.closure.body),
             format!("the factors {} and {} do not commute", declared(one), declared(other)),
         )
         .note(self.both_orders(one, other, leaf, [then_second[leaf], then_first[leaf]]))
@@ -166,9 +166,9 @@ impl<'g> Action<'_, 'g> {
     fn space_name(&self, leaf: &Configuration) -> String {
         let plain = plain_name(leaf);
         match leaf.space {
-            Space::Vectors => plain,
-            Space::Unit => format!("Unit<{plain}>"),
-            Space::Group(group) => group.name(self.graph),
+            LeafSpace::Vectors => plain,
+            LeafSpace::Unit => format!("Unit<{plain}>"),
+            LeafSpace::Group(group) => group.name(self.graph),
         }
     }
 }

@@ -4,7 +4,7 @@
 use clebsch_symbolic::{Expr, Graph, Role, identity};
 
 use super::membership::{Verdict, lies_on};
-use super::{Configuration, Factor, Side, Space};
+use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
 use crate::parse::Closure;
 
@@ -100,10 +100,12 @@ impl<'g> Action<'_, 'g> {
     fn stays_in_space(&self, diagnostics: &mut Diagnostics) {
         for (leaf, &moved) in self.configurations.iter().zip(self.value) {
             let verdict = match leaf.space {
-                Space::Vectors => Verdict::Inside,
-                Space::Unit if identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]) => Verdict::Inside,
-                Space::Unit => Verdict::Outside,
-                Space::Group(group) => lies_on(moved, group),
+                LeafSpace::Vectors => Verdict::Inside,
+                LeafSpace::Unit if identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]) => {
+                    Verdict::Inside
+                }
+                LeafSpace::Unit => Verdict::Outside,
+                LeafSpace::Group(group) => lies_on(moved, group),
             };
             if verdict != Verdict::Inside {
                 diagnostics.push(self.leaves_space(leaf, moved, verdict));

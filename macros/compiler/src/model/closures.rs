@@ -11,7 +11,7 @@ use super::sites;
 use super::value::{Each, PerSite, Value};
 use super::velocity::Velocity;
 use super::{Configuration, Discretization, Factor, Kinetic, Layout, Spans, Written};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{self, Closure, Declaration, spell};
 
 /// Φ_F(q), leaf by leaf.
@@ -276,15 +276,15 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
 }
 
 /// The expression that gives a body its value, and where it is.
-pub(super) fn tail(body: &Syntax) -> (Place, &Syntax) {
+pub(super) fn tail(body: &Syntax) -> (Location, &Syntax) {
     match body {
         Syntax::Block(block) => match block.block.stmts.last() {
             Some(Stmt::Expr(value, None)) => tail(value),
-            _ => (Place::of(body), body),
+            _ => (Location::of(body), body),
         },
         Syntax::Paren(inner) => tail(&inner.expr),
         Syntax::Group(inner) => tail(&inner.expr),
-        _ => (Place::of(body), body),
+        _ => (Location::of(body), body),
     }
 }
 
@@ -303,5 +303,5 @@ pub(super) fn spans(declaration: &Declaration) -> Spans {
 
 /// A closure's body as it was written.
 pub(super) fn written(closure: &Closure) -> Written {
-    Written { place: Place::of(&closure.body), text: spell(&closure.body), arguments: closure.spell_head() }
+    Written { place: Location::of(&closure.body), text: spell(&closure.body), arguments: closure.spell_head() }
 }

@@ -12,14 +12,14 @@ use super::forces::{self, Input};
 use super::leaves::{Expected, leaves, new_value_of};
 use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, Slot};
 use super::value::Value;
-use super::{Bound, Configuration, Control, Discretization, Factor, Kinetic};
-use crate::diagnostic::{Diagnostic, Place};
+use super::{Bound, Configuration, Discretization, Factor, InputChoice, Kinetic};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{self, Closure, Declaration, Located, spell};
 
 /// The motion that inputs give, with the input; `None` with an error, which was reported.
 pub(super) fn motion<'g>(
     context: &mut Context<'_, 'g>,
-    system: &forces::System<'_, '_, 'g>,
+    system: &forces::ForcedSystem<'_, '_, 'g>,
     declaration: &Declaration,
 ) -> Option<(Kinetic<'g>, Input<'g>)> {
     match &declaration.kinetic {
@@ -71,7 +71,7 @@ fn check_discretization(
 /// A closure whose last argument introduces the input.
 fn elaborate<'g>(
     context: &mut Context<'_, 'g>,
-    system: &forces::System<'_, '_, 'g>,
+    system: &forces::ForcedSystem<'_, '_, 'g>,
     closure: &Closure,
     slots: &[Slot],
 ) -> Option<(Input<'g>, Value<'g>)> {
@@ -97,7 +97,7 @@ pub(super) fn read<'g>(
     arguments: &Arguments<'_, 'g>,
     control: &parse::Choice,
     input: &Input<'g>,
-) -> Option<Control<'g>> {
+) -> Option<InputChoice<'g>> {
     let [leaf] = input.1.as_slice() else {
         let error = Diagnostic::new(control.price.head, "what is chosen has to be one vector");
         context.diagnostics.push(error.help("write `u: Vector3`, with all inputs in one vector"));
@@ -109,7 +109,7 @@ pub(super) fn read<'g>(
     let scope = arguments.scope(&control.price, PRICE, &taken, &chosen, &mut context.diagnostics);
     let price = scalar(context, &control.price, Elaborated { scope, needs: "a price is a scalar" });
     let bounds = control.bounds.as_ref().map(|closure| bounds(context, arguments, closure, input));
-    Some(Control {
+    Some(InputChoice {
         price: price?,
         bounds: bounds.map_or(Some(Vec::new()), |bounds| bounds)?,
         written: written(&control.price),
@@ -172,7 +172,7 @@ fn bounds<'g>(
                         format!("`{}` is {}, and a bound compares scalars", shortened(&spell(side)), value.describe());
                     context
                         .diagnostics
-                        .push(Diagnostic::new(Place::of(side), message).help("compare component by component"));
+                        .push(Diagnostic::new(Location::of(side), message).help("compare component by component"));
                     None
                 }
             }
@@ -192,7 +192,7 @@ fn sides<'s>(context: &mut Context<'_, '_>, inequality: &'s Syntax) -> Option<(&
             _ => {}
         }
     }
-    let error = Diagnostic::new(Place::of(inequality), format!("`{}` is no bound", shortened(&spell(inequality))));
+    let error = Diagnostic::new(Location::of(inequality), format!("`{}` is no bound", shortened(&spell(inequality))));
     context
         .diagnostics
         .push(error.help("write `a <= b` or `a >= b`").note("bounds hold with equality where they are active"));

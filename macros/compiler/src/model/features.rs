@@ -8,7 +8,7 @@ mod rows;
 
 use proc_macro2::Span;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 pub(crate) use feature::Feature;
 pub use markdown::features_as_markdown;
 use rows::ROWS;
@@ -30,13 +30,13 @@ struct Row {
 /// A feature that a stage has found.
 #[derive(Clone)]
 pub(crate) struct Found {
-    place: Option<Place>,
+    place: Option<Location>,
     name: String,
 }
 
 impl Found {
     /// A feature with a place.
-    pub fn at(place: impl Into<Place>) -> Found {
+    pub fn at(place: impl Into<Location>) -> Found {
         Found { place: Some(place.into()), name: String::new() }
     }
 
@@ -51,7 +51,7 @@ impl Found {
     }
 
     /// Where it is.
-    fn place(&self) -> Place {
+    fn place(&self) -> Location {
         // by construction: what is refused has a place
         self.place.unwrap_or_else(|| Span::call_site().into())
     }

@@ -14,7 +14,7 @@ use super::sizes::{ENTRIES, size, type_parameter};
 use super::value::{Each, PerSite, Value};
 use super::vectors::{hint, last_segment, vectors};
 use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Declaration, Field, spell_type};
 
 /// What closures can read.
@@ -122,7 +122,7 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
                 let message =
                     format!("`{}` has {} numbers, more than {ENTRIES}", spell_type(ty), leaves * element.shape.len());
                 let note = "the code of a step is written out at compile time and grows with the size";
-                return Err(Some(Diagnostic::new(Place::of(ty), message).note(note)));
+                return Err(Some(Diagnostic::new(Location::of(ty), message).note(note)));
             }
             let parts = (0..length).map(|i| element.structure.shifted(i * element.leaves)).collect();
             Ok(FieldType { structure: Layout::Array(parts), leaves, ..element })
@@ -176,7 +176,7 @@ fn explain(field: &Field, error: Option<Diagnostic>) -> Diagnostic {
         _ => hint(&name),
     };
     Diagnostic::new(
-        Place::of(&field.ty),
+        Location::of(&field.ty),
         format!("a closure reads `self.{}`, and its type `{text}` has no meaning there", field.name()),
     )
     .maybe_help(help)

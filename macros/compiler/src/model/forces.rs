@@ -11,12 +11,12 @@ use super::leaves::{Expected, leaf_names, leaves};
 use super::spaces::read_spaces;
 use super::value::Value;
 use super::velocity::Velocity;
-use super::{Access, Configuration, Factor, Force, Layout, Space};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use super::{Access, Configuration, Factor, Force, Layout, LeafSpace};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Argument, Closure, Declaration, Pattern, spell};
 
 /// What forces are read for.
-pub(super) struct System<'a, 'd, 'g> {
+pub(super) struct ForcedSystem<'a, 'd, 'g> {
     pub arguments: &'a Arguments<'d, 'g>,
     pub names: GroupNames<'a>,
     pub element: &'a Layout,
@@ -38,7 +38,7 @@ pub(super) type Input<'g> = (Layout, Vec<Configuration<'g>>);
 /// Reads both closures; `None` if one has an error, which was reported.
 pub(super) fn read<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     declaration: &Declaration,
 ) -> Option<Forces<'g>> {
     let none = || (Layout::Tuple(Vec::new()), Vec::new());
@@ -89,7 +89,7 @@ struct ReadForce<'g> {
 
 fn one<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     closure: &Closure,
     kind: ForceKind,
 ) -> Option<ReadForce<'g>> {
@@ -118,7 +118,7 @@ fn one<'g>(
 
 fn named_velocity<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     pattern: &Pattern,
 ) -> Option<(Option<Value<'g>>, Vec<Expr<'g>>)> {
     let velocity = Velocity { graph: context.graph, factors: system.factors };
@@ -127,7 +127,7 @@ fn named_velocity<'g>(
 }
 
 /// The symbols of a velocity that the closure does not ask for.
-fn unnamed_velocity<'g>(context: &Context<'_, 'g>, system: &System<'_, '_, 'g>) -> Vec<Expr<'g>> {
+fn unnamed_velocity<'g>(context: &Context<'_, 'g>, system: &ForcedSystem<'_, '_, 'g>) -> Vec<Expr<'g>> {
     let symbol = |(k, factor): (usize, &Factor<'g>)| {
         let shape = Shape::vector(factor.group.dimension());
         context.graph.symbol("velocity", shape, Role::Algebra(k), Property::General)
@@ -138,13 +138,15 @@ fn unnamed_velocity<'g>(context: &Context<'_, 'g>, system: &System<'_, '_, 'g>) 
 /// The leaves of a typed argument: spaces of vectors.
 pub(super) fn read_input<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     argument: &Argument,
 ) -> Option<Input<'g>> {
     let ty = argument.ty.as_ref()?;
     let product = read_spaces(ty, system.names, &mut context.diagnostics)?;
-    if let Some((_, ty)) = product.leaves.iter().find(|(leaf, _)| leaf.space != Space::Vectors || leaf.is_quaternion) {
-        context.diagnostics.push(no_input(Place::of(*ty)));
+    if let Some((_, ty)) =
+        product.leaves.iter().find(|(leaf, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion)
+    {
+        context.diagnostics.push(no_input(Location::of(*ty)));
         return None;
     }
     let names = leaf_names(&argument.pattern, &product.structure, &mut context.diagnostics)?;
@@ -172,7 +174,7 @@ struct Elaborated<'a, 'g> {
 
 fn elaborate<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     closure: &Closure,
     given: Elaborated<'_, 'g>,
 ) -> Option<Value<'g>> {
@@ -188,7 +190,7 @@ fn elaborate<'g>(
 /// The components of each factor: a vector, or a tuple with a vector for each block of its algebra, `(torque, force)` on SE(3).
 pub(super) fn components<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     closure: &Closure,
     value: &Value<'g>,
 ) -> Option<Vec<Expr<'g>>> {
@@ -207,7 +209,7 @@ pub(super) fn components<'g>(
 
 fn flatten<'g>(
     context: &Context<'_, 'g>,
-    system: &System<'_, '_, 'g>,
+    system: &ForcedSystem<'_, '_, 'g>,
     value: &Value<'g>,
     structure: &Layout,
     parts: &mut Vec<Expr<'g>>,
@@ -254,7 +256,7 @@ fn stacked<'g>(context: &Context<'_, 'g>, factor: &Factor<'g>, values: &[Value<'
     Some(whole)
 }
 
-fn no_input(place: Place) -> Diagnostic {
+fn no_input(place: Location) -> Diagnostic {
     Diagnostic::new(place, "an input is made of vectors and matrices")
         .help("write `u: Vector3`, or a tuple of such, `(torque, thrust): (Vector3, Vector1)`")
         .note("forces are linear spaces: sums and multiples of inputs are inputs")

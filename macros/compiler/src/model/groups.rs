@@ -7,8 +7,8 @@ use super::declared::DeclaredGroups;
 use super::features::{self, Feature, Found};
 use super::sizes::{LARGEST, size_argument};
 use super::vectors::{arguments, last_segment, named_shape};
-use super::{Configuration, Factor, Space};
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use super::{Configuration, Factor, LeafSpace};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::parse::{Declaration, spell_type};
 
 /// What the names in types refer to.
@@ -54,7 +54,7 @@ const COMBINED: usize = 64;
 
 /// Whether conserved momenta are looked for among single components alone, as there are many.
 pub fn is_large(group: Group, configurations: &[Configuration<'_>]) -> bool {
-    group.dimension() > COMBINED && configurations.iter().all(|leaf| leaf.space == Space::Unit)
+    group.dimension() > COMBINED && configurations.iter().all(|leaf| leaf.space == LeafSpace::Unit)
 }
 
 /// SU(2) is made of quaternions, the others of real matrices.
@@ -81,7 +81,7 @@ pub(super) fn group(ty: &Type, names: GroupNames) -> Option<Result<Group, Diagno
 fn declared(ty: &Type, segment: &PathSegment, group: Group) -> Result<Group, Diagnostic> {
     match segment.arguments.is_none() {
         true => Ok(group),
-        false => Err(Diagnostic::new(Place::of(ty), format!("`{}` has no size to choose", segment.ident))
+        false => Err(Diagnostic::new(Location::of(ty), format!("`{}` has no size to choose", segment.ident))
             .help(format!("write `{}`", segment.ident))
             .note("a group that is declared here is one group")),
     }
@@ -95,7 +95,7 @@ fn built_in(
     names: GroupNames,
 ) -> Result<Group, Diagnostic> {
     let size = |position: usize| size_argument(sizes[position], names.generics);
-    let place = Place::of(ty);
+    let place = Location::of(ty);
     match (maker, sizes.len()) {
         (Maker::One(least, make) | Maker::OneOrTwo(least, make, _), 1) => match size(0)? {
             n if n >= least => Ok(make(n)),
@@ -122,12 +122,12 @@ fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
     let rows = group.element_shape().rows;
     if rows > LARGEST {
         let message = format!("the matrices of `{text}` have {rows} rows, more than {LARGEST}");
-        return Err(Diagnostic::new(Place::of(ty), message).note(note));
+        return Err(Diagnostic::new(Location::of(ty), message).note(note));
     }
     // spheres need no equation, and it is only known later whether rotations move one
     if group.dimension() > DIMENSION && !matches!(group, Group::SpecialOrthogonal(_)) {
         let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", group.dimension());
-        return Err(Diagnostic::new(Place::of(ty), message).note(note));
+        return Err(Diagnostic::new(Location::of(ty), message).note(note));
     }
     Ok(group)
 }
@@ -150,14 +150,14 @@ pub(super) fn check_large(
         ));
     }
     let Some(symmetry) = declaration.symmetries.first() else { return Ok(()) };
-    let offered = Found::at(Place::of(&symmetry.body)).named(text);
+    let offered = Found::at(Location::of(&symmetry.body)).named(text);
     Err(features::refusal((Feature::Symmetry, offered), (Feature::LargeGroup, Found::somewhere())))
 }
 
 /// The error for a type that is no group, where a group is expected.
 pub(super) fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
     let text = spell_type(ty);
-    let place = Place::of(ty);
+    let place = Location::of(ty);
     let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
     if let Some(shape) = named_shape(&name) {
         let message = format!("`{text}` is a space, but the first argument of the action is a group element");

@@ -57,7 +57,7 @@ use self::elaborate::Context;
 use self::forces::Forces;
 use self::groups::GroupNames;
 use self::sites::Sites;
-use self::symmetries::System;
+use self::symmetries::OfferedSystem;
 use self::typed::Typed;
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Pattern, Potential};
@@ -165,7 +165,7 @@ struct ClosureValues<'g> {
     terms: Vec<Term<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
     forces: Forces<'g>,
-    control: Option<Control<'g>>,
+    control: Option<InputChoice<'g>>,
     endpoint: Option<Expr<'g>>,
 }
 
@@ -192,10 +192,11 @@ impl<'g> ClosureValues<'g> {
             &mut context.diagnostics,
         );
         let (element, configuration) = (&typed.element, &typed.configuration);
-        let system = System { arguments, names, element, factors, configuration, configurations, action: &action };
+        let system =
+            OfferedSystem { arguments, names, element, factors, configuration, configurations, action: &action };
         let symmetries = symmetries::read(context, &system, &declaration.symmetries);
         forces::check_dials(declaration, &mut context.diagnostics);
-        let forced = forces::System { arguments, names, element, factors, configuration, configurations };
+        let forced = forces::ForcedSystem { arguments, names, element, factors, configuration, configurations };
         let endpoint = declaration.endpoint.as_ref().map(|closure| control::endpoint(context, arguments, closure));
         let endpoint = endpoint.map_or(Some(None), |endpoint| endpoint.map(Some));
         let mut forces = forces::read(context, &forced, declaration);

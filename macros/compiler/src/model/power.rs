@@ -12,7 +12,7 @@ use syn::{Generics, Type};
 
 use super::sizes::const_generic;
 use super::{Item, Parameter};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 pub use bounds::Linear;
 
 /// What makes a power of the model of a site.
@@ -94,7 +94,7 @@ pub(super) struct SiteTypes<'d> {
 /// The types of a site, where the action is one of a power; `None` where neither type has a const generic for its length.
 ///
 /// # Errors
-/// Place only one of them has, or another one.
+/// Where only one of them has, or another one.
 pub(super) fn site_types<'d>(
     (group, space): (&'d Type, &'d Type),
     generics: &'d Generics,
@@ -112,7 +112,7 @@ pub(super) fn site_types<'d>(
 
 fn unequal(ty: &Type, inner: &Type, length: &Ident) -> Diagnostic {
     let (text, inner) = (crate::parse::spell_type(ty), crate::parse::spell_type(inner));
-    Diagnostic::new(Place::of(ty), format!("`{text}` is no power with {length} sites"))
+    Diagnostic::new(Location::of(ty), format!("`{text}` is no power with {length} sites"))
         .help(format!("write `[…; {length}]` for both, the group and the space that it moves"))
         .note(format!("the other argument has {length} times `{inner}`, and each site is moved by its own element"))
 }

@@ -5,7 +5,9 @@ use std::fmt;
 use clebsch_symbolic::Expr;
 
 use super::scalar::spell_scalar;
-use super::{Configuration, Factor, Isotropy, Kinetic, Model, OfferedSymmetry, Order, Parameter, Promise, Side, Space};
+use super::{
+    Configuration, Factor, Isotropy, Kinetic, LeafSpace, Model, OfferedSymmetry, Order, Parameter, Promise, Side,
+};
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -103,9 +105,9 @@ impl fmt::Display for Configuration<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "configuration {}: {}", self.name, self.shape)?;
         match self.space {
-            Space::Vectors => Ok(()),
-            Space::Unit => f.write_str(", unit"),
-            Space::Group(group) => write!(f, " in {}", group.name(self.symbol.graph())),
+            LeafSpace::Vectors => Ok(()),
+            LeafSpace::Unit => f.write_str(", unit"),
+            LeafSpace::Group(group) => write!(f, " in {}", group.name(self.symbol.graph())),
         }
     }
 }

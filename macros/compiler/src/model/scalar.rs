@@ -4,7 +4,7 @@ use syn::{Generics, Type};
 
 use super::ScalarType;
 use super::vectors::last_segment;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Declaration, spell_type};
 
 /// The scalar that all types agree on.
@@ -36,7 +36,7 @@ impl<'d> Agreement<'d> {
         let Some(scalar) = named_scalar(&name, self.generics) else {
             diagnostics.push(
                 Diagnostic::new(
-                    Place::of(ty),
+                    Location::of(ty),
                     format!("the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter"),
                 )
                 .help("write `f64`")
@@ -49,7 +49,7 @@ impl<'d> Agreement<'d> {
             Some((other, first)) if *other != scalar => {
                 let message =
                     format!("the scalar of {whose} is `{text}`, that of {first} is `{}`", spell_scalar(other));
-                let error = Diagnostic::new(Place::of(ty), message);
+                let error = Diagnostic::new(Location::of(ty), message);
                 diagnostics
                     .push(error.help(format!("write `{}`", spell_scalar(other))).note("a system has one scalar type"));
             }

@@ -2,7 +2,7 @@
 
 use syn::{Expr, GenericArgument, GenericParam, Generics, Lit, Type};
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{spell, spell_type};
 
 /// Rows or columns of one matrix, and the length of one array.
@@ -18,8 +18,8 @@ pub(super) const TERMS: usize = 4096;
 pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> Result<usize, Diagnostic> {
     match argument {
         GenericArgument::Const(expr) => size(expr, generics),
-        GenericArgument::Type(ty) => Err(no_size(Place::of(ty), &spell_type(ty), generics)),
-        other => Err(Diagnostic::new(Place::of(other), "a size is a number").help("write a number, as in `SO<3>`")),
+        GenericArgument::Type(ty) => Err(no_size(Location::of(ty), &spell_type(ty), generics)),
+        other => Err(Diagnostic::new(Location::of(other), "a size is a number").help("write a number, as in `SO<3>`")),
     }
 }
 
@@ -47,14 +47,14 @@ pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic
                 _ => Err(Diagnostic::new(number.span(), format!("the size {number} is more than {LARGEST}"))
                     .note("the code of a step is written out at compile time and grows with the size")),
             },
-            _ => Err(no_size(Place::of(expr), &spell(expr), generics)),
+            _ => Err(no_size(Location::of(expr), &spell(expr), generics)),
         },
         Expr::Group(group) => size(&group.expr, generics),
-        _ => Err(no_size(Place::of(expr), &spell(expr), generics)),
+        _ => Err(no_size(Location::of(expr), &spell(expr), generics)),
     }
 }
 
-fn no_size(place: Place, text: &str, generics: &Generics) -> Diagnostic {
+fn no_size(place: Location, text: &str, generics: &Generics) -> Diagnostic {
     if const_generic(text, generics).is_some() {
         return Diagnostic::later(place, format!("the const generic `{text}` as a size")).help("write a number");
     }

@@ -3,7 +3,7 @@
 use syn::ext::IdentExt;
 
 use super::scope::check_reserved;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
 
 /// What an argument stands for.
@@ -139,7 +139,7 @@ impl<'d> SharedNames<'d> {
         if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(taken[position], Some(Slot::Offered | Slot::Input)))
         {
             diagnostics.push(
-                Diagnostic::new(Place::of(ty), format!("`{name}` has a type again"))
+                Diagnostic::new(Location::of(ty), format!("`{name}` has a type again"))
                     .help(format!("write `{name}` without `: {}`", spell_type(ty)))
                     .note("types stand in the action, which introduces the spaces"),
             );

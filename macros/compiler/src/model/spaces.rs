@@ -8,8 +8,8 @@ use super::groups::{GroupNames, group, suggestion, unknown_group};
 use super::quaternion;
 use super::sizes::{IN_LOOPS, LEAVES, length};
 use super::vectors::{Vectors, arguments, hint, last_segment, vectors};
-use super::{Layout, Space};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use super::{Layout, LeafSpace};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::spell_type;
 
 /// A type as a product of leaves.
@@ -22,7 +22,7 @@ pub(super) struct Product<'t, L> {
 /// A leaf of the configuration.
 #[derive(Copy, Clone)]
 pub(super) struct SpaceType<'t> {
-    pub space: Space,
+    pub space: LeafSpace,
     pub shape: Shape,
     pub is_quaternion: bool,
     /// The scalar, if it is written.
@@ -33,9 +33,9 @@ impl SpaceType<'_> {
     /// What holds for every point.
     pub fn property(&self) -> Property {
         match self.space {
-            Space::Vectors => Property::General,
-            Space::Unit => Property::Unit,
-            Space::Group(group) => group.element_property(),
+            LeafSpace::Vectors => Property::General,
+            LeafSpace::Unit => Property::Unit,
+            LeafSpace::Group(group) => group.element_property(),
         }
     }
 }
@@ -119,7 +119,7 @@ fn read_structure<'t, L: Copy>(
 }
 
 fn too_many(ty: &Type, count: usize) -> Diagnostic {
-    Diagnostic::new(Place::of(ty), format!("`{}` has {count} factors, more than {LEAVES}", spell_type(ty)))
+    Diagnostic::new(Location::of(ty), format!("`{}` has {count} factors, more than {LEAVES}", spell_type(ty)))
         .help(IN_LOOPS)
         .note("the code of a step is written out at compile time and grows with the number of factors")
 }
@@ -132,13 +132,13 @@ fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diag
     }
     let generics = names.generics;
     if let Some(found) = vectors(ty, generics) {
-        return found.map(|vectors| space(Space::Vectors, &vectors));
+        return found.map(|vectors| space(LeafSpace::Vectors, &vectors));
     }
     match last_segment(ty) {
         Some(segment) if segment.ident == "Unit" => match arguments(segment).as_slice() {
             [syn::GenericArgument::Type(inner)] => match vectors(inner, generics) {
                 Some(Ok(vectors)) if vectors.shape.is_column() && vectors.shape.rows > 1 => {
-                    Ok(space(Space::Unit, &vectors))
+                    Ok(space(LeafSpace::Unit, &vectors))
                 }
                 Some(Err(error)) => Err(error),
                 _ => Err(no_unit(ty)),
@@ -152,36 +152,36 @@ fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diag
                 _ => return Err(unknown_space(ty, "Quaternion", names)),
             };
             let shape = Shape::vector(quaternion::COORDINATES);
-            Ok(SpaceType { space: Space::Vectors, shape, is_quaternion: true, scalar })
+            Ok(SpaceType { space: LeafSpace::Vectors, shape, is_quaternion: true, scalar })
         }
         Some(segment) if segment.ident == "UnitQuaternion" => Err(no_unit(ty)),
         segment => Err(unknown_space(ty, &segment.map(|segment| segment.ident.to_string()).unwrap_or_default(), names)),
     }
 }
 
-fn space<'t>(space: Space, vectors: &Vectors<'t>) -> SpaceType<'t> {
+fn space<'t>(space: LeafSpace, vectors: &Vectors<'t>) -> SpaceType<'t> {
     SpaceType { space, shape: vectors.shape, is_quaternion: false, scalar: vectors.scalar }
 }
 
 /// The space that the elements of a group make. Elements of `Translation<n>` are vectors, and every vector is one.
-pub(super) fn space_of(group: Group) -> Space {
-    if group.is_translation() { Space::Vectors } else { Space::Group(group) }
+pub(super) fn space_of(group: Group) -> LeafSpace {
+    if group.is_translation() { LeafSpace::Vectors } else { LeafSpace::Group(group) }
 }
 
 fn no_unit(ty: &Type) -> Diagnostic {
     let text = spell_type(ty);
     if text.contains("Quaternion") {
-        return Diagnostic::new(Place::of(ty), format!("`{text}` is written as a group"))
+        return Diagnostic::new(Location::of(ty), format!("`{text}` is written as a group"))
             .help("write `SU<2>`")
             .note("unit quaternions are the elements of SU(2)");
     }
-    Diagnostic::new(Place::of(ty), format!("`{}` is no sphere", spell_type(ty)))
+    Diagnostic::new(Location::of(ty), format!("`{}` is no sphere", spell_type(ty)))
         .help("write `Unit<Vector3>` for unit vectors")
 }
 
 fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
     let text = spell_type(ty);
-    let error = Diagnostic::new(Place::of(ty), format!("unknown space `{text}`"));
+    let error = Diagnostic::new(Location::of(ty), format!("unknown space `{text}`"));
     if matches!(name, "f32" | "f64") {
         return error.help("write `Vector1` for a single coordinate");
     }
@@ -195,5 +195,5 @@ fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
 
 /// Where a type begins.
 pub(super) fn span_of(ty: &Type) -> Span {
-    Place::of(ty).start()
+    Location::of(ty).start()
 }

@@ -13,11 +13,11 @@ use super::leaves::{self, Expected};
 use super::spaces::{space_of, span_of};
 use super::value::Value;
 use super::{Access, Configuration, Factor, Layout, OfferedSymmetry, Side};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{Argument, Closure, Pattern, spell_type};
 
 /// The system that symmetries are offered for.
-pub(super) struct System<'a, 'g> {
+pub(super) struct OfferedSystem<'a, 'g> {
     pub arguments: &'a Arguments<'a, 'g>,
     pub names: GroupNames<'a>,
     pub element: &'a Layout,
@@ -28,7 +28,7 @@ pub(super) struct System<'a, 'g> {
     pub action: &'a [Expr<'g>],
 }
 
-impl<'g> System<'_, 'g> {
+impl<'g> OfferedSystem<'_, 'g> {
     /// Reads and checks one symmetry.
     pub fn symmetry(
         &self,
@@ -74,7 +74,7 @@ impl<'g> System<'_, 'g> {
         };
         if matches!(ty, Type::Tuple(_) | Type::Array(_)) {
             let error = Diagnostic::new(
-                Place::of(ty),
+                Location::of(ty),
                 format!("`{}` is a product, but a symmetry has one group", spell_type(ty)),
             );
             return refuse(context, error.help("offer several symmetries, `symmetry = [|S: SO<3>, …| …, …]`"));
@@ -122,12 +122,12 @@ impl<'g> System<'_, 'g> {
         let elements: Vec<Expr<'g>> = self.factors.iter().map(|factor| factor.symbol).collect();
         if let Some(symbol) = foreign(&point, &elements) {
             let message = format!("the symmetry moves `{q}` by `{symbol}`");
-            let error = Diagnostic::new(Place::of(first), message);
+            let error = Diagnostic::new(Location::of(first), message);
             return refuse(context, error.note("it moves a configuration to the same place whatever the step is"));
         }
         if let Some(symbol) = foreign(&element, &points) {
             let message = format!("the symmetry moves `{f}` by `{symbol}`");
-            let error = Diagnostic::new(Place::of(second), message);
+            let error = Diagnostic::new(Location::of(second), message);
             return refuse(
                 context,
                 error.note("it moves a group element in the same way wherever the configuration is"),
@@ -162,7 +162,7 @@ impl<'g> System<'_, 'g> {
         let law = *action_laws::check(&action, &mut context.diagnostics)?.first()?;
         if !law.moves {
             let message = format!("the symmetry by `{}` moves nothing", offered.name);
-            return refuse(context, Diagnostic::new(Place::of(&closure.body), message).help("leave it out"));
+            return refuse(context, Diagnostic::new(Location::of(&closure.body), message).help("leave it out"));
         }
         let (stepped_then_moved, moved_then_stepped) = self.both_orders(points, elements);
         if !identity::equal(&stepped_then_moved, &moved_then_stepped) {
@@ -171,7 +171,7 @@ impl<'g> System<'_, 'g> {
             let example = self.example(offered, leaf);
             let (q, s) = (&self.configurations[leaf].name, &offered.name);
             let step = self.arguments.names.element.spell();
-            let error = Diagnostic::new(Place::of(&closure.body), "the symmetry does not agree with the action")
+            let error = Diagnostic::new(Location::of(&closure.body), "the symmetry does not agree with the action")
                 .note(format!(
                     "a step by `{step}` and then `{s}` moves {q} to {}, `{s}` first and then the moved step to {}",
                     ascii(stepped_then_moved[leaf]),
@@ -232,7 +232,7 @@ fn refuse<T>(context: &mut Context<'_, '_>, error: Diagnostic) -> Option<T> {
 /// All symmetries of a declaration.
 pub(super) fn read<'g>(
     context: &mut Context<'_, 'g>,
-    system: &System<'_, 'g>,
+    system: &OfferedSystem<'_, 'g>,
     closures: &[Closure],
 ) -> Vec<OfferedSymmetry<'g>> {
     closures.iter().enumerate().filter_map(|(index, closure)| system.symmetry(context, closure, index)).collect()

@@ -7,7 +7,7 @@ use super::leaves::leaf_names;
 use super::slots::SharedNames;
 use super::spaces::{Product, SpaceType, span_of};
 use super::value::Value;
-use super::{Configuration, Factor, Layout, Side, Space};
+use super::{Configuration, Factor, Layout, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
 use crate::parse::Pattern;
 
@@ -58,8 +58,8 @@ impl<'g> Typed<'g> {
 /// The symbols that lie on a group.
 fn members<'g>(factors: Option<&[Factor<'g>]>, configurations: Option<&[Configuration<'g>]>) -> Vec<(Expr<'g>, Group)> {
     let of_leaf = |leaf: &Configuration<'g>| match leaf.space {
-        Space::Group(group) => Some((leaf.symbol, group)),
-        Space::Vectors | Space::Unit => None,
+        LeafSpace::Group(group) => Some((leaf.symbol, group)),
+        LeafSpace::Vectors | LeafSpace::Unit => None,
     };
     let factors = factors.into_iter().flatten().filter(|factor| !factor.group.is_translation());
     factors

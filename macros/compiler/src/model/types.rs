@@ -43,7 +43,7 @@ pub struct Model<'g> {
     /// How the leaves of the input nest.
     pub input: Layout,
     /// What the inputs are chosen by; `None` where nothing is chosen.
-    pub control: Option<Control<'g>>,
+    pub control: Option<InputChoice<'g>>,
     /// What ties sites to each other, where the declaration is a power and this is the model of a site.
     pub power: Option<Power<'g>>,
     /// φ(t, q), the price of the end; `None` if there is none.
@@ -191,7 +191,7 @@ pub struct Configuration<'g> {
     /// The user's name for it, `q`, `q[0]`.
     pub name: String,
     /// The space that it lies in.
-    pub space: Space,
+    pub space: LeafSpace,
     /// Its shape.
     pub shape: Shape,
     /// Whether its Rust type is a quaternion, whose coordinates are i, j, k, w.
@@ -202,7 +202,7 @@ pub struct Configuration<'g> {
 
 /// What a leaf of the configuration is promised to be.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Space {
+pub enum LeafSpace {
     /// Any vector or matrix.
     Vectors,
     /// A vector of length one.
@@ -250,7 +250,7 @@ pub struct Force<'g> {
 }
 
 /// What inputs are chosen by.
-pub struct Control<'g> {
+pub struct InputChoice<'g> {
     /// ℓ(t, h, q, u), the price of a step.
     pub price: Expr<'g>,
     /// What has to hold.
@@ -302,7 +302,7 @@ pub struct Spans {
 #[derive(Clone)]
 pub struct Written {
     /// Where it is.
-    pub place: crate::diagnostic::Place,
+    pub place: crate::diagnostic::Location,
     /// Its text.
     pub text: String,
     /// The closure's arguments, `|h, F|`.

@@ -4,7 +4,7 @@ use clebsch_symbolic::Shape;
 use syn::{GenericArgument, Generics, PathArguments, PathSegment, Type};
 
 use super::sizes::size_argument;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell_type;
 
 /// The largest n for which `VectorN` and `MatrixN` have names.
@@ -101,7 +101,7 @@ fn wrong_arguments(ty: &Type, segment: &PathSegment, alias: Alias) -> Diagnostic
         Alias::Vector => format!("{name}<f64, 8>"),
         Alias::Matrix => format!("{name}<f64, 2, 3>"),
     };
-    Diagnostic::new(Place::of(ty), format!("`{}` has not the arguments of `{name}`", spell_type(ty)))
+    Diagnostic::new(Location::of(ty), format!("`{}` has not the arguments of `{name}`", spell_type(ty)))
         .help(format!("write `{example}`"))
 }
 

@@ -7,7 +7,7 @@ use syn::{Attribute, DeriveInput, Meta, Token};
 
 use super::keys::{KEYS, Key, Keys};
 use super::{groups, methods, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
 
 /// Reads all attributes of the struct as one.
 pub(super) fn read(input: &DeriveInput, diagnostics: &mut Diagnostics) -> Keys {
@@ -20,7 +20,7 @@ pub(super) fn read(input: &DeriveInput, diagnostics: &mut Diagnostics) -> Keys {
 
 fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &mut Diagnostics) {
     let Meta::List(list) = &attribute.meta else {
-        let error = Diagnostic::new(Place::of(attribute), "the declaration stands in parentheses");
+        let error = Diagnostic::new(Location::of(attribute), "the declaration stands in parentheses");
         diagnostics.push(error.help("write `#[clebsch(action = …, cost = …, potential = …)]`"));
         return;
     };

@@ -7,7 +7,7 @@ use syn::{Expr, ExprClosure, Pat, ReturnType, Type};
 
 use super::spell_type;
 use super::spelling::{spell, spell_pattern};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// A closure of the declaration.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Closure {
     /// Its arguments.
     pub arguments: Vec<Argument>,
     /// What is between the bars, bars included.
-    pub head: Place,
+    pub head: Location,
     /// Its value.
     pub body: Expr,
 }
@@ -37,13 +37,13 @@ pub enum Pattern {
     /// One name.
     Name(Ident),
     /// A tuple of patterns, and where it is.
-    Tuple(Vec<Pattern>, Place),
+    Tuple(Vec<Pattern>, Location),
 }
 
 impl Closure {
     /// Takes a closure apart; whatever is more than mathematics is an error.
     pub fn read(key: &Ident, closure: ExprClosure, diagnostics: &mut Diagnostics) -> Option<Closure> {
-        let head = Place::between(closure.inputs_begin.span, closure.inputs_end.span);
+        let head = Location::between(closure.inputs_begin.span, closure.inputs_end.span);
         let plain = closure.attrs.is_empty()
             && closure.lifetimes.is_none()
             && closure.constness.is_none()
@@ -93,7 +93,8 @@ impl Pattern {
             }
             Pat::Ident(name) => {
                 let message = format!("`{}` is more than a name", super::spelling::tokens(pattern));
-                diagnostics.push(Diagnostic::new(Place::of(pattern), message).help(format!("write `{}`", name.ident)));
+                diagnostics
+                    .push(Diagnostic::new(Location::of(pattern), message).help(format!("write `{}`", name.ident)));
                 None
             }
             Pat::Paren(inner) => Pattern::read(&inner.pat, diagnostics),
@@ -101,7 +102,7 @@ impl Pattern {
                 let parts: Vec<Pattern> =
                     tuple.elems.iter().filter_map(|part| Pattern::read(part, diagnostics)).collect();
                 let complete = parts.len() == tuple.elems.len();
-                complete.then(|| Pattern::Tuple(parts, Place::of(pattern)))
+                complete.then(|| Pattern::Tuple(parts, Location::of(pattern)))
             }
             Pat::Reference(reference) => Pattern::read(&reference.pat, diagnostics),
             Pat::Wild(wild) => {
@@ -126,7 +127,7 @@ impl Pattern {
     }
 
     /// Where it is.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> Location {
         match self {
             Pattern::Name(ident) => ident.span().into(),
             Pattern::Tuple(_, place) => *place,

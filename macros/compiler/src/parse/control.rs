@@ -7,7 +7,7 @@ use syn::{Type, parse_quote, parse_quote_spanned};
 
 use super::keys::Keys;
 use super::{Argument, Closure, Kinetic, Pattern};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// What a choice of inputs costs, and what it is bound by.
 #[derive(Clone, Debug)]
@@ -100,13 +100,13 @@ fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &mut Diagnostics) 
     let ty = dynamics.arguments[state].ty.take()?;
     let pattern = dynamics.arguments[state].pattern.clone();
     let (Some(mut size), Pattern::Name(name)) = (length(&ty), &pattern) else {
-        let error = Diagnostic::new(Place::of(&ty), "dynamics move one vector");
+        let error = Diagnostic::new(Location::of(&ty), "dynamics move one vector");
         diagnostics
             .push(error.help(format!("write `dynamics = {example}`, with all of the configuration in one vector")));
         return None;
     };
     // what is wrong with the size is so where it was written
-    size.set_span(Place::of(&ty).start());
+    size.set_span(Location::of(&ty).start());
     let span = name.span();
     let shift = shift_beside(&dynamics, span);
     let group: Type = parse_quote_spanned!(span=> Translation<#size>);

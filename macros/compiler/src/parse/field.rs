@@ -6,7 +6,7 @@ use syn::punctuated::Punctuated;
 use syn::{Index, Member, Token, Type};
 
 use super::dials::Promise;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
 
 /// A field of the user's struct.
 #[derive(Clone, Debug)]
@@ -37,13 +37,13 @@ const PROMISES: [(&str, Promise); 3] =
 pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &mut Diagnostics) -> Field {
     let member = match &field.ident {
         Some(ident) => Member::Named(ident.clone()),
-        None => Member::Unnamed(Index { index: position as u32, span: Place::of(&field.ty).start() }),
+        None => Member::Unnamed(Index { index: position as u32, span: Location::of(&field.ty).start() }),
     };
     let mut promise: Option<(Promise, Span)> = None;
     for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("clebsch")) {
         let names = attribute.parse_args_with(Punctuated::<Ident, Token![,]>::parse_terminated);
         let Ok(names) = names else {
-            let error = Diagnostic::new(Place::of(attribute), "a promise on a field is a single word");
+            let error = Diagnostic::new(Location::of(attribute), "a promise on a field is a single word");
             diagnostics.push(error.help("write `#[clebsch(symmetric)]`"));
             continue;
         };

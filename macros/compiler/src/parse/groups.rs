@@ -7,7 +7,7 @@ use syn::{Expr, ExprClosure, Token};
 
 use super::keys::Keys;
 use super::{Closure, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// A group of the user's own.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub enum Definition {
     /// All matrices that satisfy an equation.
     Equation(Box<Closure>),
     /// The group of a Lie algebra, whose basis this is, and where the list stands.
-    Basis(Vec<Expr>, Place),
+    Basis(Vec<Expr>, Location),
 }
 
 /// Reads what follows on the word `group`.
@@ -49,7 +49,7 @@ pub(super) fn read(
         }
         return Ok(());
     }
-    let place = Place::from(stream.span());
+    let place = Location::from(stream.span());
     let is_basis = stream.parse::<Ident>().is_ok_and(|word| word == "basis") && stream.peek(syn::token::Paren);
     if !is_basis {
         return Err(no_definition(&name, place));
@@ -63,7 +63,7 @@ pub(super) fn read(
 fn read_basis(name: &Ident, stream: ParseStream) -> Result<Definition, Diagnostic> {
     let (arguments, span) = values::arguments(stream)?;
     match arguments.as_slice() {
-        [Expr::Array(list)] => Ok(Definition::Basis(list.elems.iter().cloned().collect(), Place::of(list))),
+        [Expr::Array(list)] => Ok(Definition::Basis(list.elems.iter().cloned().collect(), Location::of(list))),
         _ => {
             let error = Diagnostic::new(span.join(), format!("the basis of `{name}` is a list of matrices"));
             Err(error.help(format!("write `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`")))
@@ -76,7 +76,7 @@ fn nameless(word: &Ident) -> Diagnostic {
         .help("write `group Lorentz = |F: Matrix4| …`, and `F: Lorentz` in the action")
 }
 
-fn no_definition(name: &Ident, place: Place) -> Diagnostic {
+fn no_definition(name: &Ident, place: Location) -> Diagnostic {
     Diagnostic::new(place, format!("the group `{name}` is neither an equation nor a basis")).help(format!(
         "write `group {name} = |F: Matrix3| F.transpose() * F == I` or `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`"
     ))

@@ -31,7 +31,7 @@ pub use spelling::{spell, spell_type};
 use proc_macro2::TokenStream;
 use syn::{Data, DeriveInput, Fields};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// Reads the item that carries `#[derive(Clebsch)]`.
 pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
@@ -39,8 +39,8 @@ pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
     let input: DeriveInput = syn::parse2(item).map_err(Diagnostic::from)?;
     let fields = match &input.data {
         Data::Struct(data) => &data.fields,
-        Data::Enum(data) => return Err(no_struct(Place::from(data.enum_token.span), "an enum")),
-        Data::Union(data) => return Err(no_struct(Place::from(data.union_token.span), "a union")),
+        Data::Enum(data) => return Err(no_struct(Location::from(data.enum_token.span), "an enum")),
+        Data::Union(data) => return Err(no_struct(Location::from(data.union_token.span), "a union")),
     };
     let mut diagnostics = Diagnostics::new();
     let keys = attribute::read(&input, &mut diagnostics);
@@ -48,7 +48,7 @@ pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
     declaration::assemble(&input, keys, fields, diagnostics)
 }
 
-fn no_struct(place: Place, what: &str) -> Diagnostics {
+fn no_struct(place: Location, what: &str) -> Diagnostics {
     Diagnostic::new(place, format!("`Clebsch` can only be derived for a struct, and this is {what}"))
         .note("the fields of the struct are the parameters of the system")
         .into()

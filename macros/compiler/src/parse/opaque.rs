@@ -6,7 +6,7 @@ use syn::{Expr, Path};
 
 use super::spelling::{spell, tokens};
 use super::values;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 
 /// A potential whose value and gradient are methods of the struct.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Opaque {
     /// Whether both take the time as their first argument: `opaque(t, Self::value, Self::gradient)`.
     pub takes_time: bool,
     /// Where it stands.
-    pub place: Place,
+    pub place: Location,
 }
 
 impl Opaque {
@@ -47,7 +47,7 @@ pub(super) fn read(stream: ParseStream) -> Result<Opaque, Diagnostic> {
         return Err(two_methods(span.join().into()));
     };
     let (value, gradient) = (method(value)?, method(gradient)?);
-    Ok(Opaque { value, gradient, takes_time, place: Place::between(word.span(), span.close()) })
+    Ok(Opaque { value, gradient, takes_time, place: Location::between(word.span(), span.close()) })
 }
 
 /// `Self::value`.
@@ -60,7 +60,7 @@ fn method(expr: &Expr) -> Result<Path, Diagnostic> {
         return Ok(path.path.clone());
     }
     let text = spell(expr);
-    let error = Diagnostic::new(Place::of(expr), format!("`{text}` is no method of the struct"));
+    let error = Diagnostic::new(Location::of(expr), format!("`{text}` is no method of the struct"));
     let last = match expr {
         Expr::Path(path) => path.path.segments.last().map(|segment| segment.ident.to_string()),
         Expr::Field(field) => Some(tokens(&field.member)),
@@ -70,7 +70,7 @@ fn method(expr: &Expr) -> Result<Path, Diagnostic> {
     Err(error.help(format!("write `Self::{}`", last.unwrap_or_else(|| "value".into()))))
 }
 
-fn two_methods(place: Place) -> Diagnostic {
+fn two_methods(place: Location) -> Diagnostic {
     Diagnostic::new(place, "an opaque potential is made of two methods, its value and its gradient")
         .help("write `opaque(Self::value, Self::gradient)`, or `opaque(t, Self::value, Self::gradient)` where both take the time first")
 }

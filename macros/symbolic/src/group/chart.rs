@@ -3,7 +3,7 @@
 use super::motion::{left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
-use crate::node::{Analytic, Node};
+use crate::node::{Analytic, ExprNode};
 use crate::{Expr, Function, Graph, Shape, identity, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
@@ -145,7 +145,7 @@ impl Chart {
                 let z = combination(group, x);
                 let element = exponential(z);
                 match (&*element.node(), in_one_plane(z)) {
-                    (Node::Analytic(Analytic::Exponential, inner), _) => {
+                    (ExprNode::Analytic(Analytic::Exponential, inner), _) => {
                         let z = graph.expr(*inner);
                         (z * z.analytic(Analytic::Phi), one)
                     }

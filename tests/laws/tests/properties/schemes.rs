@@ -27,7 +27,7 @@ fn kick_drift_kick(top: &WatchedTop, (q, mu): &Pair) -> Result<Pair, Error> {
     let constants = top.constants(H)?;
     let mu = mu + Substep::<0>::start_kick(top, &constants, 0.0, q).expect("a kick");
     let x = Substep::<0>::solve(top, &constants, 0.0, q, &mu, &())?;
-    let motion = top.motion(&x);
+    let motion = top.motion(&x, || top.increment(&x));
     let next = Parts::advance(top, q, &motion);
     let mu = Substep::<0>::update(top, &constants, 0.0, q, &mu, &motion).expect("an update");
     let mu = mu + Substep::<0>::end_kick(top, &constants, 0.0, &next).expect("a kick");
@@ -108,7 +108,7 @@ proptest! {
         let next = stepper.step_with(&stepper.state(r, mu)?, &u)?;
         let pushed = mu + Substep::<0>::start_force(&body, &constants, 0.0, &r, &u).expect("a torque");
         let x = Substep::<0>::solve(&body, &constants, 0.0, &r, &pushed, &u)?;
-        let motion = body.motion(&x);
+        let motion = body.motion(&x, || body.increment(&x));
         let moving = Substep::<0>::moving_force(&body, &constants, 0.0, &r, &x, &u).expect("damping");
         let reached = Parts::advance(&body, &r, &motion);
         let moved = Substep::<0>::update(&body, &constants, 0.0, &r, &(pushed + moving), &motion).expect("an update");
@@ -131,7 +131,7 @@ proptest! {
         let x = Substep::<0>::solve(&top, &constants, 0.0, &r, &(top.momentum_map(&r, &p) + rest), &())?;
         let d = top.increment(&x);
         let pushed = p + Substep::<0>::coupled_gradient(&top, &constants, 0.0, &r, &d).expect("a slope");
-        let next = Parts::advance(&top, &r, &top.motion(&x));
+        let next = Parts::advance(&top, &r, &top.motion(&x, || d));
         prop_assert_eq!((next, top.lift(&next, &pushed, &d)), stepper.step_symmetric(&start)?.into_parts());
     }
 
@@ -142,13 +142,15 @@ proptest! {
         let constants = body.constants(H)?;
         let stepper = body.stepper(H)?;
         let next = stepper.step(&stepper.state(r, mu)?)?;
-        let (motion, moved) = body.follow(&constants, &body.kept(&constants, &mu), &mu)?;
+        let (x, moved) = body.follow(&constants, &body.kept(&constants, &mu), &mu)?;
+        let motion = body.motion(&x, || body.increment(&x));
         let after = Substep::<0>::update(&body, &constants, 0.0, &r, &moved, &motion).unwrap_or(moved);
         prop_assert_eq!((ExactBody::on_space(Parts::advance(&body, &r, &motion), ()).0, after), next.into_parts());
         // the same motion, one step later
         let again = stepper.step(&next)?;
         let later = body.kept(&constants, &next.momentum());
-        let (motion, moved) = body.follow(&constants, &later, &next.momentum())?;
+        let (x, moved) = body.follow(&constants, &later, &next.momentum())?;
+        let motion = body.motion(&x, || body.increment(&x));
         let after = Substep::<0>::update(&body, &constants, 0.0, next.configuration(), &moved, &motion).unwrap_or(moved);
         assert_near(&after, &again.momentum(), NEAR, "N");
     }

@@ -5,7 +5,7 @@ use clebsch_symbolic::Group;
 use super::Lowered;
 use super::equations::{how, part};
 use crate::derive::{Collocation, Formulas, Solution};
-use crate::model::{Order, Space};
+use crate::model::{LeafSpace, Order};
 
 /// How sums are compensated.
 const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
@@ -97,9 +97,9 @@ fn stagger(formulas: &Formulas<'_>) -> &'static str {
 
 /// What keeps configurations on their spaces.
 fn spaces(formulas: &Formulas<'_>) -> String {
-    let is = |which: fn(&Space) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
-    let rotations = is(|space| matches!(space, Space::Group(group) if group.is_orthogonal()));
-    let lengths = is(|space| matches!(space, Space::Unit | Space::Group(Group::UnitQuaternions)));
+    let is = |which: fn(&LeafSpace) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
+    let rotations = is(|space| matches!(space, LeafSpace::Group(group) if group.is_orthogonal()));
+    let lengths = is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions)));
     let (what, how) = match (rotations, lengths) {
         (false, false) => return String::new(),
         (true, false) => ("orthogonal matrices", "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε"),

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Expr;
 
-use crate::derive::{Equation, Formula, Formulas, Id, Solution, Substep};
+use crate::derive::{Formula, Formulas, Id, MomentumEquation, Solution, Substep};
 
 impl<'g> Formulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
@@ -116,7 +116,7 @@ impl<'g> Formulas<'g> {
     }
 
     /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
-    pub fn coordinates_of(&self, equation: &Equation<'g>) -> String {
+    pub fn coordinates_of(&self, equation: &MomentumEquation<'g>) -> String {
         let name = |i: usize| {
             let block = &self.symbols.blocks[i];
             let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).collect();

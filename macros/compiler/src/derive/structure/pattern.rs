@@ -4,7 +4,7 @@ use clebsch_symbolic::identity::{self, Point, Residue};
 use clebsch_symbolic::{Expr, Graph, Matrix, Number, Shape};
 
 use super::Structure;
-use crate::derive::equation::{Equation, Sources, chart_slope};
+use crate::derive::equation::{MomentumEquation, Sources, chart_slope};
 
 /// The values of a Jacobian at a random point, and at two others with the same parameters.
 pub(super) struct Pattern {
@@ -23,7 +23,11 @@ fn matrix<'g>(graph: &'g Graph, columns: &[Expr<'g>]) -> Expr<'g> {
 }
 
 /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h).
-pub(super) fn is_inertial<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> bool {
+pub(super) fn is_inertial<'g>(
+    sources: &Sources<'_, 'g>,
+    equation: &MomentumEquation<'g>,
+    columns: &[Expr<'g>],
+) -> bool {
     let (model, symbols, components) = (sources.model, sources.symbols, &equation.components);
     let graph = model.graph;
     let shape = Shape::square(columns.len());
@@ -43,7 +47,7 @@ pub(super) fn is_inertial<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>
 }
 
 /// The same of the products with a direction of all unknowns, without the entries of the matrices.
-pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &Equation<'_>) -> bool {
+pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &MomentumEquation<'_>) -> bool {
     let (model, symbols) = (sources.model, sources.symbols);
     let blocks: Vec<usize> = symbols.blocks_of(&equation.components);
     // the unknowns are those of all factors, in their order
@@ -62,7 +66,7 @@ pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &Equat
 }
 
 impl Pattern {
-    pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &Equation<'g>, columns: &[Expr<'g>]) -> Pattern {
+    pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &MomentumEquation<'g>, columns: &[Expr<'g>]) -> Pattern {
         let (model, symbols) = (sources.model, sources.symbols);
         let shape = Shape::square(columns.len());
         let jacobian = matrix(model.graph, columns);

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Group, Shape, View};
 
-use crate::derive::equation::Equation;
+use crate::derive::equation::MomentumEquation;
 use crate::derive::{Formulas, Solution, Symbols};
 use crate::model::Model;
 
@@ -10,7 +10,7 @@ use crate::model::Model;
 /// there, half as long for SO(10), and less memory in all.
 const FEWEST_OF_SYLVESTER: usize = 21;
 
-impl<'g> Equation<'g> {
+impl<'g> MomentumEquation<'g> {
     /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
     pub(in crate::derive) fn large_jacobian_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
         let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 use super::{Direction, Family};
 use crate::derive::Symbols;
 use crate::derive::action::generator_columns;
-use crate::model::{Model, Side, Space};
+use crate::model::{LeafSpace, Model, Side};
 
 /// All directions, family by family.
 pub(super) fn directions<'g>(
@@ -97,7 +97,7 @@ fn commuting_factor<'g>(
     from_left: bool,
 ) -> Option<usize> {
     let leaf = &model.configurations[j];
-    let Space::Group(group) = leaf.space else { return None };
+    let LeafSpace::Group(group) = leaf.space else { return None };
     let wanted = if from_left { Side::Right } else { Side::Left };
     let fits = |k: &usize| {
         let factor = &model.factors[*k];

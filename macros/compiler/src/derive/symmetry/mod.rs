@@ -11,7 +11,7 @@ mod special;
 
 use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
-use super::power::{self, Link};
+use super::power::{self, SiteTerm};
 use super::{DiscreteLagrangian, Symbols, naming};
 use crate::model::{Isotropy, Model, is_large};
 use directions::directions;
@@ -71,7 +71,7 @@ pub(super) fn find<'g>(
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,
     inertia: Expr<'g>,
-    (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
+    (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
 ) -> Symmetries<'g> {
     if model.factors.iter().any(|factor| is_large(factor.group, &model.configurations)) {
         return large::find(model, symbols, generator, lagrangian);
@@ -103,7 +103,7 @@ fn variations<'g>(
     symbols: &Symbols<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
     directions: &[Direction<'g>],
-    (force, links): (Option<&[Expr<'g>]>, &[Link<'g>]),
+    (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
 ) -> Expr<'g> {
     let graph = model.graph;
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];

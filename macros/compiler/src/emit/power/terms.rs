@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Role, Shape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::derive::{Home, Link};
+use crate::derive::{Home, SiteTerm};
 use crate::emit::Emitter;
 use crate::emit::code::{Scope, accessor, grid, locals};
 use crate::lower::{Code, Gathered, Kernel, LinkKernels};
@@ -35,7 +35,7 @@ impl<'g> Emitter<'_, 'g> {
     /// The method that goes through the terms and adds what each has for its sites.
     pub(super) fn added_gradient(&self, power: &Power<'g>, point: &TokenStream) -> TokenStream {
         let (scalar, length, scope) = (&self.paths.scalar, &power.length, self.scope_of_system());
-        let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &Link<'g>)| {
+        let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &SiteTerm<'g>)| {
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
             let (locals, leaves) = (locals(&scope, gradient), self.model.configurations.len());
             let sites = link.gradient.iter().zip(gradient.outputs.chunks(leaves));
@@ -103,7 +103,7 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// Place the term is found that has a site at a place.
+    /// Where the term is found that has a site at a place.
     fn head(&self, power: &Power<'g>, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Head {
         let (private, length) = (&self.paths.private, &power.length);
         let (Some(index), [(from, to), ..]) = (home.index, ranges) else {

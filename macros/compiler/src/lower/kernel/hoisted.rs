@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Shape, Zero, integer, work};
 
 use super::{Hoisting, kernel};
-use crate::lower::{Code, Kernel, Node, Scalar, Scalars, signs};
+use crate::lower::{Code, Kernel, Scalar, ScalarNode, Scalars, signs};
 
 /// Values that are computed less often than the kernels that use them.
 #[derive(Clone, Default, Debug)]
@@ -72,21 +72,21 @@ impl Scalars {
     fn negated(&self, scalar: Scalar) -> Option<Scalar> {
         let minus = integer(-1);
         match self.node(scalar) {
-            Node::Sum(constant, terms) if constant.is_zero() && terms.len() == 1 && terms[0].1 == minus => {
+            ScalarNode::Sum(constant, terms) if constant.is_zero() && terms.len() == 1 && terms[0].1 == minus => {
                 Some(terms[0].0)
             }
-            Node::Sum(constant, terms) => {
+            ScalarNode::Sum(constant, terms) => {
                 let terms = terms.iter().map(|(term, weight)| (*term, weight * &minus)).collect();
-                self.known(&Node::Sum(constant * &minus, terms))
+                self.known(&ScalarNode::Sum(constant * &minus, terms))
             }
-            _ => self.known(&Node::Sum(integer(0), vec![(scalar, minus)])),
+            _ => self.known(&ScalarNode::Sum(integer(0), vec![(scalar, minus)])),
         }
     }
 
     /// Whether all of its terms are subtracted.
     fn is_negative(&self, scalar: Scalar) -> bool {
         match self.node(scalar) {
-            Node::Sum(constant, terms) => {
+            ScalarNode::Sum(constant, terms) => {
                 (constant.is_zero() || constant.is_negative()) && terms.iter().all(|(_, weight)| weight.is_negative())
             }
             _ => false,

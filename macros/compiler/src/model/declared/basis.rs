@@ -7,11 +7,11 @@ use super::super::elaborate::shortened;
 use super::super::value::Value;
 use super::exact::Exact;
 use super::{bracket_with, check_size, elaborate, empty_scope, fields_in, not_literal, sparse, spell_matrix};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 /// Reads `basis([E1, E2])`.
-pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Place) -> Result<Group, Vec<Diagnostic>> {
+pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Location) -> Result<Group, Vec<Diagnostic>> {
     if elements.is_empty() {
         let error = Diagnostic::new(place, format!("the basis of `{name}` is empty"));
         return Err(vec![error.help("write its matrices, `basis([Matrix2::new(0, -1, 1, 0)])`")]);
@@ -50,11 +50,11 @@ fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matr
             Value::Identity(_) => "Matrix3::identity()",
             _ => "Matrix3::new(0, 1, 0, 0, 0, 0, 0, 0, 0)",
         };
-        return Err(vec![Diagnostic::new(Place::of(element), message).help(format!("write `{example}`"))]);
+        return Err(vec![Diagnostic::new(Location::of(element), message).help(format!("write `{example}`"))]);
     };
     let entries = exact(expr).ok_or_else(|| {
         let text = shortened(&spell(element));
-        let error = Diagnostic::new(Place::of(element), format!("the entries of `{text}` are not rational"));
+        let error = Diagnostic::new(Location::of(element), format!("the entries of `{text}` are not rational"));
         vec![error.note("whether brackets stay in the span is decided exactly, over the rational numbers")]
     })?;
     Ok(Matrix { shape: expr.shape(), entries })
@@ -75,13 +75,13 @@ fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<
     let first = matrices[0].shape;
     if !first.is_square() {
         let message = format!("`E1` of `{name}` is {first}, but a Lie algebra is made of square matrices");
-        let error = Diagnostic::new(Place::of(&elements[0]), message);
+        let error = Diagnostic::new(Location::of(&elements[0]), message);
         return Err(vec![error.note("its elements are multiplied, E1*E2 - E2*E1")]);
     }
     match matrices.iter().position(|matrix| matrix.shape != first) {
         Some(k) => {
             let message = format!("`E1` of `{name}` is {first} and `E{}` is {}", k + 1, matrices[k].shape);
-            let error = Diagnostic::new(Place::of(&elements[k]), message);
+            let error = Diagnostic::new(Location::of(&elements[k]), message);
             Err(vec![error.note("the matrices of a basis have one shape")])
         }
         None => Ok(first),
@@ -95,7 +95,7 @@ fn independent(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<(
         (0..length).map(|entry| matrices.iter().map(|matrix| matrix.entries[entry].clone()).collect()).collect();
     let pivots = reduce(&mut rows);
     let Some(k) = (0..matrices.len()).find(|k| !pivots.contains(k)) else { return Ok(()) };
-    let error = Diagnostic::new(Place::of(&elements[k]), format!("the basis of `{name}` is not independent"));
+    let error = Diagnostic::new(Location::of(&elements[k]), format!("the basis of `{name}` is not independent"));
     let terms = pivots.iter().zip(&rows).filter(|(pivot, _)| **pivot < k).map(|(pivot, row)| (*pivot, row[k].clone()));
     Err(vec![error.help(format!("leave E{} out", k + 1)).note(format!("E{} = {}", k + 1, combination(terms)))])
 }
@@ -118,7 +118,7 @@ fn combination(terms: impl Iterator<Item = (usize, Rational)>) -> String {
     if text.is_empty() { "0".into() } else { text }
 }
 
-fn closed(graph: &Graph, name: &str, shape: Shape, basis: &[Sparse], place: Place) -> Result<(), Vec<Diagnostic>> {
+fn closed(graph: &Graph, name: &str, shape: Shape, basis: &[Sparse], place: Location) -> Result<(), Vec<Diagnostic>> {
     let span = graph.span(graph.algebra(shape, basis.to_vec()));
     let outside = |bracket: &[Rational]| !span.holds(bracket);
     let Some((i, j, bracket)) = bracket_with(graph, shape, basis, outside) else { return Ok(()) };

@@ -11,7 +11,7 @@ use super::super::vectors::vectors;
 use super::kernel::kernel;
 use super::rational::is_rational;
 use super::{bracket_with, check_size, elaborate, empty_scope, fields_in, follow, not_literal, sparse, spell_matrix};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Closure, Pattern, spell, spell_type};
 
 /// Reads `|F: Matrix4| a == b`.
@@ -44,13 +44,13 @@ fn size(name: &str, closure: &Closure) -> Result<usize, Vec<Diagnostic>> {
     };
     match vectors(ty, &syn::Generics::default()) {
         Some(Ok(found)) if found.shape.is_square() => {
-            check_size(name, found.shape.rows, Place::of(ty).start())?;
+            check_size(name, found.shape.rows, Location::of(ty).start())?;
             Ok(found.shape.rows)
         }
         Some(Err(error)) => Err(vec![error]),
         _ => {
             let message = format!("`{}` is no space of square matrices", spell_type(ty));
-            Err(vec![Diagnostic::new(Place::of(ty), message).help("write `Matrix3` or `SMatrix<8, 8>`")])
+            Err(vec![Diagnostic::new(Location::of(ty), message).help("write `Matrix3` or `SMatrix<8, 8>`")])
         }
     }
 }
@@ -71,7 +71,7 @@ struct GroupEquation<'a, 'g> {
     graph: &'g Graph,
     name: &'a str,
     symbol: Expr<'g>,
-    place: Place,
+    place: Location,
     text: String,
 }
 

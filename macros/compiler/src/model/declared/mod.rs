@@ -22,7 +22,7 @@ use super::fields::Fields;
 use super::groups::is_built_in;
 use super::scope::{Missing, Scope};
 use super::vectors::named_shape;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{DeclaredGroup, Definition};
 
 /// The largest matrices of a declared group, whose Lie algebra is found at compile time.
@@ -118,21 +118,21 @@ fn elaborate<'g, R>(
     let mut errors = diagnostics.into_vec();
     errors.extend(constants.iter().map(|constant| {
         let text = crate::parse::spell_tokens(&constant.path);
-        not_literal(Place::of(&constant.path), key, &format!("the constant `{text}`"))
+        not_literal(Location::of(&constant.path), key, &format!("the constant `{text}`"))
     }));
     value.filter(|_| errors.is_empty()).ok_or(errors)
 }
 
 /// Fields of the struct, which no literal reads: where `self` stands.
-fn fields_in(tokens: &impl ToTokens) -> Option<(Place, String)> {
-    fn search(stream: TokenStream) -> Option<(Place, String)> {
+fn fields_in(tokens: &impl ToTokens) -> Option<(Location, String)> {
+    fn search(stream: TokenStream) -> Option<(Location, String)> {
         let tokens: Vec<TokenTree> = stream.into_iter().collect();
         tokens.iter().enumerate().find_map(|(position, token)| match token {
             TokenTree::Group(group) => search(group.stream()),
             TokenTree::Ident(ident) if ident == "self" => {
                 let end = tokens.get(position + 2).unwrap_or(token);
                 let field = tokens.get(position + 2).map(|field| format!("self.{field}"));
-                Some((Place::between(ident.span(), end.span()), field.unwrap_or_else(|| "self".into())))
+                Some((Location::between(ident.span(), end.span()), field.unwrap_or_else(|| "self".into())))
             }
             _ => None,
         })
@@ -141,7 +141,7 @@ fn fields_in(tokens: &impl ToTokens) -> Option<(Place, String)> {
 }
 
 /// The error for what is known at run time alone.
-fn not_literal(place: Place, key: &str, what: &str) -> Diagnostic {
+fn not_literal(place: Location, key: &str, what: &str) -> Diagnostic {
     Diagnostic::new(place, format!("the {key} cannot depend on {what}"))
         .help("write the numbers themselves")
         .note("its Lie algebra is derived at compile time, where the values of fields and constants are not known")

@@ -7,7 +7,7 @@ use syn::{Expr as Syntax, ExprField, ExprIndex, Member};
 use super::super::value::Value;
 use super::operators::parenthesized;
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::parse::spell;
 
 /// Components by name.
@@ -106,7 +106,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 parts.get(position).cloned()
             }
             Value::Tuple(_) => {
-                let error = Diagnostic::new(Place::of(&index.index), format!("`{}` is a tuple", spell(&index.expr)));
+                let error = Diagnostic::new(Location::of(&index.index), format!("`{}` is a tuple", spell(&index.expr)));
                 self.error(error.help(format!("write `{}.0`", parenthesized(&index.expr))))
             }
             base => {
@@ -126,7 +126,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                     }
                     single => {
                         let error = Diagnostic::new(
-                            Place::of(single),
+                            Location::of(single),
                             format!("`{base}` is {rows}x{columns}: an entry has two indices"),
                         );
                         self.error(
@@ -143,7 +143,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let value = self.matrix(syntax)?;
         let Some(number) = value.as_number().filter(|number| number.is_integer()) else {
             let error = Diagnostic::new(
-                Place::of(syntax),
+                Location::of(syntax),
                 format!("`{}` is no index: an index is a whole number known here", spell(syntax)),
             );
             return self.error(error.help("write a number, as in `[0]`"));
@@ -151,7 +151,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match number.parts().and_then(|(position, _)| usize::try_from(position).ok()) {
             Some(position) if position < length => Some(position),
             _ => {
-                let error = Diagnostic::new(Place::of(syntax), format!("the index {number} is out of range"));
+                let error = Diagnostic::new(Location::of(syntax), format!("the index {number} is out of range"));
                 self.error(error.note(format!("{of} are counted from 0 to {}", length - 1)))
             }
         }

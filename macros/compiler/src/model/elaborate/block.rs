@@ -5,7 +5,7 @@ use syn::{Block, Local, Stmt};
 use super::super::scope::Binding;
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{Pattern, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -40,7 +40,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             other => {
                 self.statement(other);
                 self.error(
-                    Diagnostic::new(Place::of(other), "the block ends without a value")
+                    Diagnostic::new(Location::of(other), "the block ends without a value")
                         .help("end it with an expression"),
                 )
             }
@@ -51,7 +51,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match statement {
             Stmt::Local(local) => self.local(local),
             other => {
-                let error = Diagnostic::new(Place::of(other), "a block is `let`s and one value at its end");
+                let error = Diagnostic::new(Location::of(other), "a block is `let`s and one value at its end");
                 self.context.diagnostics.push(error.help("remove this statement, or give its value a name with `let`"));
             }
         }
@@ -61,7 +61,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let diagnostics = &mut self.context.diagnostics;
         let pattern = match &local.pat {
             syn::Pat::Type(typed) => {
-                let error = Diagnostic::new(Place::of(&typed.ty), "a `let` has no type");
+                let error = Diagnostic::new(Location::of(&typed.ty), "a `let` has no type");
                 diagnostics.push(error.help("remove it: the shape follows from the value"));
                 Pattern::read(&typed.pat, diagnostics)
             }
@@ -70,7 +70,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let value = match &local.init {
             Some(init) if init.diverge.is_none() => self.elaborate(&init.expr),
             _ => self.error(
-                Diagnostic::new(Place::of(local), "a `let` has a value and no `else`")
+                Diagnostic::new(Location::of(local), "a `let` has a value and no `else`")
                     .help("write `let name = value;`"),
             ),
         };

@@ -8,7 +8,7 @@ use super::super::value::Value;
 use super::super::vectors::{arguments, named_shape};
 use super::access::strip;
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::parse::spell;
 
 /// The constructors of vector and matrix types.
@@ -47,7 +47,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `Type::constructor(…)`; other functions cannot be looked into.
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Value<'g>> {
         let Syntax::Path(path) = strip(&call.func) else {
-            let error = Diagnostic::new(Place::of(&call.func), format!("`{}` is no function", spell(&call.func)));
+            let error = Diagnostic::new(Location::of(&call.func), format!("`{}` is no function", spell(&call.func)));
             return self.error(error.help("write `*` to multiply"));
         };
         if let [.., owner, method] = path.path.segments.iter().collect::<Vec<_>>().as_slice()
@@ -141,7 +141,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 shape.rows
             );
             let help = format!("write `{}(&vector![…])` with {} entries", spell(&call.func), shape.rows);
-            return self.error(Diagnostic::new(Place::of(&call.args[0]), message).help(help));
+            return self.error(Diagnostic::new(Location::of(&call.args[0]), message).help(help));
         }
         self.build(call, &[diagonal], Growth::Sum, || diagonal.diagonal_matrix()).map(Value::Matrix)
     }
@@ -149,7 +149,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// A matrix from its columns or rows.
     fn joined(&mut self, call: &ExprCall, shape: Shape, part: Shape, count: usize) -> Option<Value<'g>> {
         let Value::Array(parts) = self.elaborate(&call.args[0])? else {
-            let error = Diagnostic::new(Place::of(&call.args[0]), format!("`{}` takes an array", spell(&call.func)));
+            let error = Diagnostic::new(Location::of(&call.args[0]), format!("`{}` takes an array", spell(&call.func)));
             return self.error(error.help(format!("write `{}(&[a, b])`", spell(&call.func))));
         };
         let matrices: Option<Vec<Expr<'g>>> =
@@ -165,7 +165,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => {
                 let message = format!("`{}` takes {count} parts, each {part}", spell(&call.func));
                 let help = format!("write `{}(&[…])` with {count} of them", spell(&call.func));
-                self.error(Diagnostic::new(Place::of(&call.args[0]), message).help(help))
+                self.error(Diagnostic::new(Location::of(&call.args[0]), message).help(help))
             }
         }
     }
@@ -207,7 +207,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn unknown_function(&mut self, call: &ExprCall, path: &ExprPath) -> Option<Value<'g>> {
         let name = path.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
         let error = Diagnostic::new(
-            Place::of(&call.func),
+            Location::of(&call.func),
             format!("the function `{}` is not known in the {}", spell(&call.func), self.key),
         );
         let method = super::tables::METHODS.iter().any(|(method, ..)| *method == name);

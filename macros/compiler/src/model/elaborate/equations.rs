@@ -4,7 +4,7 @@ use syn::{BinOp, Expr as Syntax, ExprBlock, Stmt};
 
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -21,7 +21,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             other => {
                 let text = super::shortened(&spell(other));
-                let error = Diagnostic::new(Place::of(other), format!("`{text}` is no equation"));
+                let error = Diagnostic::new(Location::of(other), format!("`{text}` is no equation"));
                 self.error(match other {
                     Syntax::Binary(link) if matches!(link.op, BinOp::And(_)) => {
                         error.help("write several equations as one, `(a, b) == (c, d)`")
@@ -34,7 +34,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn equation_of_block(&mut self, block: &ExprBlock) -> Option<(Value<'g>, Value<'g>)> {
         let Some((Stmt::Expr(last, None), before)) = block.block.stmts.split_last() else {
-            let error = Diagnostic::new(Place::of(block), "the block ends without an equation");
+            let error = Diagnostic::new(Location::of(block), "the block ends without an equation");
             return self.error(error.help("end it with `a == b`"));
         };
         let mark = self.scope.mark();

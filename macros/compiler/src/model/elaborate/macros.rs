@@ -7,7 +7,7 @@ use syn::{Expr as Syntax, ExprMacro, Macro, Token};
 use super::super::sizes::LARGEST;
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// `vector![…]` and `matrix![…]`.
@@ -21,8 +21,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             "vector" => self.rows(written, true),
             "matrix" => self.rows(written, false),
             _ => {
-                let error =
-                    Diagnostic::new(Place::of(&written.path), format!("unknown macro `{name}!` in the {}", self.key));
+                let error = Diagnostic::new(
+                    Location::of(&written.path),
+                    format!("unknown macro `{name}!` in the {}", self.key),
+                );
                 self.error(error.help("the macros are `vector![a, b, c]` and `matrix![a, b; c, d]`"))
             }
         }
@@ -35,7 +37,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         };
         let columns = rows.first().map_or(0, Vec::len);
         if columns == 0 || rows.iter().any(|row| row.len() != columns) || rows.len().max(columns) > LARGEST {
-            let error = Diagnostic::new(Place::of(written), "the rows have no common length between 1 and 64");
+            let error = Diagnostic::new(Location::of(written), "the rows have no common length between 1 and 64");
             return self.error(error.help("write `vector![a, b, c]` or `matrix![a, b; c, d]`"));
         }
         let shape = if vector { Shape::vector(columns) } else { Shape::new(rows.len(), columns) };

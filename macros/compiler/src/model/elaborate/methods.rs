@@ -9,7 +9,7 @@ use super::operators::parenthesized;
 use super::quaternions::is_of_quaternions;
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Special, Unary};
 use super::{Elaborator, Growth, open_identity};
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::parse::spell;
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -99,7 +99,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let inverts = matches!(call.method.to_string().as_str(), "inverse" | "normalize");
         if inverts && a.is_zero() {
             let message = format!("`{}` is zero and has no `{}`", spell(&call.receiver), call.method);
-            return self.error(Diagnostic::new(Place::of(&call.receiver), message).note("it would be divided by 0"));
+            return self.error(Diagnostic::new(Location::of(&call.receiver), message).note("it would be divided by 0"));
         }
         if let Some(group) = self.group_of(a).filter(|_| call.method == "inverse") {
             let inverse = self.build(call, &[a, a], Growth::Product, || group.inverse(a))?;
@@ -139,7 +139,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             };
             let (receiver, argument) = (spell(&call.receiver), spell(super::access::strip(argument)));
             let message = format!("`{receiver}` is {left} and `{argument}` is {right}: {needs}");
-            let error = Diagnostic::new(Place::of(call), message);
+            let error = Diagnostic::new(Location::of(call), message);
             let fits = left == right.transposed();
             let help = fits.then(|| format!("transpose one of them, as in `{argument}.transpose()`"));
             return self.error(match help {
@@ -190,7 +190,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
 pub(super) fn no_real_value(call: &ExprMethodCall) -> Diagnostic {
     let text = spell(&Syntax::MethodCall(call.clone()));
-    Diagnostic::new(Place::of(call), format!("`{}` has no real value", super::shortened(&text)))
+    Diagnostic::new(Location::of(call), format!("`{}` has no real value", super::shortened(&text)))
         .note("a potential or a cost is a real function, wherever it is evaluated")
 }
 

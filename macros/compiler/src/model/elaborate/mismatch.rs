@@ -4,7 +4,7 @@ use clebsch_symbolic::Expr;
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::operators::parenthesized;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 /// A sum of matrices of different shapes.
@@ -13,7 +13,7 @@ pub(super) fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr, minus: 
     let verb = if minus { "subtracted" } else { "added" };
     let side = |expr: Expr| if expr.shape().is_scalar() { "a scalar".to_string() } else { expr.shape().to_string() };
     let message = format!("`{a}` is {} and `{b}` is {}: they cannot be {verb}", side(left), side(right));
-    let error = Diagnostic::new(Place::of(link), message);
+    let error = Diagnostic::new(Location::of(link), message);
     let (matrix, scalar) = (left.shape(), right.shape());
     if right.shape().is_column() && left.shape().columns == right.shape().rows && !right.shape().is_scalar() {
         return error.help(format!("multiply the vector, as in `{}`", applied(&link.left, &b)));
@@ -48,7 +48,7 @@ fn applied(matrix: &Syntax, vector: &str) -> String {
 pub(super) fn point_moved(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
     let (f, x) = (parenthesized(&link.left), parenthesized(&link.right));
     let message = format!("`{f}` is {} and `{x}` is {}: they cannot be multiplied", left.shape(), right.shape());
-    Diagnostic::new(Place::of(link), message)
+    Diagnostic::new(Location::of(link), message)
         .help(format!("write `{f}.rotation() * {x} + {f}.translation()` to move the point"))
         .note("the matrix has a last row and column more than the point, (A b; 0 1)")
 }
@@ -63,7 +63,7 @@ pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr) -> Diagnost
         spell(&link.right),
         right.shape()
     );
-    let error = Diagnostic::new(Place::of(link), message);
+    let error = Diagnostic::new(Location::of(link), message);
     let (l, r) = (left.shape(), right.shape());
     match () {
         () if l == r && l.is_column() => {

@@ -29,7 +29,7 @@ use super::fields::Fields;
 use super::scope::Scope;
 use super::sites::Sites;
 use super::value::Value;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::spell;
 
 /// Operators and methods inside each other.
@@ -128,14 +128,15 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             let first = self.work == WORK + 1;
             let message = format!("the {} has more than {WORK} operations", self.key);
             return match first {
-                true => self
-                    .error(Diagnostic::new(Place::of(syntax), message).note("ranges are written out at compile time")),
+                true => self.error(
+                    Diagnostic::new(Location::of(syntax), message).note("ranges are written out at compile time"),
+                ),
                 false => None,
             };
         }
         if self.depth == DEPTH {
             let message = format!("more than {DEPTH} operations inside each other");
-            return self.error(Diagnostic::new(Place::of(syntax), message).help("give names to parts with `let`"));
+            return self.error(Diagnostic::new(Location::of(syntax), message).help("give names to parts with `let`"));
         }
         self.depth += 1;
         let value = self.dispatch(syntax);
@@ -180,7 +181,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             other => {
                 let message = format!("`{}` is {}, not a matrix or a scalar", spell(syntax), other.describe());
                 let help = format!("take a part of it, as in `{}{}`", spell(syntax), first_part(&other));
-                self.error(Diagnostic::new(Place::of(syntax), message).help(help))
+                self.error(Diagnostic::new(Location::of(syntax), message).help(help))
             }
         }
     }
@@ -205,7 +206,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         let message = format!("`{}` is {}, where a scalar is needed", spell(syntax), expr.shape());
         let entry = if expr.shape().is_column() { "[0]" } else { "[(0, 0)]" };
         let help = format!("take an entry, as in `{}{entry}`", operators::parenthesized(syntax));
-        self.error(Diagnostic::new(Place::of(syntax), message).help(help))
+        self.error(Diagnostic::new(Location::of(syntax), message).help(help))
     }
 
     fn size(&self, expr: Expr<'g>) -> Size {
@@ -234,7 +235,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         };
         if size.weight > WEIGHT || size.nesting > NESTING {
             let note = "written out, it has more terms, factors or digits than a formula should have";
-            return self.error(Diagnostic::new(Place::of(at), "this expression grows too large").note(note));
+            return self.error(Diagnostic::new(Location::of(at), "this expression grows too large").note(note));
         }
         let expr = make();
         // a number is as large as its digits, however it was made
@@ -255,14 +256,14 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
 
 /// The error for an `I` that meets nothing that has a size.
 fn open_identity(syntax: &Syntax) -> Diagnostic {
-    Diagnostic::new(Place::of(syntax), "the size of `I` is not known here")
+    Diagnostic::new(Location::of(syntax), "the size of `I` is not known here")
         .help("write `Matrix3::identity()`")
         .note("`I` takes its size from the other side of `+`, `-` or `*`")
 }
 
 /// The error for a sum over sites within another function.
 fn open_sum(syntax: &Syntax) -> Diagnostic {
-    Diagnostic::new(Place::of(syntax), format!("`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax))))
+    Diagnostic::new(Location::of(syntax), format!("`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax))))
         .note("each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
 }
 

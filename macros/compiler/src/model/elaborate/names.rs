@@ -8,14 +8,14 @@ use super::super::Constant;
 use super::super::scope::Missing;
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
     pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
         if path.qself.is_some() {
             return self.error(
-                Diagnostic::new(Place::of(path), "a type in angle brackets has no meaning here")
+                Diagnostic::new(Location::of(path), "a type in angle brackets has no meaning here")
                     .help("write the path of a constant, or a field"),
             );
         }
@@ -50,7 +50,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// The symbol of a constant, the same for every use.
     fn constant(&mut self, path: &Path) -> Option<Value<'g>> {
         if path.segments.iter().any(|segment| !segment.arguments.is_empty()) {
-            let error = Diagnostic::new(Place::of(path), "a constant has no generic arguments");
+            let error = Diagnostic::new(Location::of(path), "a constant has no generic arguments");
             return self.error(error.help("write the path of a scalar constant"));
         }
         let known = self.context.constants.iter().position(|constant| constant.path == *path);

@@ -6,7 +6,7 @@ use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 use super::super::value::Value;
 use super::mismatch::{no_product, point_moved, unequal_shapes};
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 /// The operators of closures.
@@ -65,7 +65,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn refused_operator(&mut self, operator: &BinOp) -> Option<Value<'g>> {
         let text = crate::parse::spell_tokens(operator);
         let error = Diagnostic::new(
-            Place::of(operator),
+            Location::of(operator),
             format!("the operator `{}` has no meaning in the {}", text.trim(), self.key),
         );
         self.error(match operator {
@@ -108,7 +108,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let text = spell(syntax);
         let message = format!("`{text}` is {} and cannot be {}", value.describe(), operator.verb());
         let help = format!("take its parts, as in `{text}{}`", super::first_part(value));
-        self.error(Diagnostic::new(Place::of(syntax), message).help(help))
+        self.error(Diagnostic::new(Location::of(syntax), message).help(help))
     }
 
     fn sum(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>, minus: bool) -> Option<Value<'g>> {
@@ -142,10 +142,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         let text = spell(other);
         let error = match shape.is_scalar() {
-            true => Diagnostic::new(Place::of(other), format!("`I` is an identity matrix, but `{text}` is a scalar"))
-                .help("write `1` for the number, or multiply the scalar by `I`"),
+            true => {
+                Diagnostic::new(Location::of(other), format!("`I` is an identity matrix, but `{text}` is a scalar"))
+                    .help("write `1` for the number, or multiply the scalar by `I`")
+            }
             false => Diagnostic::new(
-                Place::of(other),
+                Location::of(other),
                 format!("`I` is square, but `{text}` is {shape}: they cannot be added"),
             )
             .help("leave `I` out")
@@ -187,7 +189,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if !divisor.shape().is_scalar() {
             let text = spell(&link.right);
             let message = format!("`{text}` is {}: only scalars divide", divisor.shape());
-            let error = Diagnostic::new(Place::of(&link.right), message);
+            let error = Diagnostic::new(Location::of(&link.right), message);
             let help =
                 divisor.shape().is_square().then(|| format!("multiply by `{}.inverse()`", parenthesized(&link.right)));
             return self.error(match help {
@@ -197,7 +199,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         if divisor.is_zero() {
             let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-            return self.error(Diagnostic::new(Place::of(&link.right), message).note("it simplifies to 0"));
+            return self.error(Diagnostic::new(Location::of(&link.right), message).note("it simplifies to 0"));
         }
         match left {
             Value::Identity(scale) => {
@@ -221,7 +223,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             _ => {
                 let error = Diagnostic::new(
-                    Place::of(link),
+                    Location::of(link),
                     format!("`{}` is no remainder of whole numbers", spell_link(link)),
                 );
                 self.error(error.note("`%` is for indices, as in `q[(i + 1) % 4]`"))
@@ -242,12 +244,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 }
             },
             UnOp::Deref(_) => {
-                let error = Diagnostic::new(Place::of(&unary.op), "there is nothing to dereference");
+                let error = Diagnostic::new(Location::of(&unary.op), "there is nothing to dereference");
                 self.error(error.help(format!("write `{}`", spell(&unary.expr))).note("every value is copied"))
             }
             _ => {
-                let error =
-                    Diagnostic::new(Place::of(&unary.op), format!("this operator has no meaning in the {}", self.key));
+                let error = Diagnostic::new(
+                    Location::of(&unary.op),
+                    format!("this operator has no meaning in the {}", self.key),
+                );
                 self.error(error.note("the only sign is `-`"))
             }
         }

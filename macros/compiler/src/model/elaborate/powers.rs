@@ -8,7 +8,7 @@ use super::methods::{no_real_value, wrong_receiver};
 use super::operators::parenthesized;
 use super::tables::{Rule, Special};
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 /// The largest exponent of `powi`.
@@ -58,14 +58,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 .map(Value::Matrix),
             Some(_) => {
                 let error = Diagnostic::new(
-                    Place::of(syntax),
+                    Location::of(syntax),
                     format!("an exponent of `powi` goes from -{EXPONENT} to {EXPONENT}"),
                 );
                 self.error(error.help("write `(self.exponent * x.ln()).exp()` for a larger one"))
             }
             None => {
                 let error =
-                    Diagnostic::new(Place::of(syntax), format!("`{}` is no whole number known here", spell(syntax)));
+                    Diagnostic::new(Location::of(syntax), format!("`{}` is no whole number known here", spell(syntax)));
                 self.error(error.help(format!("write `.powf({})`", spell(syntax))))
             }
         }
@@ -95,7 +95,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                     .map(Value::Matrix)
             }
             _ => self.error(
-                Diagnostic::new(Place::of(syntax), "this exponent has too many digits")
+                Diagnostic::new(Location::of(syntax), "this exponent has too many digits")
                     .help("round it, or make it a field"),
             ),
         }

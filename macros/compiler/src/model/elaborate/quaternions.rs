@@ -7,7 +7,7 @@ use super::super::quaternion as algebra;
 use super::super::value::Value;
 use super::operators::{Operator, parenthesized};
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::parse::spell;
 
 /// The methods of quaternions with their number of arguments.
@@ -71,7 +71,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (Operator::Divide, Value::Quaternion(a), Value::Matrix(s)) if s.shape().is_scalar() => {
                 if s.is_zero() {
                     let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-                    return self.error(Diagnostic::new(Place::of(&link.right), message).note("it simplifies to 0"));
+                    return self.error(Diagnostic::new(Location::of(&link.right), message).note("it simplifies to 0"));
                 }
                 self.build(link, &[a, s], Growth::Product, || a / s).map(Value::Quaternion)
             }
@@ -154,7 +154,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                     let message =
                         format!("`{a}` is a quaternion and `{b}` is {}: `dot` needs two of a kind", other.describe());
                     self.error(
-                        Diagnostic::new(Place::of(call), message)
+                        Diagnostic::new(Location::of(call), message)
                             .help(format!("write `{}.imag()` for a vector", parenthesized(&call.receiver))),
                     )
                 }
@@ -192,7 +192,7 @@ fn misfit(operator: Operator, link: &ExprBinary, left: &Value, right: &Value) ->
     let (a, b) = (spell(&link.left), spell(&link.right));
     let message =
         format!("`{a}` is {} and `{b}` is {}: they cannot be {}", left.describe(), right.describe(), operator.verb());
-    let error = Diagnostic::new(Place::of(link), message);
+    let error = Diagnostic::new(Location::of(link), message);
     let vector = |value: &Value| value.shape() == Some(Shape::vector(3));
     match (operator, left, right) {
         (Operator::Multiply, left, Value::Quaternion(_)) if vector(left) => {

@@ -4,7 +4,7 @@ use syn::Expr as Syntax;
 
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -44,16 +44,16 @@ fn describe(syntax: &Syntax) -> (&'static str, Option<String>) {
 }
 
 /// The keyword, where there is one.
-fn place(syntax: &Syntax) -> Place {
+fn place(syntax: &Syntax) -> Location {
     match syntax {
         Syntax::If(inner) => inner.if_token.span.into(),
         Syntax::Match(inner) => inner.match_token.span.into(),
         Syntax::ForLoop(inner) => inner.for_token.span.into(),
         Syntax::While(inner) => inner.while_token.span.into(),
         Syntax::Loop(inner) => inner.loop_token.span.into(),
-        Syntax::Cast(inner) => Place::between(inner.as_token.span, Place::of(&inner.ty).start()),
+        Syntax::Cast(inner) => Location::between(inner.as_token.span, Location::of(&inner.ty).start()),
         Syntax::Return(inner) => inner.return_token.span.into(),
         Syntax::Try(inner) => inner.question_token.span.into(),
-        other => Place::of(other),
+        other => Location::of(other),
     }
 }

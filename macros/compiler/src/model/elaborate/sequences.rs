@@ -5,7 +5,7 @@ use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, Exp
 use super::super::sizes::TERMS;
 use super::super::value::Value;
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{Pattern, spell};
 
 /// The largest number in a range.
@@ -38,7 +38,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `a..b`, an array of whole numbers.
     pub(super) fn range(&mut self, range: &ExprRange) -> Option<Value<'g>> {
         let (Some(start), Some(end)) = (&range.start, &range.end) else {
-            let error = Diagnostic::new(Place::of(range), "a range has a start and an end");
+            let error = Diagnostic::new(Location::of(range), "a range has a start and an end");
             return self.error(error.help("write `0..3`"));
         };
         if self.context.power.is_some() {
@@ -60,7 +60,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 end - start
             );
             return self
-                .error(Diagnostic::new(Place::of(range), message).note("ranges are written out at compile time"));
+                .error(Diagnostic::new(Location::of(range), message).note("ranges are written out at compile time"));
         }
         let graph = self.graph();
         Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).collect()))
@@ -88,7 +88,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// The closure of `.map(…)`, with its argument.
     pub(super) fn closure_of_map<'s>(&mut self, call: &'s ExprMethodCall) -> Option<(Pattern, &'s ExprClosure)> {
         let Some(Syntax::Closure(closure)) = call.args.first().filter(|_| call.args.len() == 1) else {
-            let error = Diagnostic::new(Place::of(&call.args), "`map` takes a closure");
+            let error = Diagnostic::new(Location::of(&call.args), "`map` takes a closure");
             return self.error(error.help("write `.map(|i| …)`"));
         };
         Some((self.only_argument(closure)?, closure))
@@ -98,7 +98,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match closure.inputs.len() {
             1 => Pattern::read(&closure.inputs[0], &mut self.context.diagnostics),
             _ => {
-                let error = Diagnostic::new(Place::of(closure), "the closure of `map` has one argument");
+                let error = Diagnostic::new(Location::of(closure), "the closure of `map` has one argument");
                 self.error(error.help("write `.map(|i| …)`"))
             }
         }
@@ -121,8 +121,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 first.shape(),
                 other.shape()
             );
-            return self
-                .error(Diagnostic::new(Place::of(&call.receiver), message).note("only terms of one shape have a sum"));
+            return self.error(
+                Diagnostic::new(Location::of(&call.receiver), message).note("only terms of one shape have a sum"),
+            );
         }
         let mut sum = first;
         for &term in &terms[1..] {

@@ -7,7 +7,7 @@ use super::super::power::{Linear, SiteIndex, Term};
 use super::super::value::{Each, PerSite, Value};
 use super::operators::Operator;
 use super::{Elaborator, shortened};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::spell;
 
 /// Sums inside each other.
@@ -33,7 +33,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         for (syntax, expr) in [(start, from), (end, to)] {
             if !Linear::is_declarable(expr) {
-                let error = Diagnostic::new(Place::of(syntax), format!("`{}` is no end of a range", spell(syntax)));
+                let error = Diagnostic::new(Location::of(syntax), format!("`{}` is no end of a range", spell(syntax)));
                 return self
                     .error(error.help("write a whole number, `N`, an index, or sums of these, as in `i + 1..N`"));
             }
@@ -49,7 +49,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let graph = self.graph();
         let power = self.context.power.as_mut()?;
         if power.ranges.len() == SUMS {
-            let error = Diagnostic::new(Place::of(call), format!("more than {SUMS} ranges inside each other"));
+            let error = Diagnostic::new(Location::of(call), format!("more than {SUMS} ranges inside each other"));
             return self.error(error.note("the terms of such a sum are too many for any N"));
         }
         let index = power.index(graph);
@@ -78,7 +78,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Value::Matrix(value) if value.shape().is_scalar() => vec![Term { ranges: Vec::new(), value }],
             other => {
                 let message = format!("the terms of this sum over sites are {}, not scalars", other.describe());
-                let error = Diagnostic::new(Place::of(&call.receiver), message);
+                let error = Diagnostic::new(Location::of(&call.receiver), message);
                 return self.error(error.help("add scalars, as in `(0..N).map(|i| self.field.dot(&q[i])).sum()`"));
             }
         };
@@ -117,7 +117,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let divisor = self.factor(&link.right, divisor)?;
                 if divisor.is_zero() {
                     let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-                    return self.error(Diagnostic::new(Place::of(&link.right), message));
+                    return self.error(Diagnostic::new(Location::of(&link.right), message));
                 }
                 Some(Value::Sum(scaled(terms, divisor.powi(-1))))
             }
@@ -147,7 +147,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         let message = format!("`{}` is {}, and a sum over sites is a scalar", shortened(&spell(syntax)), expr.shape());
         self.error(
-            Diagnostic::new(Place::of(syntax), message).note("sums over sites are added, and multiplied by scalars"),
+            Diagnostic::new(Location::of(syntax), message).note("sums over sites are added, and multiplied by scalars"),
         )
     }
 
@@ -159,7 +159,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         };
         let text = spell(&index.index);
         if !place.index.shape().is_scalar() || !Linear::is_declarable(place.index) {
-            let error = Diagnostic::new(Place::of(&index.index), format!("`{text}` is no index of a site"));
+            let error = Diagnostic::new(Location::of(&index.index), format!("`{text}` is no index of a site"));
             return self.error(error.help("write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`"));
         }
         let graph = self.graph();
@@ -170,7 +170,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let message = format!("`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone())));
             let help =
                 format!("write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
-            return self.error(Diagnostic::new(Place::of(&index.index), message).help(help));
+            return self.error(Diagnostic::new(Location::of(&index.index), message).help(help));
         }
         let is_own = !place.wraps
             && power.ranges.len() == 1
@@ -194,7 +194,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => {
                 let key = self.key;
                 let error =
-                    Diagnostic::new(Place::of(index), format!("the {key} of a site depends on that site alone"));
+                    Diagnostic::new(Location::of(index), format!("the {key} of a site depends on that site alone"));
                 self.error(error.help(format!("write `(0..{name}).map(|i| …)` with the index `i` alone")).note(
                     "the equation of a step is solved site by site; what ties sites to each other belongs to the potential",
                 ))
