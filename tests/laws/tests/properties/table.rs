@@ -7,7 +7,7 @@ pub type Property = (&'static str, &'static [&'static str]);
 #[rustfmt::skip]
 pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("runtime/src/scheme/composed.rs", &[
-        ("slopes_are_those_along_the_whole_step",  &["Stage::slopes"]),
+        ("slopes_are_those_along_the_whole_step",  &["SizedStep::slopes"]),
     ]),
     ("tests/laws/tests/properties/schemes.rs", &[
         ("steps_are_their_parts",          &["Parts::advance", "Parts::element", "Parts::increment", "Parts::lift", "Parts::motion", "Parts::on_space", "Substep::solve", "Substep::start_kick", "Substep::end_kick", "Substep::update", "Substep::start_gradient", "Substep::end_gradient", "Stepping::inverse_legendre", "Stepping::step_constants"]),
