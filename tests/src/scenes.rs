@@ -113,6 +113,7 @@ macro_rules! every_scene {
             a_steered_bob: steered_bob::SteeredBob { mass: 1.2, gravity: 9.81, drag: 0.2 }, unit(), 0.05;
             a_steered_body: steered_body::SteeredBody { inertia: inertia(), damping: 0.1, top: 0.5 }, turned(), 0.05;
             a_tolerant_exact_top: tolerant_exact_top::TolerantExactTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;
+            a_top_of_three_ways: three_ways::ThreeWays { moments: Vector3::new(2.0, 1.5, 1.0), weight: 3.0, center: centre() }, turned(), 0.05;
             a_tolerant_top: tolerant_top::TolerantTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_momentum_that_tumbles: tumbling_momentum::TumblingMomentum { inertia: inertia() }, (), 0.1;
             two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
