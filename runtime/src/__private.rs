@@ -21,7 +21,7 @@ pub use crate::implicit::{
 };
 pub use crate::linear::{solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
-pub use crate::matrices::{axial, determinant, embedded, hat, matrix_of, shifted};
+pub use crate::matrices::{Blocks, axial, determinant, embedded, hat, matrix_of, shifted};
 pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{

@@ -81,6 +81,22 @@ fn determinant_of_one<T: Real, const N: usize>(mut a: [[T; N]; N]) -> T {
     determinant
 }
 
+/// Blocks of matrices.
+pub trait Blocks<T> {
+    /// The block from row i and column j on; what lies outside is zero.
+    fn block<const R: usize, const C: usize>(&self, i: usize, j: usize) -> SMatrix<T, R, C>;
+}
+
+impl<T: Scalar, const P: usize, const Q: usize> Blocks<T> for SMatrix<T, P, Q> {
+    #[inline]
+    fn block<const R: usize, const C: usize>(&self, i: usize, j: usize) -> SMatrix<T, R, C> {
+        columns(from_fn(|l| {
+            let column = column(self, j + l);
+            from_fn(|k| column.get(i + k).copied().unwrap_or_else(T::zero))
+        }))
+    }
+}
+
 /// A in a zero matrix, from row i and column j on.
 #[inline]
 pub fn embedded<T: Scalar, const P: usize, const Q: usize, const R: usize, const C: usize>(

@@ -58,7 +58,7 @@ impl Scope<'_, '_> {
             MatrixOperation::Analytic(Analytic::Logarithm) => call("logarithm"),
             MatrixOperation::Value => self.opaque(&Callee::Value(String::new()), operands),
             MatrixOperation::Gradient(leaf) => self.opaque_gradient(*leaf, operands),
-            MatrixOperation::Block(i, j) => block(self.receiver(&operands[0]), *shape, (*i, *j)),
+            MatrixOperation::Block(i, j) => self.block(&self.by_reference(&operands[0]), *shape, (*i, *j)),
             MatrixOperation::Embedded(i, j) => {
                 let matrix = self.by_reference(&operands[0]);
                 let (i, j) = (Literal::usize_unsuffixed(*i), Literal::usize_unsuffixed(*j));
@@ -219,10 +219,17 @@ impl Scope<'_, '_> {
         let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
         let start = positions.first().copied().unwrap_or(0);
         if positions.iter().copied().eq(start..start + shape.rows) {
-            return Reached::Value(block(quote!(#name), shape, (start, 0)));
+            return Reached::Value(self.block(&quote!(#name), shape, (start, 0)));
         }
         let entries = positions.into_iter().map(Literal::usize_unsuffixed);
         Reached::Value(quote!(#private::vector([#(#name[#entries]),*])))
+    }
+
+    /// The block of a matrix, given by reference, from a place on.
+    fn block(&self, matrix: &TokenStream, shape: Shape, (i, j): (usize, usize)) -> TokenStream {
+        let private = &self.paths.private;
+        let [rows, columns, i, j] = [shape.rows, shape.columns, i, j].map(Literal::usize_unsuffixed);
+        quote!(#private::Blocks::block::<#rows, #columns>(#matrix, #i, #j))
     }
 
     /// The value of an opaque potential, or its gradient.

@@ -171,7 +171,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("saved_states_resume_bit_for_bit", &["Stepper::resume"]),
     ]),
     ("tests/laws/tests/properties/whole.rs", &[
-        ("operations_are_those_of_matrices", &["shifted", "determinant", "embedded", "matrix_of"]),
+        ("operations_are_those_of_matrices", &["shifted", "determinant", "embedded", "matrix_of", "Blocks::block"]),
         ("maps_of_skew_matrices_are_their_matrices", &["Sylvester::new", "Sylvester::times", "Jacobian::all_finite", "Jacobian::between", "Jacobian::column", "Jacobian::lane", "Jacobian::largest_entry", "Jacobian::orientation", "Jacobian::size_of_terms", "Jacobian::solve", "Jacobian::solve_exchanged"]),
         ("maps_of_all_kinds_of_numbers_are_inverted", &["Jacobian::solve"]),
         ("hats_turn_vectors",                &["hat", "axial"]),

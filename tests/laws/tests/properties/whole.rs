@@ -3,8 +3,8 @@
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::Stepping;
 use clebsch::__private::{
-    InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection, embedded,
-    hat, invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
+    Blocks, InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection,
+    embedded, hat, invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
     orientation_of_uniform, projection, push, shifted, skew, skew_components, skew_outer, skew_times, tangent,
     turn_freely, turn_great_circle, turned_in_plane,
 };
@@ -46,6 +46,7 @@ proptest! {
         let whole: Square = embedded(&part, 1, 2);
         prop_assert_eq!(whole.fixed_view::<2, 3>(1, 2).into_owned(), part);
         prop_assert!(near(whole.norm(), part.norm()), "zero elsewhere");
+        prop_assert_eq!(Blocks::block::<2, 3>(&a, 1, 2), a.fixed_view::<2, 3>(1, 2).into_owned());
         prop_assert!((matrix_of(|x: &SVector<f64, 5>| a * x) - a).amax() == 0.0);
     }
 
