@@ -1,6 +1,6 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
-use clebsch_symbolic::{Role, Shape};
+use clebsch_symbolic::Role;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -104,6 +104,7 @@ impl Emitter<'_, '_> {
 
     /// The part of `inertia` that belongs to a free rotation.
     pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
+        let private = &self.paths.private;
         if self.has_uniform_inertia() {
             let dimension = solve.components.len();
             let matrix = self.paths.matrix(dimension, dimension);
@@ -113,7 +114,7 @@ impl Emitter<'_, '_> {
             return quote!(inertia);
         }
         let start = Literal::usize_unsuffixed(solve.components[0]);
-        quote!(inertia.fixed_view::<3, 3>(#start, #start).into_owned())
+        quote!(#private::Blocks::block::<3, 3>(&inertia, #start, #start))
     }
 
     /// Whether the factor of an equation acts from the left.
@@ -134,7 +135,10 @@ impl Emitter<'_, '_> {
         if components.iter().copied().eq(first..first + count) {
             let part = match count == self.dimension() {
                 true => quote!(inertia),
-                false => matrices::block(quote!(inertia), Shape::square(count), (first, first)),
+                false => {
+                    let [count, first] = [count, first].map(Literal::usize_unsuffixed);
+                    quote!(#private::Blocks::block::<#count, #count>(&inertia, #first, #first))
+                }
             };
             return quote!(#private::orientation_of_inertia(&#part, h)?);
         }

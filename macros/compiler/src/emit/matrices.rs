@@ -285,12 +285,6 @@ enum Reached {
     Value(TokenStream),
 }
 
-/// The block of a matrix from a place on.
-pub(super) fn block(matrix: TokenStream, shape: Shape, (i, j): (usize, usize)) -> TokenStream {
-    let [rows, columns, i, j] = [shape.rows, shape.columns, i, j].map(Literal::usize_unsuffixed);
-    quote!(#matrix.fixed_view::<#rows, #columns>(#i, #j).into_owned())
-}
-
 /// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`; terms that do not depend on it stand
 /// before.
 pub(super) fn matrix_of(
