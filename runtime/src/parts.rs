@@ -29,12 +29,12 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
 
     /// What of x and D the move takes; D is made where it is needed.
     #[inline(always)]
-    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> Motion<Self, M> {
+    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> MotionOf<Self, M> {
         Self::Moves::of(x, d)
     }
 
     /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
-    fn advance(&self, q: &Self::Configuration, motion: &Motion<Self, M>) -> Self::Configuration;
+    fn advance(&self, q: &Self::Configuration, motion: &MotionOf<Self, M>) -> Self::Configuration;
 
     /// (TΦ_F)^{-*} p at q⁺, the covector carried along by F = I + D.
     #[inline(always)]
@@ -53,14 +53,14 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
 
 /// What moves q and N: the increment D = F − I, the coordinates x where those are enough, or both.
 pub trait Moves<X, D> {
-    /// That.
+    /// D, x, or both.
     type Motion;
 
-    /// What of x and D it is.
+    /// The motion with the coordinates x, whose increment `d` makes where it is needed.
     fn of(x: &X, d: impl FnOnce() -> D) -> Self::Motion;
 }
 
-/// By D.
+/// q and N move by D.
 #[derive(Clone, Copy, Debug)]
 pub struct ByIncrement;
 
@@ -73,7 +73,7 @@ impl<X, D> Moves<X, D> for ByIncrement {
     }
 }
 
-/// By x.
+/// q and N move by x, without the matrix D.
 #[derive(Clone, Copy, Debug)]
 pub struct ByCoordinates;
 
@@ -86,7 +86,7 @@ impl<X: Copy, D> Moves<X, D> for ByCoordinates {
     }
 }
 
-/// q by x, N by D.
+/// q moves by x, N by D.
 #[derive(Clone, Copy, Debug)]
 pub struct ByBoth;
 
@@ -100,7 +100,7 @@ impl<X: Copy, D> Moves<X, D> for ByBoth {
 }
 
 /// What moves q and N in a step of S by M.
-pub type Motion<S, M = Declared> =
+pub type MotionOf<S, M = Declared> =
     <<S as Parts<M>>::Moves as Moves<<S as Parts<M>>::Coordinates, <S as Clebsch>::Element>>::Motion;
 
 /// The coordinates that a solve finds.
@@ -235,7 +235,7 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         t: Self::Scalar,
         q: &Self::Configuration,
         mu: &Self::Momentum,
-        motion: &Motion<Self, M>,
+        motion: &MotionOf<Self, M>,
     ) -> Option<Self::Momentum> {
         let _ = (constants, t, q, mu, motion);
         None

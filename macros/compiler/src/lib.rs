@@ -27,7 +27,7 @@ use clebsch_symbolic::work;
 use crate::budget::CompilerStage;
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
-pub use crate::methods::Method;
+pub use crate::methods::MethodProgram;
 use crate::parse::Declaration;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
@@ -83,7 +83,7 @@ fn program<'g>(
     let graphs = std::iter::successors(Some(graph), |graph| Some(graph.another())).skip(1);
     for (method, graph) in declaration.methods.iter().zip(graphs) {
         let found = program_of_steps(graph, &declaration.by(method), stage);
-        match found.and_then(|steps| Method::new(&method.name, steps, &program)) {
+        match found.and_then(|steps| MethodProgram::new(&method.name, steps, &program)) {
             Ok(found) => program.methods.push(found),
             Err(errors) => errors.into_vec().into_iter().for_each(|error| diagnostics.push(error)),
         }

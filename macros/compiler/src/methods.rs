@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::lower::Program;
 
 /// A further way to step the system of a program.
-pub struct Method<'g> {
+pub struct MethodProgram<'g> {
     /// The unit struct of the user that stands for it.
     pub name: Ident,
     /// Its program, of which the system is that of the declared dials.
@@ -21,18 +21,22 @@ impl Program<'_> {
     }
 }
 
-impl<'g> Method<'g> {
+impl<'g> MethodProgram<'g> {
     /// The method of a program beside the one that the declared dials have.
     ///
     /// # Errors
     /// Where it conserves less: `Conserves` is of the system and speaks for all of its methods.
-    pub(crate) fn new(name: &Ident, program: Program<'g>, declared: &Program<'g>) -> Result<Method<'g>, Diagnostics> {
+    pub(crate) fn new(
+        name: &Ident,
+        program: Program<'g>,
+        declared: &Program<'g>,
+    ) -> Result<MethodProgram<'g>, Diagnostics> {
         let of = |program: &Program<'g>| -> Vec<String> {
             program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.clone()).collect()
         };
         let conserved = of(&program);
         match of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
-            None => Ok(Method { name: name.clone(), program }),
+            None => Ok(MethodProgram { name: name.clone(), program }),
             Some(lost) => {
                 let message = format!("the method `{name}` does not conserve the momentum `{lost}`");
                 let error = Diagnostic::new(name.span(), message);

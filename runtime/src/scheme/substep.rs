@@ -1,6 +1,6 @@
 //! One substep: kick, solve, move, update, kick.
 
-use crate::parts::{Motion, Parts, Substep};
+use crate::parts::{MotionOf, Parts, Substep};
 use crate::summation::{Rests, Sums};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 
@@ -74,7 +74,7 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
 
     /// q⁺
     #[inline(always)]
-    pub fn advance(&mut self, system: &S, motion: &Motion<S, M>) {
+    pub fn advance(&mut self, system: &S, motion: &MotionOf<S, M>) {
         let moved = system.advance(&self.q, motion);
         self.q = S::Sums::made(&self.q, &mut self.rests.0, moved);
     }

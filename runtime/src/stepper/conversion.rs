@@ -4,8 +4,9 @@ use super::Stepper;
 use crate::{Clebsch, Error, Method, State, Time};
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    /// The state of this method where `other`, a stepper of the same system by another method or with another step size, has `state`: the same time and
-    /// configuration, and the momentum that [`synchronized`](Self::synchronized) reads, half a kick off or on as each method needs it.
+    /// The state of this stepper that is the same body as `state` of `other`, which may have another method or another step size.
+    ///
+    /// Time and configuration are taken over, and the momentum that [`synchronized`](Self::synchronized) reads; half a kick is added where this method needs it.
     ///
     /// ```
     /// # use clebsch::Clebsch;

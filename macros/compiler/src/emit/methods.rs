@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::{Emitter, Generics};
-use crate::Method;
+use crate::MethodProgram;
 
 impl<'g> Emitter<'_, 'g> {
     /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
@@ -83,6 +83,6 @@ impl<'g> Emitter<'_, 'g> {
 }
 
 /// The names of the methods of a program.
-pub(super) fn names<'a>(methods: &'a [Method<'_>]) -> impl Iterator<Item = &'a Ident> {
+pub(super) fn names<'a>(methods: &'a [MethodProgram<'_>]) -> impl Iterator<Item = &'a Ident> {
     methods.iter().map(|method| &method.name)
 }

@@ -25,7 +25,7 @@ use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::Method;
+use crate::MethodProgram;
 use crate::lower::Program;
 use crate::model::{Item, Model};
 use code::{Scope, Spelled, nested_type};
@@ -155,7 +155,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
     }
 
     /// The emitter of a method, which has the names of that of the declared dials.
-    fn of_method(declared: &'a Program<'g>, method: &'a Method<'g>) -> Emitter<'a, 'g> {
+    fn of_method(declared: &'a Program<'g>, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
         let model = &method.program.formulas.model;
         Emitter { program: &method.program, model, method: Some(&method.name), ..Emitter::new(declared) }
     }

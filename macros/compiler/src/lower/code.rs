@@ -184,10 +184,13 @@ impl Kernel {
                 locals.push(code);
             }
         }
-        let renamed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
-        let outputs = self.outputs.iter();
-        let outputs = outputs.map(|(shape, entries)| (*shape, entries.iter().map(renamed).collect())).collect();
-        Kernel { locals, outputs }
+        Kernel { locals, outputs: self.outputs_with(&places) }
+    }
+
+    /// The outputs with other codes for the shared terms.
+    fn outputs_with(&self, places: &[Code]) -> Vec<(Shape, Vec<Code>)> {
+        let placed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
+        self.outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(placed).collect())).collect()
     }
 
     /// The same with each shared term that is used once in its place, where its type is known without a name.
@@ -214,10 +217,7 @@ impl Kernel {
                 locals.push(code);
             }
         }
-        let renamed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
-        let outputs = self.outputs.iter();
-        let outputs = outputs.map(|(shape, entries)| (*shape, entries.iter().map(renamed).collect())).collect();
-        Kernel { locals, outputs }
+        Kernel { locals, outputs: self.outputs_with(&places) }
     }
 
     /// Its outputs, where each is an entry of an argument.

@@ -4,6 +4,7 @@
 //! decides: the order in which products are made, letters that sums of products have in common, and products that never need
 //! their matrix, such as Zv and ⟨abᵀ, E⟩ for rotations.
 
+mod blocks;
 mod hoisting;
 mod words;
 
@@ -14,6 +15,7 @@ use clebsch_symbolic::{
 use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
 use crate::derive::stacked;
+use blocks::{times, total};
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
 use words::{Weighted, cheapest_cut, common_letter};
@@ -494,108 +496,6 @@ impl Matrices {
         };
         let (weights, operands) = parts.into_iter().unzip();
         self.operation(MatrixOperation::Sum(weights), operands, shape, cost)
-    }
-}
-
-/// Matrices of blocks, entry by entry.
-impl Matrices {
-    /// The operation that a matrix is the result of.
-    fn operation_of<'a>(&'a self, code: &'a Code) -> Option<&'a Whole> {
-        match code {
-            Code::Local(index) => self.operation_of(&self.locals[*index]),
-            Code::Whole(whole) => Some(whole),
-            _ => None,
-        }
-    }
-
-    /// Entry (i, j) of a matrix, in that which it is a part of.
-    fn entry(&self, a: &Code, i: usize, j: usize) -> Code {
-        let Some(whole) = self.operation_of(a).filter(|_| self.joins_blocks) else { return entry(a, i, j) };
-        match &whole.operation {
-            MatrixOperation::Argument(first) => Code::Read(Input { row: i, column: j, ..first.clone() }),
-            MatrixOperation::Entries => whole.operands[i * whole.shape.columns + j].clone(),
-            MatrixOperation::Zero => Code::Number(integer(0)),
-            MatrixOperation::Transpose => self.entry(&whole.operands[0], j, i),
-            MatrixOperation::Block(row, column) => self.entry(&whole.operands[0], row + i, column + j),
-            MatrixOperation::Hat => match (3 + j - i) % 3 {
-                0 => Code::Number(integer(0)),
-                1 => linear(integer(0), vec![(integer(-1), self.entry(&whole.operands[0], 3 - i - j, 0))]),
-                _ => self.entry(&whole.operands[0], 3 - i - j, 0),
-            },
-            _ => entry(a, i, j),
-        }
-    }
-
-    /// Whether the entries of a matrix are made one by one.
-    fn is_listed(&self, code: &Code) -> bool {
-        self.operation_of(code).is_some_and(|whole| match whole.operation {
-            MatrixOperation::Entries | MatrixOperation::Zero | MatrixOperation::Hat => true,
-            MatrixOperation::Transpose => self.is_listed(&whole.operands[0]),
-            _ => false,
-        })
-    }
-
-    /// Whether they are made one by one, or are those of a larger matrix.
-    fn is_read(&self, code: &Code) -> bool {
-        self.is_listed(code)
-            || self.operation_of(code).is_some_and(|whole| match whole.operation {
-                MatrixOperation::Block(..) => true,
-                MatrixOperation::Transpose => self.is_read(&whole.operands[0]),
-                _ => false,
-            })
-    }
-
-    /// A block in a matrix of zeros.
-    fn embedded(&mut self, a: Expr<'_>, (row, column): (usize, usize), shape: Shape) -> Code {
-        let (inner, a) = (a.shape(), self.value(a));
-        let entry = |(i, j): (usize, usize)| {
-            let within = i.checked_sub(row).zip(j.checked_sub(column));
-            let within = within.filter(|(i, j)| *i < inner.rows && *j < inner.columns);
-            match within {
-                None => Code::Number(integer(0)),
-                Some(_) if inner.is_scalar() => a.clone(),
-                Some((i, j)) => self.entry(&a, i, j),
-            }
-        };
-        let entries = shape.positions().map(entry).collect();
-        self.entries(shape, entries)
-    }
-
-    /// The entries of a sum of matrices that are made one by one, or of vectors of which one is.
-    fn joined(&self, shape: Shape, parts: &[(Rational, Code)]) -> Option<Vec<Code>> {
-        let mut listed = parts.iter().map(|(_, part)| self.is_listed(part));
-        let is_joined = if shape.is_column() {
-            listed.any(|listed| listed)
-        } else {
-            // x^ alone has a function
-            let is_hat = |part| self.operation_of(part).is_some_and(|whole| whole.operation == MatrixOperation::Hat);
-            listed.all(|listed| listed) && !parts.iter().all(|(_, part)| is_hat(part))
-        };
-        let sum = |(i, j): (usize, usize)| {
-            total(parts.iter().map(|(weight, part)| (weight.clone(), self.entry(part, i, j))).collect())
-        };
-        (self.joins_blocks && is_joined).then(|| shape.positions().map(sum).collect())
-    }
-}
-
-/// Σ weight · code, without what is 0.
-fn total(terms: Vec<(Rational, Code)>) -> Code {
-    let (mut constant, mut rest) = (integer(0), Vec::new());
-    for (weight, term) in terms {
-        match term {
-            Code::Number(value) => constant += weight * value,
-            term => rest.push((weight, term)),
-        }
-    }
-    linear(constant, rest)
-}
-
-/// weight · code.
-fn times(weight: &Code, code: Code) -> Code {
-    match code {
-        Code::Number(value) if value == integer(0) => Code::Number(value),
-        Code::Number(value) => linear(integer(0), vec![(value, weight.clone())]),
-        code => Code::Product(vec![weight.clone(), code]),
     }
 }
 

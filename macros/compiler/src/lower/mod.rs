@@ -27,7 +27,7 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Shape};
 
-use crate::Method;
+use crate::MethodProgram;
 use crate::derive::{self, Formulas, Id, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{CodeForm, Isotropy};
@@ -116,7 +116,7 @@ pub struct Program<'g> {
     /// A short name for each constant.
     pub constant_names: Vec<String>,
     /// Further ways to step the system, none behind this stage alone.
-    pub methods: Vec<Method<'g>>,
+    pub methods: Vec<MethodProgram<'g>>,
 }
 
 /// The kernels of a term of a power.

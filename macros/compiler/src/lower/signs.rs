@@ -3,7 +3,7 @@
 //! (−a) b = −(a b), a − (−b) = a + b, −a − b = −(a + b) and a + b = b + a hold to the last bit: numbers are rounded alike on both sides of
 //! zero. Terms are otherwise added as before, so that nothing else than the sign of a zero changes.
 //!
-//! A shared term −a − b is computed as that where a does not change in the loop of a solve, so that −a is made once; where a changes it is a + b, which is
+//! A shared term −a − b is computed as it is where a does not change in the loop of a solve: −a is made once. Where a changes, a + b is computed and
 //! then subtracted.
 
 use clebsch_symbolic::{Interner, One, Rational, Shape, Zero, integer, work};

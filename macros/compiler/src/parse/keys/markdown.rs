@@ -10,7 +10,7 @@ pub fn keys_as_markdown() -> String {
     let dials: Vec<String> = KEYS.iter().filter(|key| key.of_method).map(|key| format!("`{}`", key.name)).collect();
     format!(
         "{table}
-A further way to step the same system is a `method NAME = (dial = value, …)`, where `NAME` is a unit struct of yours; there may be any number of them.
+`method NAME = (dial = value, …)` declares a further way to step the same system. `NAME` is a unit struct of yours. There may be any number of methods.
 The dials of a method are {}. One that a method does not name has its default, whatever the declaration says.
 `emit = [tangent]`, `[boundary]` and `effort` are of the steps with the declared dials.
 ",
