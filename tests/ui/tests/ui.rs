@@ -4,5 +4,5 @@
 
 #[test]
 fn mistakes_as_rustc_shows_them() {
-    trybuild::TestCases::new().compile_fail("tests/ui/*.rs");
+    trybuild::TestCases::new().compile_fail("cases/*.rs");
 }
