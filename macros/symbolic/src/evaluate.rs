@@ -15,6 +15,13 @@ pub trait Number: Copy + PartialEq {
     fn add(self, other: Self) -> Self;
     /// The product.
     fn multiply(self, other: Self) -> Self;
+    /// The sum of the products of the numbers in a row with those of a column.
+    fn dot<'a>(row: &[Self], column: impl Iterator<Item = &'a Self>) -> Self
+    where
+        Self: 'a,
+    {
+        row.iter().zip(column).fold(zero(), |sum: Self, (a, b)| sum.add(a.multiply(*b)))
+    }
     /// The reciprocal.
     fn reciprocal(self) -> Self;
     /// A power whose exponent lies between zero and one.
@@ -133,8 +140,26 @@ impl<K: Number> Matrix<K> {
         self.entries[i * self.shape.columns + j]
     }
 
+    /// The matrix without anything in it.
+    fn zeros(shape: Shape) -> Matrix<K> {
+        work::spend(1 + shape.len() / 4);
+        Matrix::new(shape, vec![zero(); shape.len()])
+    }
+
     fn add(&self, other: &Matrix<K>) -> Matrix<K> {
         Matrix::new(self.shape, self.entries.iter().zip(&other.entries).map(|(a, b)| a.add(*b)).collect())
+    }
+
+    /// Adds a number to the entry at a place.
+    fn add_at(&mut self, place: usize, value: K) {
+        self.entries[place] = self.entries[place].add(value);
+    }
+
+    /// Adds a multiple of another matrix.
+    fn add_scaled(&mut self, other: &Matrix<K>, factor: K) {
+        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
+            *entry = entry.add(other.multiply(factor));
+        }
     }
 
     fn scale(&self, factor: K) -> Matrix<K> {
@@ -150,9 +175,13 @@ impl<K: Number> Matrix<K> {
             return self.scale(other.entries[0]);
         }
         work::spend(self.shape.len() * other.shape.columns / 4);
-        let product =
-            |(i, j)| (0..self.shape.columns).fold(zero(), |sum: K, k| sum.add(self.at(i, k).multiply(other.at(k, j))));
-        Matrix::from_fn(Shape::new(self.shape.rows, other.shape.columns), product)
+        let (columns, shape) = (other.shape.columns, Shape::new(self.shape.rows, other.shape.columns));
+        work::spend(1 + shape.len() / 4);
+        let mut entries = Vec::with_capacity(shape.len());
+        for row in self.entries.chunks(self.shape.columns) {
+            entries.extend((0..columns).map(|j| K::dot(row, other.entries[j..].iter().step_by(columns))));
+        }
+        Matrix::new(shape, entries)
     }
 
     /// The transpose.
@@ -240,15 +269,22 @@ impl<'g> Expr<'g> {
             Some(rest.iter().fold(known[first].clone(), |product, letter| product.multiply(&known[letter])))
         };
         match &*self.node() {
-            ExprNode::Symbol(_) => Matrix::from_fn(shape, |_| zero()),
+            ExprNode::Symbol(_) => Matrix::zeros(shape),
             ExprNode::Pi => scalar(K::pi()),
             ExprNode::Literal(entries) => Matrix::new(shape, entries.iter().map(K::from_rational).collect()),
-            ExprNode::Sum(terms) => terms.iter().fold(Matrix::from_fn(shape, |_| zero()), |sum, term| {
-                let powers = term.scalars.iter().map(|(base, exponent)| power(known[base].entries[0], *exponent));
-                let scale = powers.fold(K::from_rational(&term.coefficient), K::multiply);
-                let word = product(&term.word).unwrap_or_else(|| Matrix::scaled_identity(shape.rows, one()));
-                sum.add(&word.scale(scale))
-            }),
+            ExprNode::Sum(terms) => {
+                let mut sum = Matrix::zeros(shape);
+                for term in terms {
+                    let powers = term.scalars.iter().map(|(base, exponent)| power(known[base].entries[0], *exponent));
+                    let scale = powers.fold(K::from_rational(&term.coefficient), K::multiply);
+                    match term.word.as_slice() {
+                        [] => (0..shape.rows).for_each(|i| sum.add_at(i * (shape.columns + 1), scale)),
+                        [letter] => sum.add_scaled(&known[letter], scale),
+                        word => product(word).iter().for_each(|word| sum.add_scaled(word, scale)),
+                    }
+                }
+                sum
+            }
             ExprNode::Stack(entries) => {
                 Matrix::new(shape, entries.iter().map(|entry| known[entry].entries[0]).collect())
             }
@@ -276,7 +312,7 @@ impl<'g> Expr<'g> {
             }
             ExprNode::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
             ExprNode::Wedge(algebra, a) => {
-                let mut matrix = Matrix::from_fn(shape, |_| zero::<K>());
+                let mut matrix = Matrix::<K>::zeros(shape);
                 for (k, entries) in self.graph.basis(*algebra).elements.iter().enumerate() {
                     for (i, j, value) in entries {
                         let entry = known[a].at(k, 0).multiply(K::from_rational(value));
@@ -300,6 +336,9 @@ impl<'g> Expr<'g> {
 
 /// base^exponent: the integer part by multiplication, the fraction by the field's own root.
 fn power<K: Number>(base: K, exponent: Exponent) -> K {
+    if exponent.is_one() {
+        return base;
+    }
     let whole = exponent.floor();
     let fraction = exponent + Exponent::integer(-whole);
     let factor = if whole < 0 { base.reciprocal() } else { base };

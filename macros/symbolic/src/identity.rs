@@ -23,7 +23,7 @@ const POINTS: u64 = 3;
 pub struct Residue(u64);
 
 impl Residue {
-    /// The residue of a value below 2¹²²: 2⁶¹ is one, so its upper and lower halves are added.
+    /// The residue of a value below 2¹²⁴: 2⁶¹ is one, so its upper and lower halves are added.
     pub(crate) fn new(value: u128) -> Residue {
         let sum = (value as u64 & PRIME) + (value >> 61) as u64;
         let sum = (sum & PRIME) + (sum >> 61);
@@ -67,6 +67,18 @@ impl Number for Residue {
     }
     fn multiply(self, other: Residue) -> Residue {
         Residue::new(self.0 as u128 * other.0 as u128)
+    }
+    fn dot<'a>(row: &[Residue], column: impl Iterator<Item = &'a Residue>) -> Residue {
+        // three products and a residue are below 2¹²⁴, whose halves still fit
+        let (mut sum, mut count) = (0_u128, 0);
+        for (a, b) in row.iter().zip(column) {
+            sum += a.0 as u128 * b.0 as u128;
+            count += 1;
+            if count == 3 {
+                (sum, count) = (u128::from(Residue::new(sum).0), 0);
+            }
+        }
+        Residue::new(sum)
     }
     fn reciprocal(self) -> Residue {
         let (mut power, mut base, mut exponent) = (Residue(1), self, PRIME - 2);
@@ -143,9 +155,21 @@ impl<'g> Point<'g> {
             return value;
         }
         let mut known = std::mem::take(&mut self.known);
-        let mut values = |symbol| self.fixed.get(&symbol).cloned().unwrap_or_else(|| self.sample(symbol));
+        let mut values = |symbol| self.fixed.get(&symbol).cloned().unwrap_or_else(|| self.sampled(symbol));
         let value = expr.evaluate_with(&mut known, &mut values);
         self.known = known;
+        value
+    }
+
+    /// The value of a symbol that is not set, which all points of this number share.
+    fn sampled(&self, symbol: Expr<'g>) -> Matrix<Residue> {
+        let mut evaluated = symbol.graph.evaluated.borrow_mut();
+        let known = evaluated.entry(self.seed);
+        if let Some(value) = known.get(&symbol.id) {
+            return value.clone();
+        }
+        let value = self.sample(symbol);
+        known.insert(symbol.id, value.clone());
         value
     }
 
@@ -250,7 +274,14 @@ pub fn without_vanishing_terms(expr: Expr<'_>) -> Expr<'_> {
 
 /// The rank of a matrix for general values of its symbols.
 pub fn rank(expr: Expr<'_>) -> usize {
-    rank_of(Point::new(0).evaluate(expr))
+    rank_where(expr, &|_| {})
+}
+
+/// The rank of a matrix for general values of its symbols, some of them fixed by `prepare`.
+pub fn rank_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> usize {
+    let mut point = Point::new(0);
+    prepare(&mut point);
+    rank_of(point.evaluate(expr))
 }
 
 /// The rank of a matrix over the field.
@@ -341,5 +372,22 @@ impl Residue {
         }
         let (numerator, denominator) = if s.1 < 0 { (-r.1, -s.1) } else { (r.1, s.1) };
         (denominator > 0 && denominator < bound).then(|| crate::rational(numerator as i64, denominator as i64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PRIME, Residue};
+    use crate::evaluate::{Number, zero};
+
+    /// Products of the largest residues: their sums must not leave the words that hold them.
+    #[test]
+    fn sums_of_products_are_those_of_reduced_products() {
+        let numbers: Vec<Residue> = (0..20).map(|k| Residue(PRIME - 1 - k * k)).collect();
+        for count in 0..numbers.len() {
+            let (row, column) = (&numbers[..count], &numbers[numbers.len() - count..]);
+            let one_by_one = row.iter().zip(column).fold(zero(), |sum: Residue, (a, b)| sum.add(a.multiply(*b)));
+            assert_eq!(Residue::dot(row, column.iter()), one_by_one);
+        }
     }
 }

@@ -54,18 +54,25 @@ impl<'g> Expr<'g> {
 
     /// The nodes that this expression is made of, as far as there is a way to them over nodes that are wanted.
     pub(crate) fn reachable_where(self, wanted: impl Fn(Id) -> bool) -> Vec<Id> {
-        // children come before their parents
-        let mut seen = vec![false; self.id.0 as usize + 1];
-        let (mut reached, mut open) = (Vec::new(), vec![self.id]);
+        // children come before their parents: read off in order, a bit for each, what was reached needs no sorting
+        let mut seen = vec![0_u64; self.id.0 as usize / 64 + 1];
+        let (mut count, mut open) = (0, vec![self.id]);
         while let Some(id) = open.pop() {
-            if !seen[id.0 as usize] && wanted(id) {
-                seen[id.0 as usize] = true;
-                reached.push(id);
+            let (word, bit) = (id.0 as usize / 64, 1 << (id.0 % 64));
+            if seen[word] & bit == 0 && wanted(id) {
+                seen[word] |= bit;
+                count += 1;
                 self.graph.node(id).each_child(|child| open.push(child));
             }
         }
-        work::spend((reached.len() + seen.len() / 64) / 4);
-        reached.sort_unstable();
+        work::spend((count + seen.len()) / 4);
+        let mut reached = Vec::with_capacity(count);
+        for (word, mut bits) in seen.into_iter().enumerate() {
+            while bits != 0 {
+                reached.push(Id(64 * word as u32 + bits.trailing_zeros()));
+                bits &= bits - 1;
+            }
+        }
         reached
     }
 

@@ -1,5 +1,6 @@
 //! Symmetries beyond constant directions: along vector parameters, along the configuration, and for special parameters.
 
+use clebsch_symbolic::identity::Point;
 use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, Zero, identity, integer};
 
 use super::directions::{generated, in_factor};
@@ -105,7 +106,9 @@ impl<'g> Finder<'_, 'g> {
             return None;
         }
         // each choice: for every vector whether it lies along the axis or is alike in all directions across it
-        (0..1_usize << leaves.len()).find_map(|choice| {
+        let matrices = (0..leaves.len()).filter(|&index| leaves[index].shape() == Shape::square(3));
+        let fixed: usize = matrices.map(|index| 1 << index).sum();
+        (0..1_usize << leaves.len()).filter(|choice| choice & fixed == 0).find_map(|choice| {
             let special: Vec<Special<'g>> = leaves
                 .iter()
                 .enumerate()
@@ -117,15 +120,13 @@ impl<'g> Finder<'_, 'g> {
 
     /// The conditions without those that are not needed; `None` where all of them do not suffice, or leave no regular inertia.
     fn least(&self, column: Expr<'g>, mut special: Vec<Special<'g>>) -> Option<String> {
-        let replaced = |chosen: &[Special<'g>]| chosen.iter().map(|s| (s.symbol, s.value)).collect::<Vec<_>>();
-        let holds = |chosen: &[Special<'g>]| {
-            identity::vanishes_where(column, &|point| {
-                for special in chosen {
-                    let value = point.evaluate(special.value);
-                    point.set(special.symbol, value);
-                }
-            })
+        let set = |chosen: &[Special<'g>], point: &mut Point<'g>| {
+            for special in chosen {
+                let value = point.evaluate(special.value);
+                point.set(special.symbol, value);
+            }
         };
+        let holds = |chosen: &[Special<'g>]| identity::vanishes_where(column, &|point| set(chosen, point));
         if !holds(&special) {
             return None;
         }
@@ -135,7 +136,7 @@ impl<'g> Finder<'_, 'g> {
             without.remove(position);
             if holds(&without) { special = without } else { position += 1 }
         }
-        let regular = identity::rank(self.inertia.substitute(&replaced(&special))) == self.inertia.shape().rows;
+        let regular = identity::rank_where(self.inertia, &|point| set(&special, point)) == self.inertia.shape().rows;
         let texts: Vec<String> = special.into_iter().map(|special| special.text).collect();
         (regular && !texts.is_empty()).then(|| texts.join(" and "))
     }
