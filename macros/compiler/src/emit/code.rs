@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use clebsch_symbolic::{Function, Group, Rational, Role, Shape, Table, integer, work};
+use clebsch_symbolic::{Function, Group, Rational, Role, Shape, Table, Zero, integer, work};
 use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use quote::{TokenStreamExt, format_ident, quote};
 
@@ -469,13 +469,32 @@ pub fn locals_where(scope: &Scope<'_, '_>, kernel: &Kernel, test: impl Fn(usize)
     quote!(#(#locals)*)
 }
 
-/// A matrix of entries, row by row, whatever its shape.
+/// A matrix of entries, row by row, whatever its shape; the entries that are not zero one by one, with their places, where rows are long and most are.
 pub fn matrix(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code]) -> TokenStream {
     let private = &scope.paths.private;
+    let is_zero = |entry: &Code| matches!(entry, Code::Number(value) if value.is_zero());
+    let zeros = entries.iter().filter(|entry| is_zero(entry)).count();
+    if shape.columns > LONGEST_ROW && 2 * zeros > entries.len() {
+        let [rows, columns] = [shape.rows, shape.columns].map(Literal::usize_unsuffixed);
+        let zero = scope.code(&Code::Number(Rational::zero()), false);
+        let kept = entries.iter().enumerate().filter(|(_, entry)| !is_zero(entry)).map(|(place, entry)| {
+            let [i, j] = [place / shape.columns, place % shape.columns].map(Literal::usize_unsuffixed);
+            let entry = scope.code(entry, false);
+            quote!(matrix[(#i, #j)] = #entry;)
+        });
+        return quote!({
+            let mut matrix = #private::matrix([[#zero; #columns]; #rows]);
+            #(#kept)*
+            matrix
+        });
+    }
     let rows = entries.chunks(shape.columns.max(1)).map(|row| entries_of(scope, row).into());
     let rows = list(rows);
     quote!(#private::matrix(#rows))
 }
+
+/// More entries are no longer told apart in a row.
+const LONGEST_ROW: usize = 8;
 
 /// A matrix, vector or quaternion of entries.
 pub fn grid(scope: &Scope<'_, '_>, shape: Shape, entries: &[Code], is_quaternion: bool) -> TokenStream {
