@@ -2,9 +2,9 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
-use super::equation::{Sources, chart_slope, is_moving, own_part, without_part};
+use super::equation::{MomentumEquation, SineForm, Sources, chart_slope, is_moving, own_part, without_part};
 use super::trivialisation::Covector;
-use super::{MomentumEquation, Substep, Symbols};
+use super::{Substep, Symbols};
 use crate::model::Model;
 
 /// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
@@ -16,17 +16,6 @@ pub(super) struct ClosedForm<'g> {
     pub(super) sine_squared: Expr<'g>,
     /// The same in the chart of the sine, where the group has it.
     pub(super) sine: Option<SineForm<'g>>,
-}
-
-/// The momentum equation in the chart of the sine, where it is linear: its solution is a itself.
-#[derive(Copy, Clone)]
-pub struct SineForm<'g> {
-    /// a = hμ/Σ.
-    solution: Expr<'g>,
-    /// ρ(x) = Σx/h − μ.
-    residual: Expr<'g>,
-    /// Dρ·δ.
-    directional: Expr<'g>,
 }
 
 /// Whether x = s·h·Σ⁻¹μ solves the equation: on a sphere with the exponential, for one.

@@ -3,9 +3,8 @@
 
 use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identity};
 
-use super::equation::{Sources, is_diagonal};
-use super::structure::Structure;
-use super::{DiscreteLagrangian, MomentumEquation, Solution, Substep, Symbols, action, velocity};
+use super::equation::{MomentumEquation, Solution, Sources, Structure, is_diagonal};
+use super::{DiscreteLagrangian, Substep, Symbols, action, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Kinetic, Model, Order, Side};

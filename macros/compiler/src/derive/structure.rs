@@ -15,19 +15,6 @@ use pattern::Pattern;
 /// Jacobians of more unknowns are taken as they are: those of large groups are full.
 const LARGEST: usize = 20;
 
-/// The structure of a Jacobian, which its linear systems are solved by.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Structure {
-    /// None that helps: elimination with pivoting.
-    Dense,
-    /// Symmetric for all x: LDLᵀ.
-    Symmetric,
-    /// Blocks of unknowns, by their positions, each of which depends on itself and on those before it: one small system for each.
-    Triangular(Vec<Vec<usize>>),
-    /// δ ↦ ⟨δ^B, E⟩ for skew matrices of so many rows: by the Schur form of B.
-    Sylvester(usize),
-}
-
 /// The equations, to be solved in this order, that an equation for Newton's method falls into.
 ///
 /// Coordinates whose slope in their own equation is constant are put into the others and follow when these are solved, as long as

@@ -2,9 +2,6 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use super::{MomentumEquation, Solution, Substep};
-use crate::diagnostic::Diagnostics;
-use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Kinetic, Model};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
@@ -202,25 +199,6 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
         (Some(Discretization::Cayley), None) if factor.group.has_cayley_chart(model.graph) => Chart::Cayley,
         _ => factor.group.chart(model.graph),
     }
-}
-
-/// Velocities by Cayley's map have poles in the exponential chart, which Cayley's own has not.
-pub(super) fn check_poles(
-    model: &Model<'_>,
-    symbols: &Symbols<'_>,
-    substeps: &[Substep<'_>],
-) -> Result<(), Diagnostics> {
-    let by_cayley = matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Cayley, .. });
-    let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
-    let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
-    let has_poles = |equation: &MomentumEquation<'_>| {
-        equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates)
-    };
-    let Some(chosen) = chosen else { return Ok(()) };
-    features::check((Feature::ExponentialChart, Found::at(chosen.span)), |feature| {
-        let mut equations = substeps.iter().flat_map(|substep| &substep.equations);
-        Found::when(feature == Feature::Poles && equations.any(has_poles))
-    })
 }
 
 /// The chart coordinates and their directions, numbered through all factors.

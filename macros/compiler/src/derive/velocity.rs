@@ -1,41 +1,11 @@
-//! A cost from a Lagrangian: h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)), with the velocity ξ made from F and h.
+//! The velocity ξ, made from F and h.
 
 use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
-use super::exact;
 use super::symbols::logarithm;
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Factor, Kinetic, Model};
-
-/// The cost K(t, h, q, F), as declared or made from the Lagrangian.
-pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
-    let (energy, velocities, discretization) = match &model.kinetic {
-        Kinetic::Cost(cost) => return Ok(*cost),
-        // by construction: what inputs move has no kinetic energy, and none is asked for
-        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => return Ok(model.graph.integer(0)),
-        Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
-    };
-    let h = model.step_size;
-    let velocity = |k: usize| of_element(model, k, h, discretization);
-    let discrete: Vec<(Expr<'g>, Expr<'g>)> =
-        velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
-    let at = |energy: Expr<'g>| match discretization {
-        Discretization::MoserVeselov => moser_veselov(model, energy, velocities),
-        Discretization::Exact => exact::stand_in(model, energy, velocities),
-        _ => Ok(h * energy.substitute(&discrete)),
-    };
-    let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
-    match moves || energy.depends_on(model.time) {
-        false => at(energy),
-        true => {
-            let images = model.configurations.iter().zip(&model.action);
-            let mut end: Vec<_> = images.map(|(leaf, image)| (leaf.symbol, *image)).collect();
-            end.push((model.time, model.time + h));
-            Ok((at(energy)? + at(energy.substitute(&end))?) / 2)
-        }
-    }
-}
+use crate::model::{Discretization, Factor, Model};
 
 /// The velocity ξ(F)/h of a factor.
 pub(super) fn of_element<'g>(model: &Model<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
@@ -63,7 +33,11 @@ fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discr
 }
 
 /// h times ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h), with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ) − ℓ(0), and ℓ(0).
-fn moser_veselov<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<Expr<'g>, Diagnostics> {
+pub(super) fn moser_veselov<'g>(
+    model: &Model<'g>,
+    energy: Expr<'g>,
+    velocities: &[Expr<'g>],
+) -> Result<Expr<'g>, Diagnostics> {
     let (h, graph) = (model.step_size, model.graph);
     let rest: Vec<_> = velocities.iter().map(|v| (*v, graph.zero(v.shape()))).collect();
     let mut cost = h * energy.substitute(&rest);

@@ -6,38 +6,10 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use clebsch_symbolic::{
-    Algebra, Basis, Expr, Graph, One, Rational, Role, Shape, Sparse, Table, View, WordTerm, integer,
-};
+use clebsch_symbolic::{Algebra, Basis, Expr, Graph, One, Rational, Role, Shape, Sparse, View, WordTerm, integer};
 
-use super::scalar::{Call, Callee, Input, Scalar, Scalars};
-
-/// A matrix of scalars, row by row.
-#[derive(Clone, Debug)]
-pub struct Grid {
-    /// Rows and columns.
-    pub shape: Shape,
-    /// The entries, row by row.
-    pub entries: Vec<Scalar>,
-}
-
-impl Grid {
-    fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
-        Grid { shape, entries: shape.positions().map(entry).collect() }
-    }
-
-    /// The entry in row i and column j.
-    pub fn at(&self, i: usize, j: usize) -> Scalar {
-        self.entries[i * self.shape.columns + j]
-    }
-}
-
-/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
-#[derive(Default)]
-pub struct Grids {
-    grids: Table<usize, Rc<Grid>>,
-    constant: Table<usize, bool>,
-}
+use super::entry::{Grid, Scalar};
+use super::scalar::{Call, Callee, Input, Scalars};
 
 /// Lowers expressions to grids, remembering what it has lowered.
 pub struct Lowering<'a> {

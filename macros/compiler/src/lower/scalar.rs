@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product, work};
 
-use super::grid::Grids;
+use super::entry::{Grids, Scalar};
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -14,10 +14,6 @@ pub enum Rate {
     /// Different in each iteration.
     Iteration,
 }
-
-/// The identity of a scalar in its arena.
-#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct Scalar(u32);
 
 /// An entry of an input.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]

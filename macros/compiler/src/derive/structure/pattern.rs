@@ -3,8 +3,7 @@
 use clebsch_symbolic::identity::{self, Point, Residue};
 use clebsch_symbolic::{Expr, Graph, Matrix, Number, Shape};
 
-use super::Structure;
-use crate::derive::equation::{MomentumEquation, Sources, chart_slope};
+use crate::derive::equation::{MomentumEquation, Sources, Structure, chart_slope};
 
 /// The values of a Jacobian at a random point, and at two others with the same parameters.
 pub(super) struct Pattern {

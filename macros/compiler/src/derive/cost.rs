@@ -1,0 +1,36 @@
+//! A cost from a Lagrangian: h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)), with the velocity ξ made from F and h.
+
+use clebsch_symbolic::Expr;
+
+use super::{exact, velocity};
+use crate::diagnostic::Diagnostics;
+use crate::model::{Discretization, Kinetic, Model};
+
+/// The cost K(t, h, q, F), as declared or made from the Lagrangian.
+pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
+    let (energy, velocities, discretization) = match &model.kinetic {
+        Kinetic::Cost(cost) => return Ok(*cost),
+        // by construction: what inputs move has no kinetic energy, and none is asked for
+        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => return Ok(model.graph.integer(0)),
+        Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
+    };
+    let h = model.step_size;
+    let velocity = |k: usize| velocity::of_element(model, k, h, discretization);
+    let discrete: Vec<(Expr<'g>, Expr<'g>)> =
+        velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
+    let at = |energy: Expr<'g>| match discretization {
+        Discretization::MoserVeselov => velocity::moser_veselov(model, energy, velocities),
+        Discretization::Exact => exact::stand_in(model, energy, velocities),
+        _ => Ok(h * energy.substitute(&discrete)),
+    };
+    let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
+    match moves || energy.depends_on(model.time) {
+        false => at(energy),
+        true => {
+            let images = model.configurations.iter().zip(&model.action);
+            let mut end: Vec<_> = images.map(|(leaf, image)| (leaf.symbol, *image)).collect();
+            end.push((model.time, model.time + h));
+            Ok((at(energy)? + at(energy.substitute(&end))?) / 2)
+        }
+    }
+}

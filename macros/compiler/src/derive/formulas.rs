@@ -1,0 +1,204 @@
+//! The value of the stage `derive`: all that follows from a model, and what is asked of it.
+
+use std::cell::OnceCell;
+use std::fmt;
+
+use clebsch_symbolic::{Chart, Expr, Group};
+
+use super::energy::is_multiple_of_identity;
+use super::{
+    Collocation, DiscreteLagrangian, EdgeDerivatives, EdgeForce, Endpoint, Energy, Formula, MomentumEquation, Quantity,
+    SiteTerm, Splitting, Steering, Symbols, Symmetries, equation, exact, signature, variation,
+};
+use crate::model::{Isotropy, LeafSpace, Model};
+
+/// What is derived, as matrix expressions.
+pub struct Formulas<'g> {
+    /// The model that all of it is derived from.
+    pub model: Model<'g>,
+    /// The symbols that the derivation adds to those of the model.
+    pub symbols: Symbols<'g>,
+    /// The infinitesimal generator ξ_Q(q), for each leaf of the configuration.
+    pub generator: Vec<Expr<'g>>,
+    /// Whether only the identity fixes a general configuration.
+    pub is_free: bool,
+    /// J(q, μ_Q(q))/c for each factor, where some motions fix q and that is the orthogonal projection of μ to 𝔤_q^⊥, as on spheres.
+    pub projection: Option<Vec<Expr<'g>>>,
+    /// J(q, p), for each factor.
+    pub momentum_map: Vec<Expr<'g>>,
+    /// Ad*_F μ, for each factor.
+    pub coadjoint: Vec<Expr<'g>>,
+    /// (TΦ_F)^{-*} p as a function of F, q⁺ and p, for each leaf of the configuration.
+    pub cotangent_lift: Vec<Expr<'g>>,
+    /// Σ, the Hessian of ℓ(ξ) in the components of all factors.
+    pub inertia: Expr<'g>,
+    /// κ, where Σ = κ I.
+    pub uniform_inertia: Option<Expr<'g>>,
+    /// The kinetic part of the continuous Lagrangian, ½ ξ·Σξ + A·ξ.
+    pub energy: Energy<'g>,
+    /// V(q), that of the cost included.
+    pub potential_energy: Expr<'g>,
+    /// ½J(q, ∂(U₁ − U₀)) for each factor, by which the momentum of a step of first order is ahead of its configuration; `None` if it is not.
+    pub stagger: Option<Vec<Expr<'g>>>,
+    /// Whether a step of first order is one of second order but for that shift.
+    pub is_staggered: bool,
+    /// What ties the sites of a power to each other.
+    pub links: Vec<SiteTerm<'g>>,
+    /// What is conserved.
+    pub symmetries: Symmetries<'g>,
+    /// The declared discrete Lagrangian.
+    pub lagrangian: DiscreteLagrangian<'g>,
+    /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂_q K) − J(q, ∂U₀).
+    pub legendre: Vec<Expr<'g>>,
+    /// F⁺ℓd(q, F) for each factor without its last kick: the other trivialisation of ∂_F K.
+    pub legendre_next: Vec<Expr<'g>>,
+    /// J(q, ∂U₁), the last kick of F⁺ℓd, to be taken at q⁺; `None` if there is none.
+    pub legendre_kick: Option<Vec<Expr<'g>>>,
+    /// What steps are differentiated with respect to, where that is asked for.
+    pub quantities: Vec<Quantity<'g>>,
+    /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
+    /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
+    pub substeps: Vec<Substep<'g>>,
+    /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
+    pub parts: usize,
+    /// The drifts and kicks that make a step of higher order, where drifts are exact and there is a potential.
+    pub splitting: Option<Splitting<'g>>,
+    /// Hamilton's equations, where a step collocates them.
+    pub collocation: Option<Collocation<'g>>,
+    /// Whether a step is exact for lack of a potential, so that its order says nothing.
+    pub is_exact: bool,
+    /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
+    pub covector: Option<Vec<Expr<'g>>>,
+    /// What the choice of inputs needs; `None` where nothing is chosen.
+    pub steering: Option<Steering<'g>>,
+    /// The price of the end; `None` if there is none.
+    pub endpoint: Option<Endpoint<'g>>,
+    /// All of it as the rows of a table, made when it is first asked for.
+    pub(super) table: OnceCell<Vec<Formula<'g>>>,
+}
+
+/// One discrete Lagrangian with what a step of it needs.
+pub struct Substep<'g> {
+    /// Its part of the step: h is to be read as h divided by this.
+    pub parts: i64,
+    /// The discrete Lagrangian, in terms of the whole step h.
+    pub lagrangian: DiscreteLagrangian<'g>,
+    /// How much later than the whole step it starts.
+    pub begins: Expr<'g>,
+    /// How much later than the start of the whole step it ends.
+    pub ends: Expr<'g>,
+    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`, which is apart where sums are compensated; `None` if there is
+    /// none.
+    pub start: Option<Vec<Expr<'g>>>,
+    /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
+    pub rest: Option<Vec<Expr<'g>>>,
+    /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
+    pub end: Option<Vec<Expr<'g>>>,
+    /// The momentum equations, each for the factors that depend on each other.
+    pub equations: Vec<MomentumEquation<'g>>,
+    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
+    pub unchanged: Vec<bool>,
+    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
+    /// changes with the time.
+    pub other: Option<Vec<Expr<'g>>>,
+    /// What acts beside the potential; `None` if nothing does.
+    pub force: Option<EdgeForce<'g>>,
+    /// Second derivatives of the discrete Lagrangian, where they are asked for.
+    pub variation: Option<EdgeDerivatives<'g>>,
+}
+
+impl Formulas<'_> {
+    /// How many directions the kinetic energy is positive and negative in, for positive parameters.
+    pub fn signature(&self) -> Option<(usize, usize)> {
+        match is_multiple_of_identity(self.inertia) {
+            true => {
+                let (positive, negative) = signature::signature(self.inertia.entry(0, 0))?;
+                let dimension = self.inertia.shape().rows;
+                Some((positive * dimension, negative * dimension))
+            }
+            false => signature::signature(self.inertia),
+        }
+    }
+
+    /// Of how many steps of second order a step is composed, where it is.
+    pub fn stages(&self) -> Option<usize> {
+        self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
+    }
+
+    /// Whether F of a factor has its momentum from the constants of free rotation.
+    pub(super) fn is_free_rotation(&self, k: usize) -> bool {
+        exact::is_free_rotation(&self.model, k)
+    }
+
+    /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
+    pub fn weighted(&self) -> Vec<usize> {
+        let rotates =
+            |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3) && self.is_free_rotation(*k);
+        (0..self.model.factors.len()).filter(rotates).collect()
+    }
+
+    /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.
+    pub fn turns_whole(&self) -> bool {
+        exact::turns_whole(&self.model)
+    }
+
+    /// Whether the cost or the potential depends on the time.
+    pub fn is_timed(&self) -> bool {
+        is_timed(&self.model, &self.lagrangian)
+    }
+
+    /// The chart in which small motions of a factor are written.
+    pub fn retraction(&self, k: usize) -> Chart {
+        variation::retraction(&self.model, &self.symbols, k)
+    }
+
+    /// Whether a step turns a point on a sphere along a great circle, its momentum M = wqᵀ − qwᵀ as it is: then it can be made in (q, w).
+    pub fn follows_great_circles(&self) -> bool {
+        let ([factor], [leaf], [substep]) =
+            (self.model.factors.as_slice(), self.model.configurations.as_slice(), self.substeps.as_slice())
+        else {
+            return false;
+        };
+        let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == LeafSpace::Unit;
+        let turns = || factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
+        rotates
+            && self.generator[0] == turns()
+            && self.symbols.charts[0] == Chart::Sine
+            && self.uniform_inertia.is_some()
+            && self.model.isotropy == Isotropy::Fixed
+            && substep.unchanged[0]
+            && substep.rest.is_none()
+            && substep.force.is_none()
+            && substep.other.is_none()
+            && !self.is_timed()
+            && !self.is_compensated()
+    }
+
+    /// Whether the kinetic energy changes with the configuration or the time.
+    pub fn inertia_moves(&self) -> bool {
+        equation::is_moving(&self.model, self.inertia)
+    }
+
+    /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.
+    pub(super) fn is_solved_after_others(&self, equation: &MomentumEquation<'_>) -> bool {
+        let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));
+        equation.formula.is_some_and(holds)
+    }
+}
+
+impl fmt::Display for Formulas<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for formula in self.listing() {
+            writeln!(f, "{}", formula.to_string().trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a discrete Lagrangian depends on the time.
+pub(super) fn is_timed(model: &Model<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
+    let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
+    let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
+    let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
+    energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
+}
