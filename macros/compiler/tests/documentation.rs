@@ -39,7 +39,7 @@ impl Documented {
 /// The substep that a suffix stands for.
 fn substep(formulas: &Formulas<'_>, suffix: &str) -> usize {
     match suffix {
-        "_whole" | "Whole" => formulas.parts,
+        "_whole" | "Whole" => formulas.stepped,
         "_adjoint" | "Adjoint" => 1,
         _ => 0,
     }

@@ -74,7 +74,7 @@ fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> R
     let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
     let mut stepper = Stepper::new(program, &fields, H);
     let h = DoubleDouble::of(H);
-    let composed = program.formulas.parts == 2;
+    let composed = program.formulas.stepped == 2;
     let first = start.lift::<DoubleDouble>();
     let oracle = match composed {
         true => composed_trajectory(problem, h, &first, STEPS),
@@ -144,7 +144,7 @@ fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
         return Ok(false);
     };
     let (size, first) = (DoubleDouble::of(h), state.lift::<DoubleDouble>());
-    let last = match program.formulas.parts == 2 {
+    let last = match program.formulas.stepped == 2 {
         true => composed_trajectory(&problem, size, &first, 1),
         false => trajectory(&problem, size, &first, 1),
     };
@@ -188,7 +188,7 @@ fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
             || shift_from_turn
     };
     // a cost may have a potential in it
-    let is_free = formulas.parts == 1 && formulas.potential_energy.is_zero();
+    let is_free = formulas.stepped == 1 && formulas.potential_energy.is_zero();
     if !is_free || formulas.substeps.iter().flat_map(|substep| &substep.equations).any(is_difference) {
         return Ok(());
     }

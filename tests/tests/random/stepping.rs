@@ -79,7 +79,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     pub fn step(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
         let mut state = state.clone();
         let program = self.program;
-        for step in program.steps.iter().take(program.formulas.parts) {
+        for step in program.steps.iter().take(program.formulas.stepped) {
             state = self.substep(t, &state, step)?;
         }
         Ok(state)

@@ -32,7 +32,7 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
     let solution = |&i: &usize| {
         let block = symbols.blocks[i];
         let (numerator, denominator) = chart_slope(sources.model, sources.symbols, i);
-        let step = numerator * model.step_size / (denominator * sources.parts);
+        let step = numerator * model.step_size / (denominator * sources.divisor);
         (block.coordinates, step * velocity.block(block.offset, 0, Shape::vector(block.dimension())))
     };
     let solutions: Vec<_> = blocks.iter().map(solution).collect();
@@ -52,7 +52,7 @@ pub(super) fn closed_form<'g>(
     let factor = &model.factors[block.factor];
     let start = block.offset - model.offset(block.factor);
     let kappa = sources.inertia.entry(block.offset, block.offset);
-    let step = model.step_size / sources.parts;
+    let step = model.step_size / sources.divisor;
     let mu = own_part(model, symbols, i);
     let f = factor.symbol;
     let sine = match (factor.group, symbols.charts[block.factor]) {

@@ -81,8 +81,8 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) symbols: &'a Symbols<'g>,
     pub(super) momentum_map: &'a [Expr<'g>],
     pub(super) inertia: Expr<'g>,
-    /// The number of substeps in a step.
-    pub(super) parts: i64,
+    /// The number of substeps in a step, by which h is divided.
+    pub(super) divisor: i64,
     /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
     pub(super) forced: bool,
 }

@@ -84,7 +84,7 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
         }
         let momentum = own_part(model, symbols, i);
         let (numerator, denominator) = chart_slope(model, symbols, i);
-        let step = numerator * model.step_size / (denominator * sources.parts);
+        let step = numerator * model.step_size / (denominator * sources.divisor);
         let graph = model.graph;
         let solution: Vec<Expr<'g>> =
             (0..block.dimension()).map(|a| step * momentum.entry(a, 0) / inertia.entry(a, a).expand()).collect();

@@ -41,8 +41,8 @@ pub(super) fn covector<'g>(
 }
 
 /// The impulses of a force f on an edge that is one of `parts` in a step.
-pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], parts: i64) -> EdgeForce<'g> {
-    let part = model.step_size / parts;
+pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], divisor: i64) -> EdgeForce<'g> {
+    let part = model.step_size / divisor;
     let (first, last) = match model.order {
         Order::First => (model.graph.integer(0), part),
         _ => (part / 2, part / 2),

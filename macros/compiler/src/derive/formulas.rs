@@ -59,8 +59,8 @@ pub struct Formulas<'g> {
     /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
     /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
     pub substeps: Vec<Substep<'g>>,
-    /// The number of substeps that make a step: two where ℓd is composed with its adjoint.
-    pub parts: usize,
+    /// How many of the substeps make a step: two where ℓd is composed with its adjoint.
+    pub stepped: usize,
     /// The drifts and kicks that make a step of higher order, where drifts are exact and there is a potential.
     pub splitting: Option<Splitting<'g>>,
     /// Hamilton's equations, where a step collocates them.
@@ -80,7 +80,7 @@ pub struct Formulas<'g> {
 /// One discrete Lagrangian with what a step of it needs.
 pub struct Substep<'g> {
     /// Its part of the step: h is to be read as h divided by this.
-    pub parts: i64,
+    pub divisor: i64,
     /// The discrete Lagrangian, in terms of the whole step h.
     pub lagrangian: DiscreteLagrangian<'g>,
     /// How much later than the whole step it starts.

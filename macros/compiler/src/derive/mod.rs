@@ -109,12 +109,12 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         momentum_map: &momentum_map,
         quantities: &quantities,
     };
-    let sources = |parts| equation::Sources {
+    let sources = |divisor| equation::Sources {
         model: &model,
         symbols: &symbols,
         momentum_map: &momentum_map,
         inertia,
-        parts,
+        divisor,
         forced: false,
     };
     let covector = force::covector(&model, &symbols.covectors, &momentum_map);
@@ -124,7 +124,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         let price = (Feature::Effort, Found::at(control.written.place));
         return Err(features::refusal(price, (Feature::AdjointPair, Found::somewhere())).into());
     }
-    let forces = |parts| covector.as_ref().map(|covector| force::on_edge(&model, covector, parts));
+    let forces = |divisor| covector.as_ref().map(|covector| force::on_edge(&model, covector, divisor));
     if edges.len() == 1 && forces(1).is_some_and(|force| force.start_moving.is_some()) {
         // the Legendre transform of ℓd, without the force, is to be inverted
         edges.push((1, lagrangian));
@@ -132,11 +132,11 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     let mut substeps: Vec<Substep<'_>> = edges
         .into_iter()
         .enumerate()
-        .map(|(index, (parts, lagrangian))| {
-            let part = model.step_size / parts;
+        .map(|(index, (divisor, lagrangian))| {
+            let part = model.step_size / divisor;
             let begins = if index == 1 { part } else { model.graph.integer(0) };
-            let force = if index < stepped { forces(parts) } else { None };
-            substep(sources(parts), &variations, lagrangian, begins, force)
+            let force = if index < stepped { forces(divisor) } else { None };
+            substep(sources(divisor), &variations, lagrangian, begins, force)
         })
         .collect();
     let impulse = |potential| action::impulse(&model, &symbols, &momentum_map, potential);
@@ -189,7 +189,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         lagrangian,
         quantities,
         substeps,
-        parts: stepped,
+        stepped,
         covector,
         steering,
         endpoint,
@@ -224,7 +224,7 @@ fn steered<'g>(
         lagrangian: DiscreteLagrangian { kinetic: zero, start: zero, end: zero, couples: false },
         quantities: Vec::new(),
         substeps: Vec::new(),
-        parts: 0,
+        stepped: 0,
         splitting: None,
         collocation: None,
         is_exact: false,
@@ -300,13 +300,13 @@ fn substep<'g>(
         true => vec![false; model.factors.len()],
         false => trivialisation::agreement(model, &before, &after),
     };
-    let ends = begins + model.step_size / sources.parts;
+    let ends = begins + model.step_size / sources.divisor;
     let varied = model.has_variations();
     Substep {
         variation: varied.then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
         begins,
         ends,
-        parts: sources.parts,
+        divisor: sources.divisor,
         start: match summation::is_compensated(model) {
             // what comes back after the move is added for the solve alone, and stays out of the sums
             true => impulse(lagrangian.start),

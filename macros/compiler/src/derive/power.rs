@@ -50,7 +50,7 @@ pub struct Stencil<'g> {
     /// What every site has: one expression for each leaf of its configuration.
     pub gradient: Vec<Expr<'g>>,
     /// What only some have, or what depends on the index of the term: the numbers of the term, and of the place in its gradient.
-    pub rest: Vec<(usize, usize)>,
+    pub others: Vec<(usize, usize)>,
 }
 
 /// The gradient of one site; `None` where terms cannot be told by the sites that they read, such as those of sums over pairs.
@@ -58,14 +58,14 @@ pub fn stencil<'g>(model: &Model<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<
     let power = model.power.as_ref()?;
     let zero = |leaf: &Configuration<'g>| model.graph.zero(leaf.shape);
     let gradient = model.configurations.iter().map(zero).collect();
-    let mut stencil = Stencil { places: Vec::new(), gradient, rest: Vec::new() };
+    let mut stencil = Stencil { places: Vec::new(), gradient, others: Vec::new() };
     for (term, link) in links.iter().enumerate() {
         for (number, (home, (_, slopes))) in link.homes(power)?.iter().zip(&link.gradient).enumerate() {
             let symbols: Vec<Expr<'g>> = slopes.iter().flat_map(|slope| slope.symbols()).collect();
             let moved =
                 home.index.filter(|_| home.is_everywhere && !symbols.iter().any(|symbol| is_of_term(power, *symbol)));
             let Some(own) = moved else {
-                stencil.rest.push((term, number));
+                stencil.others.push((term, number));
                 continue;
             };
             let moved: Vec<(Expr<'g>, Expr<'g>)> = symbols

@@ -28,7 +28,7 @@ impl<'g> Formulas<'g> {
         let inverse = || block(inertia_inverse(graph, self.inertia.shape()));
         let velocity = by_inertia(inertia, inverse, &momentum);
         let coordinate = |(velocity, component): (Expr<'g>, usize)| {
-            self.slope_of_chart(component, substep.parts) * self.model.step_size * velocity
+            self.slope_of_chart(component, substep.divisor) * self.model.step_size * velocity
         };
         velocity.into_iter().take(count).zip(components).map(coordinate).collect()
     }
@@ -69,7 +69,7 @@ impl<'g> Formulas<'g> {
             } else {
                 self.model.graph.stack(shape, entries())
             };
-            self.slope_of_chart(within[0], substep.parts) * h * part
+            self.slope_of_chart(within[0], substep.divisor) * h * part
         });
         Some(blocks.collect())
     }
@@ -135,10 +135,10 @@ impl<'g> Formulas<'g> {
     }
 
     /// dx/dξ at the identity for a component of one of so many parts of a step.
-    fn slope_of_chart(&self, component: usize, parts: i64) -> Expr<'g> {
+    fn slope_of_chart(&self, component: usize, divisor: i64) -> Expr<'g> {
         let block = self.symbols.blocks_of(&[component])[0];
         let (numerator, denominator) = chart_slope(&self.model, &self.symbols, block);
-        self.model.graph.rational(numerator, denominator * parts)
+        self.model.graph.rational(numerator, denominator * divisor)
     }
 
     /// A component of the momentum, counted through all factors.

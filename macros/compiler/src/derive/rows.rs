@@ -22,7 +22,7 @@ impl<'g> Formulas<'g> {
 
     /// The formulas that prints and `DERIVATION` show: those that are listed, unless they say that something vanishes.
     pub fn listing(&self) -> impl Iterator<Item = &Formula<'g>> {
-        let is_shown = |id: Id| id.substep().is_none_or(|index| index < self.parts);
+        let is_shown = |id: Id| id.substep().is_none_or(|index| index < self.stepped);
         self.table().iter().filter(move |row| row.id.entry().is_listed && is_shown(row.id) && !row.is_trivial())
     }
 

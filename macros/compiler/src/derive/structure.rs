@@ -151,7 +151,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let component = self.equation.components[i];
         let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[component])[0]);
         let inertia = self.sources.inertia.entry(component, component).expand().blockwise();
-        let expected = denominator * self.sources.parts * inertia / (numerator * model.step_size);
+        let expected = denominator * self.sources.divisor * inertia / (numerator * model.step_size);
         if identity::equal(&[self.columns[i].entry(i, 0)], &[expected]) {
             return expected;
         }

@@ -117,7 +117,7 @@ pub(super) fn check(formulas: &Formulas<'_>) -> Result<(), Diagnostics> {
     features::check((Feature::Summation, Found::at(summation.span)), |feature| match feature {
         Feature::FreeMotionOfFourSpace => Found::when(formulas.turns_whole()),
         Feature::CoupledCost => {
-            Found::when(formulas.substeps.iter().take(formulas.parts).any(|substep| substep.other.is_some()))
+            Found::when(formulas.substeps.iter().take(formulas.stepped).any(|substep| substep.other.is_some()))
         }
         Feature::OtherSum => {
             // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S

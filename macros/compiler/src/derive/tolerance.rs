@@ -41,7 +41,7 @@ impl<'g> Formulas<'g> {
     /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
     /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
     pub fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
-        let substeps = || self.substeps.iter().take(self.parts);
+        let substeps = || self.substeps.iter().take(self.stepped);
         if substeps().any(|substep| substep.other.is_some()) {
             return Vec::new();
         }

@@ -321,10 +321,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
-        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.parts - 1]);
+        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.stepped - 1]);
         let (start, end) = (
             &self.program.formulas.substeps[0].start,
-            &self.program.formulas.substeps[self.program.formulas.parts - 1].end,
+            &self.program.formulas.substeps[self.program.formulas.stepped - 1].end,
         );
         start == end
             && first.start.is_some()

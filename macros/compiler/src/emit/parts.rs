@@ -96,7 +96,7 @@ impl Emitter<'_, '_> {
 
     fn motion(&self) -> Motion {
         let steps = &self.program.steps;
-        let updates = steps.iter().take(self.program.formulas.parts).any(|step| step.update.is_some());
+        let updates = steps.iter().take(self.program.formulas.stepped).any(|step| step.update.is_some());
         match (&steps[0].displace, updates) {
             (None, _) => Motion::Increment,
             (Some(_), false) => Motion::Coordinates,
@@ -130,7 +130,7 @@ impl Emitter<'_, '_> {
 
     /// Whether the steps of a single substep are so short that they are inlined wherever they are called.
     fn is_short(&self) -> bool {
-        let is_single = self.program.formulas.parts == 1
+        let is_single = self.program.formulas.stepped == 1
             && self.program.formulas.stages().is_none()
             && self.program.collocation.is_none();
         is_single && self.program.steps.first().is_some_and(|step| step.cost_of_moves().total() <= SHORT_STEP)
@@ -352,7 +352,7 @@ impl Emitter<'_, '_> {
 
     /// The substep whose kick at the start is that at the end.
     fn same_kick(&self, index: usize, step: &StepKernels) -> Option<usize> {
-        let is_last = index + 1 == self.program.formulas.parts;
+        let is_last = index + 1 == self.program.formulas.stepped;
         // where time matters, the kick at the end of a step is the one that knows its time
         match step.end {
             Some(_) if step.end_is_start => Some(index),

@@ -43,7 +43,7 @@ impl Emitter<'_, '_> {
         if self.keeps_motions() {
             return quote!(#private::AlongFreeMotion);
         }
-        match (self.program.formulas.parts, self.program.steps.len()) {
+        match (self.program.formulas.stepped, self.program.steps.len()) {
             (2, _) => quote!(#private::AdjointPair<#carry>),
             (_, 1) => quote!(#private::KickDriftKick<#carry>),
             // the declared Lagrangian, without the force that joins its equation, stands last

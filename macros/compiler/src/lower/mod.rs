@@ -134,9 +134,9 @@ pub struct Gathered<'g> {
     /// Its formulas.
     pub stencil: Stencil<'g>,
     /// What every site has, one output for each leaf of the configuration.
-    pub whole: Kernel,
-    /// The rest, a kernel for each place of a term.
-    pub rest: Vec<Kernel>,
+    pub common: Kernel,
+    /// The others, a kernel for each place of a term.
+    pub others: Vec<Kernel>,
 }
 
 /// Lowers formulas to kernels.
@@ -260,14 +260,14 @@ fn gathered<'g>(
     mut kernel: impl FnMut(&[Expr<'g>]) -> Kernel,
 ) -> Option<Gathered<'g>> {
     let stencil = derive::stencil(&formulas.model, &formulas.links)?;
-    let whole = kernel(&stencil.gradient);
-    let rest = stencil.rest.iter().map(|&(term, place)| kernel(&formulas.links[term].gradient[place].1));
-    let rest: Vec<Kernel> = rest.collect();
-    let gathered = rest.iter().chain([&whole]).map(|kernel| kernel.cost().total()).sum::<usize>();
+    let common = kernel(&stencil.gradient);
+    let others = stencil.others.iter().map(|&(term, place)| kernel(&formulas.links[term].gradient[place].1));
+    let others: Vec<Kernel> = others.collect();
+    let gathered = others.iter().chain([&common]).map(|kernel| kernel.cost().total()).sum::<usize>();
     // what is added up is read and written once more for each place of a term
     let entries = |kernel: &Kernel| kernel.outputs.iter().map(|(_, entries)| entries.len()).sum::<usize>();
     let added = links.iter().map(|link| link.gradient.cost().total() + 2 * entries(&link.gradient)).sum::<usize>();
-    (!links.is_empty() && gathered <= added).then_some(Gathered { stencil, whole, rest })
+    (!links.is_empty() && gathered <= added).then_some(Gathered { stencil, common, others })
 }
 
 /// κ of an inertia κI, else Σ; where matrices are kept Σξ.

@@ -80,13 +80,13 @@ impl Program<'_> {
             }
         }
         if let Some(gathered) = &self.gathered {
-            kernels.push(("gradient_of_site".to_string(), &gathered.whole));
+            kernels.push(("gradient_of_site".to_string(), &gathered.common));
             kernels.extend(
                 gathered
                     .stencil
-                    .rest
+                    .others
                     .iter()
-                    .zip(&gathered.rest)
+                    .zip(&gathered.others)
                     .map(|((term, place), kernel)| (format!("gradient_of_term_{}_{}", term + 1, place + 1), kernel)),
             );
         }
@@ -189,7 +189,7 @@ impl Program<'_> {
 
     /// The suffix of the functions of a substep.
     pub fn suffix(&self, substep: usize) -> &'static str {
-        match (self.formulas.parts, substep) {
+        match (self.formulas.stepped, substep) {
             (1, 0) => "",
             (2, 0) => "_first",
             (2, 1) => "_adjoint",

@@ -125,7 +125,7 @@ pub(super) fn steps(formulas: &Formulas<'_>, scalars: &mut Scalars, hoisted: &mu
     let mut steps: Vec<StepKernels> =
         (0..formulas.substeps.len()).map(|index| step(formulas, index, scalars, hoisted)).collect();
     // what serves the inverse Legendre transform alone is never stepped
-    for step in steps.iter_mut().skip(formulas.parts) {
+    for step in steps.iter_mut().skip(formulas.stepped) {
         (step.start_force, step.start_moving, step.end_force) = (None, None, None);
         (step.end, step.start_gradient, step.end_gradient, step.update) = (None, None, None, None);
         (step.rest, step.coupled_gradient) = (None, None);

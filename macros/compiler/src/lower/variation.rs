@@ -41,7 +41,7 @@ pub(super) fn variations(
     if !formulas.model.has_variations() {
         return None;
     }
-    let edges = formulas.substeps.iter().take(formulas.parts).filter_map(|substep| substep.variation.as_ref());
+    let edges = formulas.substeps.iter().take(formulas.stepped).filter_map(|substep| substep.variation.as_ref());
     Some(VariationKernels {
         retractions: of_row(formulas, Id::Retraction, scalars),
         slopes: formulas.slopes_of_retraction(),

@@ -42,7 +42,7 @@ pub(super) fn scheme(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 /// How the momentum equations of a step are solved; both halves of a composed step tell the same, once.
 fn equations(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
     let mut told: Vec<String> = Vec::new();
-    for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.parts) {
+    for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.stepped) {
         for (equation, iteration) in substep.equations.iter().zip(iterations) {
             let part = part(formulas, equation);
             let how = how(formulas, equation, iteration);
@@ -59,7 +59,7 @@ fn equations(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 /// The order of a step of the discrete Lagrangian, and why.
 fn order(formulas: &Formulas<'_>) -> &'static str {
     let second = if formulas.model.order == Order::First { Order::First } else { Order::Second };
-    match (second, formulas.parts) {
+    match (second, formulas.stepped) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
         (Order::Second, 1) if formulas.lagrangian.couples => {
             "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."

@@ -33,7 +33,7 @@ pub(super) fn is_inertial<'g>(
     let entry = |(i, j): (usize, usize)| {
         let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[components[j]])[0]);
         let inertia = sources.inertia.entry(components[i], components[j]);
-        denominator * sources.parts * inertia / (numerator * model.step_size)
+        denominator * sources.divisor * inertia / (numerator * model.step_size)
     };
     let expected = graph.stack(shape, shape.positions().map(entry).collect());
     let at_rest = symbols.at_rest();
@@ -56,7 +56,7 @@ pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &Momen
     let shape = Shape::vector(equation.components.len());
     let direction = blocks.iter().fold(model.graph.zero(shape), |sum, &i| {
         let (block, (numerator, denominator)) = (symbols.blocks[i], chart_slope(model, symbols, i));
-        let scaled = denominator * sources.parts * block.direction / (numerator * model.step_size);
+        let scaled = denominator * sources.divisor * block.direction / (numerator * model.step_size);
         sum + scaled.embed(shape, block.offset, 0)
     });
     let at_rest = symbols.at_rest();

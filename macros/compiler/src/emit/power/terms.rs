@@ -71,17 +71,17 @@ impl<'g> Emitter<'_, 'g> {
         point: &TokenStream,
     ) -> TokenStream {
         let (private, scalar, length) = (&self.paths.private, &self.paths.scalar, &power.length);
-        let (scope, Gathered { stencil, whole, rest }) = (self.scope_of_system(), gathered);
+        let (scope, Gathered { stencil, common, others }) = (self.scope_of_system(), gathered);
         let places = [power.places.as_slice(), &stencil.places].concat();
-        let whole = {
+        let of_all = {
             let (locals, added) = (
-                locals(&scope, whole),
-                self.added(&scope, &stencil.gradient, &whole.outputs, quote!(gradient), quote!(=)),
+                locals(&scope, common),
+                self.added(&scope, &stencil.gradient, &common.outputs, quote!(gradient), quote!(=)),
             );
             let head = Head { own: None, index: quote!(let i0 = site as ::core::primitive::isize;), guard: None };
-            (!added.is_empty()).then(|| self.at_site(power, &places, head, whole, quote!(#locals #(#added)*)))
+            (!added.is_empty()).then(|| self.at_site(power, &places, head, common, quote!(#locals #(#added)*)))
         };
-        let rest = stencil.rest.iter().zip(rest).filter_map(|(&(term, number), kernel)| {
+        let others = stencil.others.iter().zip(others).filter_map(|(&(term, number), kernel)| {
             let link = &self.program.formulas.links[term];
             let (place, slopes) = &link.gradient[number];
             let (locals, added) =
@@ -96,8 +96,8 @@ impl<'g> Emitter<'_, 'g> {
             fn gradient_at(&self, t: #scalar, q: &[#point; #length], site: ::core::primitive::usize) -> #point {
                 let _ = (t, q, site);
                 let mut gradient: #point = #private::Space::<#scalar>::origin();
-                #whole
-                #(#rest)*
+                #of_all
+                #(#others)*
                 gradient
             }
         }
