@@ -6,7 +6,7 @@
 #[path = "../steps/timing.rs"]
 mod timing;
 
-use clebsch::{Clebsch, State, Stepper};
+use clebsch::{Clebsch, Declared, Method, State, Stepper};
 use nalgebra::{SMatrix, SVector};
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -15,14 +15,18 @@ use timing::{Run, interleaved};
 /// The step size: h|ω| is about 0.1.
 const H: f64 = 0.02;
 
-/// A rigid body in n dimensions, in one form of code.
+/// Code that is written out, beside that of the declarations, which keeps matrices.
+struct Unrolled;
+
+/// A rigid body in n dimensions.
 macro_rules! body {
-    ($name:ident, $n:tt $(, code = $code:ident)?) => {
+    ($name:ident, $n:tt $(, $method:ident)?) => {
         #[derive(Clebsch, Clone)]
         #[clebsch(
             action = |F: SO<$n>, R: SO<$n>| R * F,
             cost   = |h, F| (self.j_d * (F - I) * (F - I).transpose()).trace() / h,
-            $(code = $code,)?
+            code   = matrices,
+            $(method $method = (code = unrolled),)?
         )]
         struct $name {
             #[clebsch(symmetric)]
@@ -31,15 +35,16 @@ macro_rules! body {
     };
 }
 
-/// A point on the unit sphere of n dimensions in a quadratic potential, in one form of code.
+/// A point on the unit sphere of n dimensions in a quadratic potential.
 macro_rules! neumann {
-    ($name:ident, $n:tt $(, code = $code:ident)?) => {
+    ($name:ident, $n:tt $(, $method:ident)?) => {
         #[derive(Clebsch, Clone)]
         #[clebsch(
             action    = |F: SO<$n>, q: Unit<SVector<$n>>| F * q,
             cost      = |h, F| (F - I).norm_squared() / (4 * h),
             potential = |q| self.stiffness.dot(&q.component_mul(&q)) / 2,
-            $(code = $code,)?
+            code      = matrices,
+            $(method $method = (code = unrolled),)?
         )]
         struct $name {
             stiffness: SVector<f64, $n>,
@@ -47,22 +52,16 @@ macro_rules! neumann {
     };
 }
 
-body!(Unrolled4, 4, code = unrolled);
-body!(Matrices4, 4, code = matrices);
-body!(Unrolled5, 5, code = unrolled);
-body!(Matrices5, 5, code = matrices);
-body!(Unrolled6, 6, code = unrolled);
-body!(Matrices6, 6, code = matrices);
-body!(Matrices8, 8, code = matrices);
-body!(Matrices10, 10, code = matrices);
-neumann!(UnrolledOn4, 4, code = unrolled);
-neumann!(MatricesOn4, 4, code = matrices);
-neumann!(UnrolledOn8, 8, code = unrolled);
-neumann!(MatricesOn8, 8, code = matrices);
-neumann!(UnrolledOn11, 11, code = unrolled);
-neumann!(MatricesOn11, 11, code = matrices);
-neumann!(MatricesOn21, 21, code = matrices);
-neumann!(MatricesOn101, 101, code = matrices);
+body!(Body4, 4, Unrolled);
+body!(Body5, 5, Unrolled);
+body!(Body6, 6, Unrolled);
+body!(Body8, 8);
+body!(Body10, 10);
+neumann!(PointOn4, 4, Unrolled);
+neumann!(PointOn8, 8, Unrolled);
+neumann!(PointOn11, 11, Unrolled);
+neumann!(PointOn21, 21);
+neumann!(PointOn101, 101);
 
 /// Principal values of ½∫ρρᵀdm between ½ and 3/2.
 fn principal<const N: usize>() -> SVector<f64, N> {
@@ -126,15 +125,15 @@ impl<const N: usize> PointByHand<N> {
     }
 }
 
-/// Steps of a declaration, one by one or all at once.
-fn stepped<S: Clebsch<Scalar = f64> + Clone>(
+/// Steps by a method, one by one or all at once.
+fn stepped<S: Clebsch<Scalar = f64> + Clone, M: Method<S>>(
     system: &S,
     q: S::Configuration,
     mu: S::Momentum,
     at_once: bool,
     steps: u64,
 ) {
-    let stepper = system.stepper(H).expect("a regular system");
+    let stepper = system.stepper_by::<M>(H).expect("a regular system");
     let mut state = stepper.state(q, mu).expect("a state");
     match at_once {
         true => state = stepper.advance(&state, steps as usize).expect("steps"),
@@ -148,8 +147,12 @@ fn stepped<S: Clebsch<Scalar = f64> + Clone>(
 }
 
 /// The configuration after ten steps.
-fn after_ten<S: Clebsch<Scalar = f64> + Clone>(system: &S, q: S::Configuration, mu: S::Momentum) -> S::Configuration {
-    let stepper = system.stepper(H).expect("a regular system");
+fn after_ten<S: Clebsch<Scalar = f64> + Clone, M: Method<S>>(
+    system: &S,
+    q: S::Configuration,
+    mu: S::Momentum,
+) -> S::Configuration {
+    let stepper = system.stepper_by::<M>(H).expect("a regular system");
     let mut state = stepper.state(q, mu).expect("a state");
     for _ in 0..10 {
         state = stepper.step(&state).expect("a step");
@@ -167,7 +170,7 @@ fn report(n: usize, names: &[&str], contestants: &[Run<'_>]) -> Vec<f64> {
 
 /// Bodies of one dimension.
 macro_rules! bodies {
-    ($n:literal, $m:literal $(, $name:literal: $system:ident)*) => {{
+    ($n:literal, $m:literal, $system:ident $(, $name:literal: $method:ident)*) => {{
         let momentum = SVector::<f64, $m>::from_fn(|k, _| 2.0 * (1.7 * k as f64 + 0.4).sin());
         let j = principal::<$n>();
         let by_hand = |steps: u64| {
@@ -193,8 +196,8 @@ macro_rules! bodies {
         $(
             names.push($name);
             let system = $system { j_d: SMatrix::from_diagonal(&j) };
-            assert!((after_ten(&system, SMatrix::identity(), momentum) - turned).amax() < 1e-12, "the same motion");
-            contestants.push(Box::new(move |steps| stepped(&system, SMatrix::identity(), momentum, false, steps)));
+            assert!((after_ten::<_, $method>(&system, SMatrix::identity(), momentum) - turned).amax() < 1e-12, "the same motion");
+            contestants.push(Box::new(move |steps| stepped::<_, $method>(&system, SMatrix::identity(), momentum, false, steps)));
         )*
         report($n, &names, &contestants)
     }};
@@ -202,7 +205,7 @@ macro_rules! bodies {
 
 /// Points on the sphere of one dimension.
 macro_rules! points {
-    ($n:literal, $m:literal $(, $name:literal: $system:ident)*) => {{
+    ($n:literal, $m:literal, $system:ident $(, $name:literal: $method:ident)*) => {{
         let stiffness = principal::<$n>();
         let q = SVector::<f64, $n>::from_fn(|i, _| (1.3 * i as f64 + 0.2).cos()).normalize();
         let w = SVector::<f64, $n>::from_fn(|i, _| (0.7 * i as f64).sin()).normalize();
@@ -220,14 +223,14 @@ macro_rules! points {
         $(
             let system = $system { stiffness };
             let mu = system.momentum_map(&q, &w);
-            assert!((after_ten(&system, q, mu) - moved).amax() < 1e-12, "the same motion");
+            assert!((after_ten::<_, $method>(&system, q, mu) - moved).amax() < 1e-12, "the same motion");
             let other = system.clone();
             names.push($name);
-            contestants.push(Box::new(move |steps| stepped(&system, q, mu, false, steps)));
+            contestants.push(Box::new(move |steps| stepped::<_, $method>(&system, q, mu, false, steps)));
             names.push(concat!($name, ", advance"));
-            contestants.push(Box::new(move |steps| stepped(&other, q, mu, true, steps)));
+            contestants.push(Box::new(move |steps| stepped::<_, $method>(&other, q, mu, true, steps)));
             names.push(concat!($name, ", Integrator"));
-            let stepper = $system { stiffness }.into_stepper(H).expect("a regular system");
+            let stepper = $system { stiffness }.into_stepper_by::<$method>(H).expect("a regular system");
             let start = stepper.state(q, mu).expect("a state");
             let integrator = RefCell::new(stepper.integrator(start));
             contestants.push(Box::new(move |steps| (0..steps).for_each(|_| integrator.borrow_mut().step().expect("a step"))));
@@ -239,19 +242,19 @@ macro_rules! points {
 fn main() {
     println!("Time of a step of a rigid body in n dimensions, ns; ratio to by hand\n");
     println!("{:>5} {:24} {:>10} {:>10} {:>6}", "n", "", "least", "median", "ratio");
-    bodies!(4, 6, "unrolled": Unrolled4, "matrices": Matrices4);
-    bodies!(5, 10, "unrolled": Unrolled5, "matrices": Matrices5);
-    bodies!(6, 15, "unrolled": Unrolled6, "matrices": Matrices6);
-    let eight = bodies!(8, 28, "matrices": Matrices8);
-    let ten = bodies!(10, 45, "matrices": Matrices10);
+    bodies!(4, 6, Body4, "unrolled": Unrolled, "matrices": Declared);
+    bodies!(5, 10, Body5, "unrolled": Unrolled, "matrices": Declared);
+    bodies!(6, 15, Body6, "unrolled": Unrolled, "matrices": Declared);
+    let eight = bodies!(8, 28, Body8, "matrices": Declared);
+    let ten = bodies!(10, 45, Body10, "matrices": Declared);
     println!("\ntime of a step ∝ n^{:.2} from 8 to 10\n", (ten[1] / eight[1]).ln() / (10.0_f64 / 8.0).ln());
     println!("Time of a step on the unit sphere of n dimensions, ns; ratio to by hand\n");
     println!("{:>5} {:24} {:>10} {:>10} {:>6}", "n", "", "least", "median", "ratio");
-    points!(4, 6, "unrolled": UnrolledOn4, "matrices": MatricesOn4);
-    points!(8, 28, "unrolled": UnrolledOn8, "matrices": MatricesOn8);
-    points!(11, 55, "unrolled": UnrolledOn11, "matrices": MatricesOn11);
-    let small = points!(21, 210, "matrices": MatricesOn21);
-    let large = points!(101, 5050, "matrices": MatricesOn101);
+    points!(4, 6, PointOn4, "unrolled": Unrolled, "matrices": Declared);
+    points!(8, 28, PointOn8, "unrolled": Unrolled, "matrices": Declared);
+    points!(11, 55, PointOn11, "unrolled": Unrolled, "matrices": Declared);
+    let small = points!(21, 210, PointOn21, "matrices": Declared);
+    let large = points!(101, 5050, PointOn101, "matrices": Declared);
     let growth = |k: usize| (large[k] / small[k]).ln() / (101.0_f64 / 21.0).ln();
     println!("\ntime ∝ n^{:.2} of a step, n^{:.2} of one of many, from 21 to 101", growth(1), growth(2));
     memory();
@@ -263,10 +266,9 @@ fn memory() {
     println!("{:>5} {:24} {:>10} {:>10}", "n", "", "state", "stepper");
     let row =
         |n: usize, name: &str, [state, stepper]: [usize; 2]| println!("{n:>5} {name:24} {state:>10} {stepper:>10}");
-    let bodies =
-        [(5, bytes::<Matrices5>()), (6, bytes::<Matrices6>()), (8, bytes::<Matrices8>()), (10, bytes::<Matrices10>())];
+    let bodies = [(5, bytes::<Body5>()), (6, bytes::<Body6>()), (8, bytes::<Body8>()), (10, bytes::<Body10>())];
     bodies.iter().for_each(|(n, bytes)| row(*n, "body", *bytes));
-    let points = [(8, bytes::<MatricesOn8>()), (21, bytes::<MatricesOn21>()), (101, bytes::<MatricesOn101>())];
+    let points = [(8, bytes::<PointOn8>()), (21, bytes::<PointOn21>()), (101, bytes::<PointOn101>())];
     points.iter().for_each(|(n, bytes)| row(*n, "point", *bytes));
     let growth = |rows: &[(usize, [usize; 2])], k: usize| {
         let (first, last) = (rows[0], rows[rows.len() - 1]);
