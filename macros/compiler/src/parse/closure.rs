@@ -10,7 +10,7 @@ use super::spelling::{spell, spell_pattern};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// A closure of the declaration.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Closure {
     /// The key that it is the value of.
     pub key: Ident,
@@ -23,7 +23,7 @@ pub struct Closure {
 }
 
 /// An argument of a closure.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Argument {
     /// The names that it introduces.
     pub pattern: Pattern,

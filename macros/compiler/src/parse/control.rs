@@ -10,7 +10,7 @@ use super::{Argument, Closure, Kinetic, Pattern};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// What a choice of inputs costs, and what it is bound by.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Choice {
     /// The price of a step: the `cost` of a system with `controls` or `dynamics`, the `effort` of one with forces.
     pub price: Closure,

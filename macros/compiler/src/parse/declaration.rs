@@ -9,7 +9,7 @@ use super::{Choice, Closure, DeclaredGroup, DeclaredMethod, Field, Opaque, combi
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// What the user declared: the struct, the closures and the dials, as written.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Declaration {
     /// The name of the struct.
     pub ident: Ident,
@@ -44,7 +44,7 @@ pub struct Declaration {
 }
 
 /// The key `potential`.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub enum Potential {
     /// A formula.
     Closure(Closure),
@@ -71,7 +71,7 @@ impl Potential {
 }
 
 /// The key that says what moves the configuration: a kinetic energy, or inputs.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub enum Kinetic {
     /// `controls = …`, the velocity that inputs give.
     Controls(Closure),

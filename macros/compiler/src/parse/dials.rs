@@ -7,7 +7,7 @@ use proc_macro2::Ident;
 use super::keys::Located;
 
 /// The keys that are no closures; each has a default.
-#[derive(Clone, Default, Debug)]
+#[derive(Clone, Default)]
 pub struct Dials {
     /// `order = 2`.
     pub order: Option<Located<Order>>,

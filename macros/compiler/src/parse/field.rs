@@ -9,7 +9,7 @@ use super::dials::Promise;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
 
 /// A field of the user's struct.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Field {
     /// Its name or number.
     pub member: Member,

@@ -10,7 +10,7 @@ use super::{Closure, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 
 /// A group of the user's own.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct DeclaredGroup {
     /// Its name.
     pub name: Ident,
@@ -19,7 +19,7 @@ pub struct DeclaredGroup {
 }
 
 /// What a declared group is.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub enum Definition {
     /// All matrices that satisfy an equation.
     Equation(Box<Closure>),

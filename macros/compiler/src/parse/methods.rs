@@ -11,7 +11,7 @@ use super::{Declaration, attribute, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
 
 /// A further way to step the system.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct DeclaredMethod {
     /// The unit struct of the user that stands for it.
     pub name: Ident,

@@ -9,7 +9,7 @@ use super::values;
 use crate::diagnostic::{Diagnostic, Location};
 
 /// A potential whose value and gradient are methods of the struct.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Opaque {
     /// `Self::value`.
     pub value: Path,

@@ -9,6 +9,7 @@ use super::super::scope::Missing;
 use super::super::value::Value;
 use super::Elaborator;
 use crate::diagnostic::{Diagnostic, Location, nearest};
+use crate::parse::spell_tokens;
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
@@ -53,7 +54,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let error = Diagnostic::new(Location::of(path), "a constant has no generic arguments");
             return self.error(error.help("write the path of a scalar constant"));
         }
-        let known = self.context.constants.iter().position(|constant| constant.path == *path);
+        let known =
+            self.context.constants.iter().position(|constant| spell_tokens(&constant.path) == spell_tokens(path));
         let index = known.unwrap_or(self.context.constants.len());
         let name: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
         let symbol = self.graph().symbol(&name.join("::"), Shape::scalar(), Role::Constant(index), Property::General);
