@@ -2,47 +2,52 @@
 
 use crate::map::{Map, refusal, size};
 use crate::probe::Cell;
-use clebsch::{Clebsch, Error};
+use clebsch::{Clebsch, Declared, Error, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::{Failure, say};
 use clebsch_examples::table::aligned;
-use nalgebra::{SVector, Vector1, Vector3};
+use nalgebra::{Vector1, Vector3};
 use std::f64::consts::{PI, TAU};
 
-macro_rules! orders {
-    ($($module:ident $order:literal),*) => {$(
-        mod $module {
-            use clebsch::Clebsch;
+struct First;
+struct Fourth;
+struct Sixth;
+struct Eighth;
+struct Sixteenth;
 
-            /// A planet: unit mass, unit constant of gravitation.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action    = |a: Translation<3>, x: Vector3| x + a,
-                cost      = |h, a| a.norm_squared() / (2 * h),
-                potential = |x| -self.attraction / x.norm(),
-                order     = $order,
-            )]
-            pub struct Planet {
-                /// Constant of gravitation times both masses.
-                pub attraction: f64,
-            }
-
-            /// A unit mass on a spring.
-            #[derive(Clebsch, Clone, Debug)]
-            #[clebsch(
-                action    = |a: Translation<1>, x: Vector1| x + a,
-                cost      = |h, a| a.norm_squared() / (2 * h),
-                potential = |x| self.stiffness * x.norm_squared() / 2,
-                order     = $order,
-            )]
-            pub struct Spring {
-                /// The square of the angular frequency.
-                pub stiffness: f64,
-            }
-        }
-    )*};
+/// A planet: unit mass, unit constant of gravitation.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<3>, x: Vector3| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |x| -self.attraction / x.norm(),
+    method First     = (order = 1),
+    method Fourth    = (order = 4),
+    method Sixth     = (order = 6),
+    method Eighth    = (order = 8),
+    method Sixteenth = (order = 16),
+)]
+struct Planet {
+    /// Constant of gravitation times both masses.
+    pub attraction: f64,
 }
-orders! { first 1, second 2, fourth 4, sixth 6, eighth 8, sixteenth 16 }
+
+/// A unit mass on a spring.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<1>, x: Vector1| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |x| self.stiffness * x.norm_squared() / 2,
+    method First     = (order = 1),
+    method Fourth    = (order = 4),
+    method Sixth     = (order = 6),
+    method Eighth    = (order = 8),
+    method Sixteenth = (order = 16),
+)]
+struct Spring {
+    /// The square of the angular frequency.
+    pub stiffness: f64,
+}
 
 /// A unit mass on a spring that is driven.
 #[derive(Clebsch, Clone, Debug)]
@@ -56,35 +61,19 @@ struct Driven {
     pub frequency: f64,
 }
 
-/// A function for the systems of each order, with its name.
+/// A function of the method of each order, with its name.
 macro_rules! each_order {
-    ($function:ident, $kind:ident) => {
+    ($function:ident) => {
         [
-            ("order 1", $function::<first::$kind> as fn(_) -> _),
-            ("order 2", $function::<second::$kind>),
-            ("order 4", $function::<fourth::$kind>),
-            ("order 6", $function::<sixth::$kind>),
-            ("order 8", $function::<eighth::$kind>),
-            ("order 16", $function::<sixteenth::$kind>),
+            ("order 1", $function::<First> as fn(_) -> _),
+            ("order 2", $function::<Declared>),
+            ("order 4", $function::<Fourth>),
+            ("order 6", $function::<Sixth>),
+            ("order 8", $function::<Eighth>),
+            ("order 16", $function::<Sixteenth>),
         ]
     };
 }
-
-macro_rules! made {
-    ($trait:ident, $kind:ident, $field:ident, $dimension:literal: $($module:ident)*) => {
-        /// A system of each order, made of its only parameter.
-        trait $trait: Clebsch<Scalar = f64, Time = (), Input = (), Configuration = SVector<f64, $dimension>, Momentum = SVector<f64, $dimension>> {
-            fn made(parameter: f64) -> Self;
-        }
-        $(impl $trait for $module::$kind {
-            fn made(parameter: f64) -> Self {
-                Self { $field: parameter }
-            }
-        })*
-    };
-}
-made! { Attracted, Planet, attraction, 3: first second fourth sixth eighth sixteenth }
-made! { Elastic, Spring, stiffness, 1: first second fourth sixth eighth sixteenth }
 
 /// All three.
 pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
@@ -95,8 +84,8 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
 
 /// Two revolutions in 2000 steps on an ellipse that comes as near to the centre as `1 − e`: the largest relative error of the energy, and of the
 /// angular momentum.
-fn revolve<S: Attracted>(nearest: f64) -> Result<[f64; 2], Error> {
-    let stepper = S::made(1.0).into_stepper(TAU / 1000.0)?;
+fn revolve<M: Method<Planet>>(nearest: f64) -> Result<[f64; 2], Error> {
+    let stepper = Planet { attraction: 1.0 }.into_stepper_by::<M>(TAU / 1000.0)?;
     let speed = (nearest / (2.0 - nearest)).sqrt();
     let mut state = stepper.state(Vector3::x() * (2.0 - nearest), Vector3::y() * speed)?;
     let spin = speed * (2.0 - nearest);
@@ -116,7 +105,7 @@ fn near_collisions(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure
     say(
         "Potentials: 1/r. Ellipses of half axis 1 in a thousand steps a revolution, two of them: largest relative error of the energy by the nearest distance\n",
     );
-    let orders = each_order!(revolve, Planet);
+    let orders = each_order!(revolve);
     let mut rows = vec![
         std::iter::once("nearest".to_owned())
             .chain(orders.iter().map(|(name, _)| (*name).to_owned()))
@@ -148,8 +137,8 @@ fn near_collisions(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure
 }
 
 /// Half of the trace of a step of the spring, whose eigenvalues are on the unit circle as long as it is at most one.
-fn half_trace<S: Elastic>(angle: f64) -> Result<f64, Error> {
-    let stepper = S::made(1.0).into_stepper(angle)?;
+fn half_trace<M: Method<Spring>>(angle: f64) -> Result<f64, Error> {
+    let stepper = Spring { stiffness: 1.0 }.into_stepper_by::<M>(angle)?;
     let image = |x: f64, p: f64| -> Result<[f64; 2], Error> {
         let next = stepper.step(&stepper.state(Vector1::new(x), Vector1::new(p))?)?;
         Ok([next.configuration().x, next.momentum().x])
@@ -178,7 +167,7 @@ fn stiff(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
         "Potentials: stiff ones. A unit mass on a spring of the angular frequency ω: the least h·ω at which steps grow, on a grid of 0.001\n",
     );
     let mut rows = vec![["", "least hω", "there"].map(str::to_owned).to_vec()];
-    for (name, half_trace) in each_order!(half_trace, Spring) {
+    for (name, half_trace) in each_order!(half_trace) {
         let (bound, why) = stable(half_trace);
         rows.push(vec![name.to_owned(), format!("{bound:.3}"), why]);
         map.add_run("stiff potential", ("spring", name), "f64", &format!("{bound:.3}"), &Cell::of(Ok(()), 1))?;

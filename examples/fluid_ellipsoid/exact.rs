@@ -2,7 +2,7 @@
 
 use crate::spheroid::Spheroid;
 use crate::{Flags, FluidEllipsoid, geodesic};
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::flags::{Order, Run};
@@ -43,7 +43,7 @@ pub fn spheroid(drop: &FluidEllipsoid, spheroid: &Spheroid, run: &Run) -> Result
     }
     if let Some(end) = spheroid.at(run.time(steps)) {
         let size = end.amax();
-        let ends = refined(drop, run, steps, |stepper| stepper.state(q, momentum))?;
+        let ends = refined::<_, Declared>(drop, run, steps, |stepper| stepper.state(q, momentum))?;
         let errors = ends.map(|state| (state.configuration() - end).amax() / size);
         let size_of_momentum = momentum.amax().max(f64::MIN_POSITIVE);
         let rounding = geodesic::rounding(drop.mass, &end, &velocity) / size_of_momentum;

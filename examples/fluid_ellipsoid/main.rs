@@ -11,7 +11,7 @@ mod spheroid;
 mod watch;
 
 use clap::Parser;
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::csv::{Csv, by_rows};
@@ -134,7 +134,7 @@ fn convergence(drop: &FluidEllipsoid, watch: &Watch, flags: &Flags) -> Result<Co
     let steps = flags.run.steps.min(exact::STEPS);
     let (q, velocity) = flags.start()?;
     let momentum = geodesic::momentum(flags.mass, &q, &velocity);
-    let ends = refined(drop, &flags.run, steps, |stepper| stepper.state(q, momentum))?;
+    let ends = refined::<_, Declared>(drop, &flags.run, steps, |stepper| stepper.state(q, momentum))?;
     let exact = geodesic::motion(&q, &velocity, flags.run.time(steps), watch.rate());
     let (end, end_velocity) = geodesic::halves(&exact.end);
     let end_momentum = geodesic::momentum(flags.mass, &end, &end_velocity);

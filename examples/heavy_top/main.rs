@@ -4,7 +4,7 @@ mod figure;
 mod watch;
 
 use clap::Parser;
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, finite, finite_list, moments_of_inertia, parse};
@@ -14,30 +14,25 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::process::ExitCode;
 use watch::{Sample, Watch};
 
-/// Declares the top at one order, so that both orders are the same top.
-macro_rules! heavy_top {
-    ($name:ident, order = $order:tt) => {
-        /// A rigid body turning about a fixed pivot in uniform gravity.
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-                            action    = |F: SO<3>, R: SO<3>| R * F,
-                            cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
-                            potential = |R| self.weight * (R * self.center).z,
-                            order     = $order,
-                        )]
-        pub struct $name {
-            /// ½tr(J)I − J = ∫ρρᵀdm about the pivot, kg·m².
-            pub mass_matrix: Matrix3<f64>,
-            /// Weight times the distance from the pivot to the centre of mass, N·m.
-            pub weight: f64,
-            /// The direction of the centre of mass, body frame.
-            pub center: Vector3<f64>,
-        }
-    };
-}
+/// Steps of first order: drift, then kick.
+pub struct Kicked;
 
-heavy_top!(KickedTop, order = 1);
-heavy_top!(SymmetricTop, order = 2);
+/// A rigid body turning about a fixed pivot in uniform gravity.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, R: SO<3>| R * F,
+    cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
+    potential = |R| self.weight * (R * self.center).z,
+    method Kicked = (order = 1),
+)]
+pub struct HeavyTop {
+    /// ½tr(J)I − J = ∫ρρᵀdm about the pivot, kg·m².
+    pub mass_matrix: Matrix3<f64>,
+    /// Weight times the distance from the pivot to the centre of mass, N·m.
+    pub weight: f64,
+    /// The direction of the centre of mass, body frame.
+    pub center: Vector3<f64>,
+}
 
 const SCENE: Scene = Scene {
     name: "heavy_top",
@@ -87,17 +82,15 @@ fn main() -> ExitCode {
     let inertia = Matrix3::from_diagonal(&flags.inertia.into());
     let mass_matrix = Matrix3::identity() * (inertia.trace() / 2.0) - inertia;
     let (weight, center) = (flags.weight, flags.center.into());
+    let top = HeavyTop { mass_matrix, weight, center };
     conclude(match flags.run.order {
-        Order::First => run(KickedTop { mass_matrix, weight, center }, &flags),
-        Order::Second => run(SymmetricTop { mass_matrix, weight, center }, &flags),
+        Order::First => run::<Kicked>(&top, &flags),
+        Order::Second => run::<Declared>(&top, &flags),
     })
 }
 
-fn run<S>(top: S, flags: &Flags) -> Result<Claims, Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>,
-{
-    let stepper = top.into_stepper(flags.run.step_size)?;
+fn run<M: Method<HeavyTop>>(top: &HeavyTop, flags: &Flags) -> Result<Claims, Failure> {
+    let stepper = top.stepper_by::<M>(flags.run.step_size)?;
     let attitude = Rotation3::from_scaled_axis(Vector3::from(flags.attitude)).into_inner();
     let start = stepper.state(attitude, flags.momentum.into())?;
 

@@ -13,7 +13,7 @@ mod watch;
 
 use bodies::{RigidBody5, RigidBody6, RigidBody7, RigidBody8, RigidBody9, RigidBody10};
 use clap::Parser;
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::csv::{Csv, by_rows};
@@ -127,10 +127,11 @@ where
     let (steps, components) = (run.steps.min(COMPARED), S::momentum_components(&start.momentum));
     let unknowns = euler::pack::<N, U>(&SMatrix::identity(), &start.momentum);
     let exact = reference::solve(euler::field(start.j_d), unknowns, run.time(steps), start.rate());
-    let errors = refined(body, run, steps, |stepper| stepper.state(SMatrix::identity(), components))?.map(|end| {
-        let reached = euler::pack::<N, U>(end.configuration(), &S::momentum_matrix(&end.momentum()));
-        (reached - exact.end).amax() / exact.end.amax()
-    });
+    let errors = refined::<_, Declared>(body, run, steps, |stepper| stepper.state(SMatrix::identity(), components))?
+        .map(|end| {
+            let reached = euler::pack::<N, U>(end.configuration(), &S::momentum_matrix(&end.momentum()));
+            (reached - exact.end).amax() / exact.end.amax()
+        });
     let convergence = Convergence { errors, reference: exact.error / exact.end.amax(), steps };
     convergence.claim(Order::Second, "order 2 against the generalised Euler equations", claims);
     Ok(())

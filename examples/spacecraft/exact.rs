@@ -5,6 +5,7 @@ use crate::equations::Equations;
 use crate::libration::Tilt;
 use crate::orbit::{Circle, Kepler};
 use crate::{Flags, Momentum, Pose, Spacecraft, halves};
+use clebsch::{Clebsch, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::elliptic::complete;
@@ -33,8 +34,8 @@ pub struct Pitch {
 
 /// Follows a libration in pitch alone, which is a pendulum in twice the angle: θ̈ = −½ω_p² sin 2θ, ω_p = n√(3(J₁ − J₃)/J₂) with
 /// the moments J₁ about the direction of flight, J₂ about the normal, J₃ about the radius.
-pub fn pitch<S: Spacecraft>(
-    system: &S,
+pub fn pitch<M: Method<Spacecraft>>(
+    system: &Spacecraft,
     body: &Body,
     circle: &Circle,
     run: &Run,
@@ -43,7 +44,7 @@ pub fn pitch<S: Spacecraft>(
     let (orientation, equations) = (Orientation::stable(body), Equations::new(body));
     let [yaw, roll, pitch] = orientation.moments.into();
     let rate = circle.mean_motion * (3.0 * (roll - yaw) / pitch).sqrt();
-    let stepper = system.clone().into_stepper(run.step_size)?;
+    let stepper = system.stepper_by::<M>(run.step_size)?;
     let (pose, momentum) = circle.start(body, &orientation, &(Vector3::z() * amplitude));
     let mut crossings = Crossings::default();
     for (step, state) in (0..=run.steps).zip(stepper.trajectory(stepper.state(pose, momentum)?)) {
@@ -111,8 +112,8 @@ impl Pitch {
 }
 
 /// An ellipse against Kepler's solution, and the run's own start against the equations of orbit and attitude.
-pub fn convergence<S: Spacecraft>(
-    system: &S,
+pub fn convergence<M: Method<Spacecraft>>(
+    system: &Spacecraft,
     body: &Body,
     flags: &Flags,
     start: (Pose, Momentum),
@@ -131,14 +132,14 @@ pub fn convergence<S: Spacecraft>(
     let mut momentum = Momentum::zeros();
     momentum.fixed_rows_mut::<3>(0).copy_from(&(velocity * flags.mass));
     let at_rest = ((position, Matrix3::identity()), momentum);
-    let ends = refined(system, run, steps, |stepper| stepper.state(at_rest.0, at_rest.1))?;
+    let ends = refined::<_, M>(system, run, steps, |stepper| stepper.state(at_rest.0, at_rest.1))?;
     let errors = ends.map(|end| (end.configuration().0 - kepler.at(time).0).norm() / flags.radius);
     // Kepler's orbit is that of a point.
     let coupling = body.moments.z / (body.mass * flags.radius.powi(2));
     let orbit = Convergence { errors, reference: coupling + f64::EPSILON, steps };
     orbit.claim(run.order, "the order against Kepler's orbit", claims);
 
-    let ends = refined(system, run, steps, |stepper| stepper.state(start.0, start.1))?;
+    let ends = refined::<_, M>(system, run, steps, |stepper| stepper.state(start.0, start.1))?;
     let rate = 2.0 * (flags.gravitation / flags.radius.powi(3)).sqrt();
     let exact = Equations::new(body).motion(&start, time, rate);
     let attitude = Matrix3::from_column_slice(&exact.end.as_slice()[6..15]);
@@ -154,12 +155,7 @@ pub fn convergence<S: Spacecraft>(
 }
 
 /// The same body so large that its attitude takes part in the angular momentum: what one half gives the other takes.
-pub fn exchange<S: Spacecraft>(
-    system: impl Fn(&Body) -> S,
-    body: &Body,
-    flags: &Flags,
-    claims: &mut Claims,
-) -> Result<(), Failure> {
+pub fn exchange<M: Method<Spacecraft>>(body: &Body, flags: &Flags, claims: &mut Claims) -> Result<(), Failure> {
     /// J/(m r²) of the large body.
     const SIZE: f64 = 0.01;
     let name = "while each of them gives and takes";
@@ -172,7 +168,7 @@ pub fn exchange<S: Spacecraft>(
     // Half an orbit.
     let steps = (TAU / 2.0 / (circle.mean_motion * flags.run.step_size)).ceil().min(1e5) as u64;
     let (pose, momentum) = circle.start(&large, &Orientation::stable(&large), &Vector3::repeat(0.5));
-    let stepper = system(&large).into_stepper(flags.run.step_size)?;
+    let stepper = Spacecraft::from(&large).into_stepper_by::<M>(flags.run.step_size)?;
     let spin = |pose: &Pose, momentum: &Momentum| pose.1 * halves(momentum).1;
     let start = stepper.state(pose, momentum)?;
     let (total, first) = (stepper.conserved(&start), spin(&pose, &momentum));

@@ -16,7 +16,7 @@ mod watch;
 
 use body::{Body, Orientation};
 use clap::Parser;
-use clebsch::{Clebsch, Conserved, Conserves};
+use clebsch::{Clebsch, Declared, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, finite, finite_list, parse, positive};
@@ -37,56 +37,42 @@ pub fn halves(momentum: &Momentum) -> (Vector3<f64>, Vector3<f64>) {
     (momentum.fixed_rows::<3>(0).into(), momentum.fixed_rows::<3>(3).into())
 }
 
-/// Declares the spacecraft at one order, so that both orders are the same spacecraft.
-macro_rules! spacecraft {
-    ($name:ident, order = $order:tt) => {
-        /// A rigid body about a point mass: the potential up to the second moments of the body (MacCullagh).
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-                            action    = |(a, F): (Translation<3>, SO<3>), (x, R): (Vector3, SO<3>)| (x + a, R * F),
-                            cost      = |h, (a, F)| {
-                                let second_moment = self.inertia.trace() / 2 * I - self.inertia;
-                                let turn = F - I;
-                                (self.mass * a.norm_squared() + (second_moment * turn * turn.transpose()).trace()) / (2 * h)
-                            },
-                            potential = |(x, R)| {
-                                let r = x.norm();
-                                let y = R.transpose() * x;
-                                let quadrupole = 3 * y.dot(&(self.inertia * y)) / r.powi(2) - self.inertia.trace();
-                                self.gravitation * (quadrupole / (2 * r.powi(3)) - self.mass / r)
-                            },
-                            symmetry  = |S: SO<3>, (x, R), (a, F)| ((S * x, S * R), (S * a, F)),
-                            order     = $order,
-                        )]
-        pub struct $name {
-            /// Mass, kg.
-            pub mass: f64,
-            /// Inertia tensor about the centre of mass, body frame, kg·m².
-            #[clebsch(symmetric)]
-            pub inertia: Matrix3<f64>,
-            /// GM of the planet, m³/s².
-            pub gravitation: f64,
-        }
+/// Steps of first order: drift, then kick.
+pub struct Kicked;
 
-        impl From<&Body> for $name {
-            fn from(body: &Body) -> Self {
-                Self { mass: body.mass, inertia: body.inertia, gravitation: body.gravitation }
-            }
-        }
-    };
+/// A rigid body about a point mass: the potential up to the second moments of the body (MacCullagh).
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |(a, F): (Translation<3>, SO<3>), (x, R): (Vector3, SO<3>)| (x + a, R * F),
+    cost      = |h, (a, F)| {
+        let second_moment = self.inertia.trace() / 2 * I - self.inertia;
+        let turn = F - I;
+        (self.mass * a.norm_squared() + (second_moment * turn * turn.transpose()).trace()) / (2 * h)
+    },
+    potential = |(x, R)| {
+        let r = x.norm();
+        let y = R.transpose() * x;
+        let quadrupole = 3 * y.dot(&(self.inertia * y)) / r.powi(2) - self.inertia.trace();
+        self.gravitation * (quadrupole / (2 * r.powi(3)) - self.mass / r)
+    },
+    symmetry  = |S: SO<3>, (x, R), (a, F)| ((S * x, S * R), (S * a, F)),
+    method Kicked = (order = 1),
+)]
+pub struct Spacecraft {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Inertia tensor about the centre of mass, body frame, kg·m².
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<f64>,
+    /// GM of the planet, m³/s².
+    pub gravitation: f64,
 }
 
-spacecraft!(KickedSpacecraft, order = 1);
-spacecraft!(SymmetricSpacecraft, order = 2);
-
-/// What the scene needs of a declared spacecraft: either order has it.
-pub trait Spacecraft:
-    Clebsch<Scalar = f64, Configuration = Pose, Momentum = Momentum> + Conserves<Conserved = Conserved<f64, 3>> + Clone
-{
+impl From<&Body> for Spacecraft {
+    fn from(body: &Body) -> Self {
+        Self { mass: body.mass, inertia: body.inertia, gravitation: body.gravitation }
+    }
 }
-
-impl Spacecraft for KickedSpacecraft {}
-impl Spacecraft for SymmetricSpacecraft {}
 
 const SCENE: Scene = Scene {
     name: "spacecraft",
@@ -134,17 +120,17 @@ fn eccentricity(text: &str) -> Result<f64, String> {
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
     conclude(match flags.run.order {
-        Order::First => run(|body| KickedSpacecraft::from(body), &flags),
-        Order::Second => run(|body| SymmetricSpacecraft::from(body), &flags),
+        Order::First => run::<Kicked>(&flags),
+        Order::Second => run::<Declared>(&flags),
     })
 }
 
-fn run<S: Spacecraft>(system: impl Fn(&Body) -> S, flags: &Flags) -> Result<Claims, Failure> {
+fn run<M: Method<Spacecraft>>(flags: &Flags) -> Result<Claims, Failure> {
     let body = Body::new(flags)?;
     let circle = Circle::new(&body, flags.radius, &flags.run)?;
     let orientation = Orientation::stable(&body);
-    let spacecraft = system(&body);
-    let stepper = spacecraft.clone().into_stepper(flags.run.step_size)?;
+    let spacecraft = Spacecraft::from(&body);
+    let stepper = spacecraft.stepper_by::<M>(flags.run.step_size)?;
     let tilt = Vector3::from(flags.libration).map(f64::to_radians);
     let (pose, momentum) = circle.start(&body, &orientation, &tilt);
     let start = stepper.state(pose, momentum)?;
@@ -169,11 +155,11 @@ fn run<S: Spacecraft>(system: impl Fn(&Body) -> S, flags: &Flags) -> Result<Clai
 
     let mut claims = Claims::new();
     watch.claim(&mut claims);
-    let pitch = exact::pitch(&spacecraft, &body, &circle, &flags.run, tilt.z)?;
+    let pitch = exact::pitch::<M>(&spacecraft, &body, &circle, &flags.run, tilt.z)?;
     pitch.claim(&mut claims);
-    exact::convergence(&spacecraft, &body, flags, (pose, momentum), &mut claims)?;
-    exact::exchange(&system, &body, flags, &mut claims)?;
-    let cases = survey::follow(&system, &body, flags.radius, &flags.run)?;
+    exact::convergence::<M>(&spacecraft, &body, flags, (pose, momentum), &mut claims)?;
+    exact::exchange::<M>(&body, flags, &mut claims)?;
+    let cases = survey::follow::<M>(&body, flags.radius, &flags.run)?;
     say(&pitch);
     say(survey::table(&cases));
     cases.iter().for_each(|case| case.claim(&mut claims));

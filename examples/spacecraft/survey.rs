@@ -5,6 +5,7 @@ use crate::body::{Body, Orientation};
 use crate::equations::Equations;
 use crate::libration::{Linear, Mode, Tilt};
 use crate::orbit::Circle;
+use clebsch::{Clebsch, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::flags::{Order, Run};
 use clebsch_examples::scene::Failure;
@@ -41,22 +42,13 @@ pub struct Case {
     order: Order,
 }
 
-/// Follows all six; `system` makes the declared spacecraft.
-pub fn follow<S: Spacecraft>(
-    system: impl Fn(&Body) -> S,
-    body: &Body,
-    radius: f64,
-    run: &Run,
-) -> Result<Vec<Case>, Failure> {
+/// Follows all six.
+pub fn follow<M: Method<Spacecraft>>(body: &Body, radius: f64, run: &Run) -> Result<Vec<Case>, Failure> {
     let circle = Circle::new(body, radius, run)?;
-    Orientation::ALL
-        .iter()
-        .map(|&places| case(&system(body), body, &Orientation::new(body, places), &circle, run))
-        .collect()
+    Orientation::ALL.iter().map(|&places| case::<M>(body, &Orientation::new(body, places), &circle, run)).collect()
 }
 
-fn case<S: Spacecraft>(
-    system: &S,
+fn case<M: Method<Spacecraft>>(
     body: &Body,
     orientation: &Orientation,
     circle: &Circle,
@@ -68,7 +60,7 @@ fn case<S: Spacecraft>(
     let duration = if is_unstable { GROWTH.ln() / (mode.root.re * n) } else { ORBITS * TAU / n };
     let steps = (duration / run.step_size).ceil().clamp(1.0, LONGEST) as u64;
 
-    let stepper = system.clone().into_stepper(run.step_size)?;
+    let stepper = Spacecraft::from(body).into_stepper_by::<M>(run.step_size)?;
     let (pose, momentum) = circle.start(body, orientation, &Vector3::repeat(TILT));
     let mut state = stepper.state(pose, momentum)?;
     let first = Tilt::new(&equations, orientation, circle, &pose, &momentum);

@@ -6,40 +6,34 @@ mod figure;
 mod watch;
 
 use clap::Parser;
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Declared, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, finite, finite_list, parse};
 use clebsch_examples::integrate::integrate;
 use clebsch_examples::scene::{Failure, conclude, say};
-use nalgebra::Vector3;
 use std::process::ExitCode;
 use watch::{Sample, Watch};
 
-/// Declares the pendulum at one order, so that both orders are the same pendulum.
-macro_rules! spherical_pendulum {
-    ($name:ident, order = $order:tt) => {
-        /// A spherical pendulum: its momentum is the angular momentum m l² q × q̇.
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-                            action    = |F: SO<3>, q: Unit<Vector3>| F * q,
-                            cost      = |h, F| self.mass * self.length.powi(2) * (F - I).norm_squared() / (4 * h),
-                            potential = |q| self.mass * self.gravity * self.length * q.z,
-                            order     = $order,
-                        )]
-        pub struct $name {
-            /// Mass of the bob, kg.
-            pub mass: f64,
-            /// Length of the rod, m.
-            pub length: f64,
-            /// g, m/s².
-            pub gravity: f64,
-        }
-    };
-}
+/// Steps of first order, those of the paper: drift, then kick.
+pub struct Kicked;
 
-spherical_pendulum!(KickedPendulum, order = 1);
-spherical_pendulum!(SymmetricPendulum, order = 2);
+/// A spherical pendulum: its momentum is the angular momentum m l² q × q̇.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| self.mass * self.length.powi(2) * (F - I).norm_squared() / (4 * h),
+    potential = |q| self.mass * self.gravity * self.length * q.z,
+    method Kicked = (order = 1),
+)]
+pub struct SphericalPendulum {
+    /// Mass of the bob, kg.
+    pub mass: f64,
+    /// Length of the rod, m.
+    pub length: f64,
+    /// g, m/s².
+    pub gravity: f64,
+}
 
 const SCENE: Scene = Scene {
     name: "spherical_pendulum",
@@ -80,18 +74,15 @@ impl Flags {
 
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
-    let (mass, length, gravity) = (1.0, 1.0, flags.gravity);
+    let pendulum = SphericalPendulum { mass: 1.0, length: 1.0, gravity: flags.gravity };
     conclude(match flags.run.order {
-        Order::First => run(KickedPendulum { mass, length, gravity }, &flags),
-        Order::Second => run(SymmetricPendulum { mass, length, gravity }, &flags),
+        Order::First => run::<Kicked>(&pendulum, &flags),
+        Order::Second => run::<Declared>(&pendulum, &flags),
     })
 }
 
-fn run<S>(pendulum: S, flags: &Flags) -> Result<Claims, Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Vector3<f64>, Momentum = Vector3<f64>>,
-{
-    let stepper = pendulum.into_stepper(flags.run.step_size)?;
+fn run<M: Method<SphericalPendulum>>(pendulum: &SphericalPendulum, flags: &Flags) -> Result<Claims, Failure> {
+    let stepper = pendulum.stepper_by::<M>(flags.run.step_size)?;
     let start = stepper.state(flags.position.into(), flags.momentum.into())?;
 
     let mut csv = Csv::create(&flags.run, &["q1", "q2", "q3", "N1", "N2", "N3"])?;
@@ -109,7 +100,7 @@ where
         flags.run.duration(),
         flags.run.steps,
         flags.run.step_size,
-        S::ORDER
+        M::ORDER
     ));
     say(&watch.table);
     csv.finish()?;

@@ -3,7 +3,7 @@
 use crate::claims::Claims;
 use crate::flags::{Order, Run};
 use crate::scene::Failure;
-use clebsch::{Clebsch, State, Stepper};
+use clebsch::{Clebsch, Method, State, Stepper};
 
 /// Errors above this, relative, are not yet a power of the step.
 const LARGEST: f64 = 0.03;
@@ -16,14 +16,14 @@ const SLOPE: f64 = 0.1;
 ///
 /// # Errors
 /// What a start or a step returns.
-pub fn refined<S: Clebsch<Scalar = f64> + Clone>(
+pub fn refined<S: Clebsch<Scalar = f64> + Clone, M: Method<S>>(
     system: &S,
     run: &Run,
     steps: u64,
-    start: impl Fn(&Stepper<S>) -> Result<State<S>, clebsch::Error>,
-) -> Result<[State<S>; 3], Failure> {
-    let end = |part: u64| -> Result<State<S>, Failure> {
-        let stepper = system.clone().into_stepper(run.step_size / part as f64)?;
+    start: impl Fn(&Stepper<S, M>) -> Result<State<S, M>, clebsch::Error>,
+) -> Result<[State<S, M>; 3], Failure> {
+    let end = |part: u64| -> Result<State<S, M>, Failure> {
+        let stepper = system.clone().into_stepper_by(run.step_size / part as f64)?;
         let mut state = start(&stepper)?;
         for step in 1..=steps * part {
             state = stepper.step(&state).map_err(|error| Failure::Step { step, error })?;

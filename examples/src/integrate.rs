@@ -3,17 +3,17 @@
 use crate::flags::Run;
 use crate::progress::Progress;
 use crate::scene::Failure;
-use clebsch::{Clebsch, State, Stepper};
+use clebsch::{Clebsch, Method, State, Stepper};
 
 /// Hands the states 0, 1, …, `run.steps` to `observe`, with their number and time; nothing is kept.
 ///
 /// # Errors
 /// [`Failure::Step`] with the first step that could not be made, and what `observe` returns.
-pub fn integrate<S: Clebsch<Scalar = f64>>(
+pub fn integrate<S: Clebsch<Scalar = f64>, M: Method<S>>(
     run: &Run,
-    stepper: &Stepper<S>,
-    start: State<S>,
-    mut observe: impl FnMut(u64, f64, &State<S>) -> Result<(), Failure>,
+    stepper: &Stepper<S, M>,
+    start: State<S, M>,
+    mut observe: impl FnMut(u64, f64, &State<S, M>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(run.steps);
     for (step, state) in (0..=run.steps).zip(stepper.trajectory(start)) {

@@ -12,7 +12,7 @@ mod vehicle;
 mod watch;
 
 use clap::Parser;
-use clebsch::{Clebsch, Conserved, Conserves};
+use clebsch::{Clebsch, Declared, Method};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::{Convergence, refined};
 use clebsch_examples::csv::{Csv, by_rows};
@@ -20,44 +20,39 @@ use clebsch_examples::flags::{Order, Run, Scene, finite, parse, positive, positi
 use clebsch_examples::integrate::integrate;
 use clebsch_examples::scene::{Failure, conclude, say};
 use kirchhoff::Kirchhoff;
-use nalgebra::{Matrix4, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3};
 use std::process::ExitCode;
 use steady::{Course, Steady};
 use survey::{Case, Family};
 use vehicle::Vehicle;
 use watch::Watch;
 
-/// Declares the vehicle at one order, so that both orders are the same vehicle.
-macro_rules! underwater_vehicle {
-    ($name:ident, order = $order:tt) => {
-        /// A neutrally buoyant vehicle in an ideal fluid (Kirchhoff): its momentum is that of body and fluid.
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-                                                    action     = |F: SE<3>, q: SE<3>| q * F,
-                                                    lagrangian = |xi| xi.dot(&(self.inertia * xi)) / 2,
-                                                    potential  = |q| self.weight * (q.rotation() * self.center).z,
-                                                    order      = $order,
-                                                )]
-        pub struct $name {
-            /// Body and added inertia on (ω, v), kg·m², kg·m, kg.
-            #[clebsch(symmetric)]
-            pub inertia: Matrix6<f64>,
-            /// m·g, newtons, balanced by buoyancy at the origin.
-            pub weight: f64,
-            /// Centre of mass from the centre of buoyancy, m.
-            pub center: Vector3<f64>,
-        }
+/// Steps of first order: drift, then kick.
+pub struct Kicked;
 
-        impl From<&Vehicle> for $name {
-            fn from(vehicle: &Vehicle) -> Self {
-                Self { inertia: vehicle.inertia(), weight: vehicle.weight(), center: vehicle.center() }
-            }
-        }
-    };
+/// A neutrally buoyant vehicle in an ideal fluid (Kirchhoff): its momentum is that of body and fluid.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SE<3>, q: SE<3>| q * F,
+    lagrangian = |xi| xi.dot(&(self.inertia * xi)) / 2,
+    potential  = |q| self.weight * (q.rotation() * self.center).z,
+    method Kicked = (order = 1),
+)]
+pub struct UnderwaterVehicle {
+    /// Body and added inertia on (ω, v), kg·m², kg·m, kg.
+    #[clebsch(symmetric)]
+    pub inertia: Matrix6<f64>,
+    /// m·g, newtons, balanced by buoyancy at the origin.
+    pub weight: f64,
+    /// Centre of mass from the centre of buoyancy, m.
+    pub center: Vector3<f64>,
 }
 
-underwater_vehicle!(KickedVehicle, order = 1);
-underwater_vehicle!(SymmetricVehicle, order = 2);
+impl From<&Vehicle> for UnderwaterVehicle {
+    fn from(vehicle: &Vehicle) -> Self {
+        Self { inertia: vehicle.inertia(), weight: vehicle.weight(), center: vehicle.center() }
+    }
+}
 
 const SCENE: Scene = Scene {
     name: "underwater_vehicle",
@@ -122,20 +117,16 @@ impl Flags {
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
     conclude(match flags.run.order {
-        Order::First => run(|vehicle| KickedVehicle::from(vehicle), &flags),
-        Order::Second => run(|vehicle| SymmetricVehicle::from(vehicle), &flags),
+        Order::First => run::<Kicked>(&flags),
+        Order::Second => run::<Declared>(&flags),
     })
 }
 
-fn run<S>(system: impl Fn(&Vehicle) -> S, flags: &Flags) -> Result<Claims, Failure>
-where
-    S: Conserves<Conserved = Conserved<f64, 4>> + Clone,
-    S: Clebsch<Scalar = f64, Configuration = Matrix4<f64>, Momentum = Vector6<f64>>,
-{
+fn run<M: Method<UnderwaterVehicle>>(flags: &Flags) -> Result<Claims, Failure> {
     let rise = flags.rise();
     let kirchhoff = Kirchhoff::new(&rise.vehicle).ok_or_else(|| survey::too_low(flags.offset))?;
-    let vehicle = system(&rise.vehicle);
-    let stepper = vehicle.clone().into_stepper(flags.run.step_size)?;
+    let vehicle = UnderwaterVehicle::from(&rise.vehicle);
+    let stepper = vehicle.stepper_by::<M>(flags.run.step_size)?;
     let (pose, momentum) = rise.tilted(flags.tilt);
     let start = stepper.state(pose, momentum)?;
 
@@ -159,27 +150,24 @@ where
 
     let mut claims = Claims::new();
     watch.claim(&mut claims);
-    convergence(&vehicle, &kirchhoff, &watch, flags)?.claim(
+    convergence::<M>(&vehicle, &kirchhoff, &watch, flags)?.claim(
         order,
         "the order against Kirchhoff's equations",
         &mut claims,
     );
-    let cases = survey(&system, flags, &mut claims)?;
+    let cases = survey::<M>(flags, &mut claims)?;
     csv.finish()?;
     figure::draw(flags, &watch, &cases)?;
     Ok(claims)
 }
 
 /// The families of steady motions, their table and their claims.
-fn survey<S>(system: impl Fn(&Vehicle) -> S, flags: &Flags, claims: &mut Claims) -> Result<Vec<Case>, Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Matrix4<f64>, Momentum = Vector6<f64>>,
-{
+fn survey<M: Method<UnderwaterVehicle>>(flags: &Flags, claims: &mut Claims) -> Result<Vec<Case>, Failure> {
     let mut cases = Vec::new();
     for family in Family::ALL {
         let (base, has_threshold) = flags.family(family);
         if has_threshold {
-            cases.extend(survey::follow(family, &base, &flags.run, |steady| system(&steady.vehicle))?);
+            cases.extend(survey::follow::<M>(family, &base, &flags.run)?);
         } else {
             survey::skip(family, &base, claims);
         }
@@ -190,15 +178,17 @@ where
 }
 
 /// The end of the first seconds of the rise, with steps of h, h/2 and h/4, against Kirchhoff's equations.
-fn convergence<S>(vehicle: &S, kirchhoff: &Kirchhoff, watch: &Watch, flags: &Flags) -> Result<Convergence, Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Matrix4<f64>, Momentum = Vector6<f64>> + Clone,
-{
+fn convergence<M: Method<UnderwaterVehicle>>(
+    vehicle: &UnderwaterVehicle,
+    kirchhoff: &Kirchhoff,
+    watch: &Watch,
+    flags: &Flags,
+) -> Result<Convergence, Failure> {
     /// Steps of h: so few that a tilt which grows has not grown much.
     const STEPS: u64 = 500;
     let steps = flags.run.steps.min(STEPS);
     let (pose, momentum) = flags.rise().tilted(flags.tilt);
-    let ends = refined(vehicle, &flags.run, steps, |stepper| stepper.state(pose, momentum))?;
+    let ends = refined::<_, M>(vehicle, &flags.run, steps, |stepper| stepper.state(pose, momentum))?;
     let exact = kirchhoff.motion(&pose, &momentum, flags.run.time(steps), watch.rate());
     let scale = exact.end.amax();
     let errors = ends.map(|end| (kirchhoff::state(end.configuration(), &end.momentum()) - exact.end).amax() / scale);

@@ -1,9 +1,10 @@
 //! Steady motions on both sides of the published thresholds, each tilted a little and followed.
 
+use crate::UnderwaterVehicle;
 use crate::kirchhoff::Kirchhoff;
 use crate::steady::{Course, Oscillation, Steady};
 use crate::vehicle::halves;
-use clebsch::{Clebsch, Stepper};
+use clebsch::{Clebsch, Method, Stepper};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::flags::{Order, Run};
 use clebsch_examples::scene::Failure;
@@ -78,17 +79,15 @@ pub struct Case {
     order: Order,
 }
 
-/// Follows all ratios of a family; `system` makes the declared vehicle.
-pub fn follow<S>(family: Family, base: &Steady, run: &Run, system: impl Fn(&Steady) -> S) -> Result<Vec<Case>, Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Matrix4<f64>, Momentum = Vector6<f64>>,
-{
+/// Follows all ratios of a family.
+pub fn follow<M: Method<UnderwaterVehicle>>(family: Family, base: &Steady, run: &Run) -> Result<Vec<Case>, Failure> {
     let follow = |ratio: &f64| {
         let steady = family.member(base, *ratio);
         let kirchhoff = Kirchhoff::new(&steady.vehicle).ok_or_else(|| too_low(steady.vehicle.offset))?;
         let oscillation = steady.oscillation();
         let fastest = oscillation.size().max(steady.spin.abs());
-        let stepper = system(&steady).into_stepper(run.step_size.min(LARGEST_ANGLE / fastest))?;
+        let stepper = UnderwaterVehicle::from(&steady.vehicle)
+            .into_stepper_by::<M>(run.step_size.min(LARGEST_ANGLE / fastest))?;
         let [growth, largest] = tilts(&steady, &kirchhoff, &stepper)?;
         let angle = fastest * stepper.step_size();
         Ok(Case { family, ratio: *ratio, oscillation, growth, largest, angle, order: run.order })
@@ -104,10 +103,11 @@ pub fn too_low(offset: f64) -> Failure {
 }
 
 /// How fast the growing part of a tilt grew, 1/s, and the largest tilt over the first.
-fn tilts<S>(steady: &Steady, kirchhoff: &Kirchhoff, stepper: &Stepper<S>) -> Result<[f64; 2], Failure>
-where
-    S: Clebsch<Scalar = f64, Configuration = Matrix4<f64>, Momentum = Vector6<f64>>,
-{
+fn tilts<M: Method<UnderwaterVehicle>>(
+    steady: &Steady,
+    kirchhoff: &Kirchhoff,
+    stepper: &Stepper<UnderwaterVehicle, M>,
+) -> Result<[f64; 2], Failure> {
     let oscillation = steady.oscillation();
     let [first, second] = oscillation.roots();
     let duration = if first.re > 0.0 { GROWTH.ln() / first.re } else { BEATS * TAU / (first - second).modulus() };
