@@ -1,6 +1,8 @@
 //! Three scenes, each declared with several dials, over any scalar.
 
-use crate::probe::{Dial, Scene, Setup, dial};
+use crate::motion::{Moving, Scene};
+use crate::probe::{Dial, LongRun, dial, long_run};
+use crate::setup::Setup;
 use clebsch::{Clebsch, Declared, DoubleDouble, Error, Method, Real, State, Stepper};
 use clebsch_examples::counted::Counted;
 use nalgebra::{Matrix3, Vector3};
@@ -255,5 +257,20 @@ pub fn pendulums() -> Vec<Dial> {
         dial!("exponential, order 4", "spherical pendulum", Pendulum, PendulumExponential),
         dial!("order = 16", "spherical pendulum", Pendulum, PendulumCollocated),
         dial!("compensated", "spherical pendulum", Chord, PendulumCompensated),
+    ]
+}
+
+/// What is let run for long, in the order of the scenes.
+pub fn long_runs() -> Vec<LongRun> {
+    vec![
+        long_run!("moser_veselov", "free body", Body, BodyMoserVeselov),
+        long_run!("exact", "free body", Body, BodyExact),
+        long_run!("compensated", "free body", Body, BodyCompensated),
+        long_run!("moser_veselov", "heavy top", Top, TopMoserVeselov),
+        long_run!("exact, order 4", "heavy top", Top, TopExact),
+        long_run!("compensated", "heavy top", Top, TopCompensated),
+        long_run!("chord", "spherical pendulum", Chord, Declared),
+        long_run!("exponential, order 4", "spherical pendulum", Pendulum, PendulumExponential),
+        long_run!("compensated", "spherical pendulum", Chord, PendulumCompensated),
     ]
 }

@@ -2,7 +2,8 @@
 
 use crate::declarations::bodies;
 use crate::map::{Map, SCALARS, outcome, size};
-use crate::probe::{Dial, Setup};
+use crate::probe::Dial;
+use crate::setup::Setup;
 use crate::step_sizes::heading;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::scene::{Failure, say};
@@ -46,7 +47,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64) -> Result<(),
             for dial in &dials {
                 let setup = Setup { moments, ..Setup::ordinary() }.with_velocity(Vector3::repeat(1.0));
                 let h = ANGLE / setup.velocity().norm();
-                let cell = dial.run[scalar](&Setup { h, ..setup }, steps, true);
+                let cell = dial.run(scalar, &Setup { h, ..setup }, steps, true);
                 map.add(SECTION, dial, scalar, shape, &cell)?;
                 row.push(match cell.outcome {
                     Ok(()) => format!("{} it, {}", cell.iterations, size(cell.precise)),

@@ -1,8 +1,10 @@
 //! How errors of rounding grow over many steps.
 
-use crate::declarations::{bodies, pendulums, tops};
+use crate::declarations::long_runs;
 use crate::map::{Map, SCALARS, size};
-use crate::probe::{Cell, Dial, Drift, Setup};
+use crate::probe::{Cell, LongRun, Watch};
+use crate::setup::Setup;
+use clebsch::Error;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
 use clebsch_examples::scene::{Failure, say};
@@ -13,10 +15,47 @@ use std::path::Path;
 const SECTION: &str = "long run";
 const COLOURS: [RGBColor; 7] = [BLUE, GREEN, ORANGE, RED, PURPLE, TEAL, INK];
 
-/// What is let run for long.
-fn dials() -> Vec<Dial> {
-    let chosen = ["moser_veselov", "exact", "compensated", "exact, order 4", "chord", "exponential, order 4"];
-    [bodies(), tops(), pendulums()].concat().into_iter().filter(|dial| chosen.contains(&dial.name)).collect()
+/// Observations between two marks.
+const OBSERVATIONS: u64 = 100;
+
+/// Root mean squares of relative errors up to a number of steps, from the mark before.
+#[derive(Clone, Copy, Debug)]
+struct Drift {
+    /// The number of steps.
+    steps: u64,
+    /// Of the energy.
+    energy: f64,
+    /// Of conserved momenta.
+    momentum: f64,
+    /// The defect of the configuration.
+    constraint: f64,
+}
+
+/// A long run in a type, with errors between marks.
+///
+/// # Errors
+/// That of the step which was refused.
+fn drift(run: &LongRun, scalar: usize, setup: &Setup, marks: &[u64]) -> Result<Vec<Drift>, Error> {
+    let mut motion = (run.begin[scalar])(setup)?;
+    let first = Watch::new(motion.as_ref());
+    let (mut drifts, mut steps) = (Vec::new(), 0);
+    for &mark in marks {
+        let (mut sums, begin) = ([0.0; 3], steps);
+        for part in 1..=OBSERVATIONS {
+            let goal = begin + (mark - begin) * part / OBSERVATIONS;
+            motion.advance((goal - steps) as usize)?;
+            steps = goal;
+            let mut watch = first.clone();
+            watch.observe(motion.as_ref());
+            let Cell { energy, momentum, constraint, .. } = watch.cell;
+            for (sum, x) in sums.iter_mut().zip([energy, momentum, constraint]) {
+                *sum += x * x;
+            }
+        }
+        let [energy, momentum, constraint] = sums.map(|sum| (sum / OBSERVATIONS as f64).sqrt());
+        drifts.push(Drift { steps: mark, energy, momentum, constraint });
+    }
+    Ok(drifts)
 }
 
 /// The exponent p of a quantity that grows like stepsᵖ, by least squares in logarithms over the last decades.
@@ -37,9 +76,9 @@ fn growth(drifts: &[Drift], of: fn(&Drift) -> f64) -> f64 {
 pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64, folder: Option<&Path>) -> Result<(), Failure> {
     let decades = (3..).map(|power| 10_u64.pow(power)).take_while(|&count| count <= steps);
     let marks: Vec<u64> = decades.flat_map(|count| [count, 3 * count]).filter(|&count| count <= steps).collect();
-    let dials = dials();
+    let dials = long_runs();
     for (scalar, name) in SCALARS.into_iter().enumerate() {
-        let runs = dials.par_iter().map(|dial| dial.drift[scalar](&Setup::ordinary(), &marks));
+        let runs = dials.par_iter().map(|dial| drift(dial, scalar, &Setup::ordinary(), &marks));
         let runs: Vec<Vec<Drift>> = runs.collect::<Result<_, _>>()?;
         say(format_args!(
             "Long runs, {name}: root mean square between {:.0e} and {:.0e} steps of h = {}, relative, and the exponent p of steps^p\n",
@@ -58,7 +97,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64, folder: Optio
             }
             for &Drift { steps, energy, momentum, constraint } in drifts {
                 let cell = Cell { energy, momentum, constraint, ..Cell::of(Ok(()), steps) };
-                map.add(SECTION, dial, scalar, "root mean squares", &cell)?;
+                map.add_run(SECTION, (dial.scene, dial.name), name, "root mean squares", &cell)?;
             }
             claim(claims, dial, name, scalar, drifts);
             rows.push(row);
@@ -70,7 +109,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, steps: u64, folder: Optio
 }
 
 /// Momenta go like random roundings, 2 ε √steps; constraints do not grow; energies are those of the scheme, or go as momenta do.
-fn claim(claims: &mut Claims, dial: &Dial, name: &str, scalar: usize, drifts: &[Drift]) {
+fn claim(claims: &mut Claims, dial: &LongRun, name: &str, scalar: usize, drifts: &[Drift]) {
     let Some(last) = drifts.last() else { return };
     let epsilon = [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
     let of = format!("long runs, {name}, {}, {}", dial.scene, dial.name);
@@ -86,7 +125,7 @@ fn claim(claims: &mut Claims, dial: &Dial, name: &str, scalar: usize, drifts: &[
 /// Steps from which on exponents are those of growth, and not of where the runs began.
 const LONG: u64 = 10_000_000;
 
-fn draw(dials: &[Dial], runs: &[Vec<Drift>], scalar: &str, folder: Option<&Path>) -> Result<(), Failure> {
+fn draw(dials: &[LongRun], runs: &[Vec<Drift>], scalar: &str, folder: Option<&Path>) -> Result<(), Failure> {
     let name = format!("extremes_drift_{scalar}");
     let path = folder.map(|folder| folder.join(&name).with_extension("svg"));
     // as long as the margin is wide

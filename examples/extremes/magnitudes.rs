@@ -5,7 +5,8 @@
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS, refusal};
-use crate::probe::{Cell, Dial, Setup};
+use crate::probe::{Cell, Dial};
+use crate::setup::Setup;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::scene::{Failure, say};
 use clebsch_examples::table::aligned;
@@ -98,11 +99,11 @@ fn reach(
     unit: Unit,
     (sign, end): (i32, i32),
 ) -> Result<Reach, Failure> {
-    let ordinary = dial.run[scalar](&Setup::ordinary(), steps, false);
+    let ordinary = dial.run(scalar, &Setup::ordinary(), steps, false);
     let rounding = 1e3 * [f64::EPSILON, f64::from(f32::EPSILON)][scalar];
     let (mut same, mut near) = (0, 0);
     for k in (4..=end).step_by(4) {
-        let cell = dial.run[scalar](&unit.scaled(sign * k), steps, false);
+        let cell = dial.run(scalar, &unit.scaled(sign * k), steps, false);
         let value = format!("{} 2^{}", ["mass", "length", "time"][unit as usize], sign * k);
         map.add(SECTION, dial, scalar, &value, &cell)?;
         let difference = difference(&cell, &ordinary, unit.of_momentum(sign * k));

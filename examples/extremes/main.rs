@@ -8,10 +8,12 @@ mod inertia;
 mod long_runs;
 mod magnitudes;
 mod map;
+mod motion;
 mod potentials;
 mod probe;
 mod random;
 mod random_states;
+mod setup;
 mod starts;
 mod step_sizes;
 

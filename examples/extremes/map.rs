@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// The scalar types, in the order of [`Dial::run`].
+/// The scalar types, in the order of [`Dial::begin`].
 pub const SCALARS: [&str; 2] = ["f64", "f32"];
 
 /// What has been run so far.

@@ -2,10 +2,13 @@
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS};
-use crate::probe::{Cell, Dial, Sample, Setup};
+use crate::probe::{Cell, Dial};
 use crate::random::Random;
+use crate::setup::Setup;
+use clebsch::Error;
 use clebsch::implicit::LINEARIZATIONS;
 use clebsch_examples::claims::Claims;
+use clebsch_examples::counted::iterations;
 use clebsch_examples::scene::{Failure, say};
 use clebsch_examples::table::aligned;
 use rayon::prelude::*;
@@ -40,6 +43,65 @@ fn body(random: &mut Random) -> Setup {
     setup.with_velocity(velocity)
 }
 
+/// What many steps took.
+#[derive(Clone, Debug, Default)]
+struct Sample {
+    /// Steps that were made.
+    done: u64,
+    /// How many of them took so many iterations, up to 63.
+    iterations: Vec<u64>,
+    /// The most iterations of one that was made.
+    most: u32,
+    /// Steps that have no solution.
+    too_long: u64,
+    /// The most iterations of one that was not made.
+    most_refused: u32,
+    /// Steps that were given up.
+    not_converged: u64,
+    /// Steps with another error, and states that were refused.
+    others: u64,
+    /// Numbers that are not finite, handed out as results.
+    hidden: u64,
+    /// The largest |F⁻ℓd(q, F) − N|, over momenta, of one in a hundred steps with h|ω| below one.
+    missed: f64,
+}
+
+/// One step from each of `states` random states of a body: its attitude, any direction, and h|ω| of any size from 1e-8 to ten.
+fn sample(dial: &Dial, scalar: usize, setup: &Setup, states: u64, seed: u64, sample: &mut Sample) {
+    sample.iterations.resize(64, 0);
+    let Ok(mut motion) = (dial.begin[scalar])(setup) else {
+        sample.others += states;
+        return;
+    };
+    let (mut random, size) = (Random::new(seed), setup.momentum.norm());
+    for number in 0..states {
+        let part = 10.0_f64.powf(random.between(-8.0, 1.0));
+        let setup = Setup { momentum: random.direction() * (size * part), ..setup.clone() };
+        if motion.restart(&setup).is_err() {
+            sample.others += 1;
+            continue;
+        }
+        let (stepped, count) = iterations(|| motion.step());
+        match stepped {
+            Ok(()) => {
+                sample.done += 1;
+                sample.iterations[count.min(63) as usize] += 1;
+                sample.most = sample.most.max(count);
+                sample.hidden += u64::from(!motion.is_finite());
+                let is_measured = number % 100 == 0 && motion.has_equation();
+                if is_measured && setup.h * setup.velocity().norm() < 1.0 && motion.restart(&setup).is_ok() {
+                    sample.missed = sample.missed.max(motion.residual().unwrap_or(0.0));
+                }
+                continue;
+            }
+            Err(Error::Unsolvable { .. }) => sample.too_long += 1,
+            Err(Error::NotConverged { .. }) => sample.not_converged += 1,
+            Err(_) => sample.others += 1,
+        }
+        sample.most_refused = sample.most_refused.max(count);
+    }
+}
+
 /// `states` random states of each scene, as many with each dial in each type.
 pub fn explore(map: &mut Map<'_>, claims: &mut Claims, states: u64) -> Result<(), Failure> {
     let dials = dials();
@@ -50,7 +112,7 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims, states: u64) -> Result<()
         let states = states / kinds.iter().filter(|(_, other)| other.scene == dial.scene).count() as u64;
         for number in 0..states.div_ceil(STATES) {
             let setup = body(&mut random);
-            dial.sample[scalar](&setup, STATES.min(states), number, &mut sample);
+            self::sample(dial, scalar, &setup, STATES.min(states), number, &mut sample);
         }
         sample
     });

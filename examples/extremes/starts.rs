@@ -2,7 +2,8 @@
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS, outcome, size};
-use crate::probe::{Cell, Dial, Setup};
+use crate::probe::{Cell, Dial};
+use crate::setup::Setup;
 use crate::step_sizes::heading;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::{Failure, say};
@@ -90,7 +91,7 @@ fn table(
     for (start, setup) in starts {
         let mut row = vec![start.clone()];
         for dial in dials {
-            let cell = dial.run[scalar](setup, steps, false);
+            let cell = dial.run(scalar, setup, steps, false);
             map.add(SECTION, dial, scalar, start, &cell)?;
             row.push(match cell.outcome {
                 Ok(()) => format!("{} it, {}, {}", cell.iterations, size(cell.momentum), size(cell.constraint)),

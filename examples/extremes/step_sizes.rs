@@ -2,8 +2,9 @@
 
 use crate::declarations::{bodies, pendulums, solves, tops};
 use crate::map::{Map, SCALARS, outcome, size};
-use crate::probe::{Cell, Dial, Setup};
+use crate::probe::{Cell, Dial};
 use crate::random::Random;
+use crate::setup::Setup;
 use clebsch::Error;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::figure::{self, BLUE, Curve, Decades, GREEN, INK, ORANGE, PURPLE, RED, RGBColor, TEAL};
@@ -87,7 +88,7 @@ fn table(
     for angle in ANGLES {
         let mut row = vec![format!("{angle:.3e}")];
         for ((dial, curve), worst) in dials.iter().zip(&mut curves).zip(&mut worst) {
-            let cell = dial.run[scalar](&at(angle), steps, angle > 1e-7);
+            let cell = dial.run(scalar, &at(angle), steps, angle > 1e-7);
             map.add(SECTION, dial, scalar, &format!("{angle:e}"), &cell)?;
             if cell.outcome.is_ok() {
                 curve.push((angle, cell.energy.max(1e-17)));
@@ -179,7 +180,7 @@ fn last_ringed(points: &[(f64, f64)]) -> Vec<bool> {
 fn bound(dial: &Dial, setup: &Setup) -> Option<f64> {
     let refused = |angle: f64| {
         let h = angle / setup.velocity().norm();
-        let step = (dial.step)(&Setup { h, ..setup.clone() });
+        let step = dial.step(&Setup { h, ..setup.clone() });
         matches!(step, Err(Error::Unsolvable { .. } | Error::NotConverged { .. }))
     };
     let (mut low, mut high) = (1e-3, 1e3);
@@ -263,8 +264,7 @@ fn branches(claims: &mut Claims, count: u32) {
             let setup = random_body(&mut random);
             let longest = bound(dial, &setup).map_or(LONGEST, |bound| (0.97 * bound).min(LONGEST));
             let h = longest / setup.velocity().norm();
-            let place =
-                |s: f64| dial.run[0](&Setup { h, momentum: setup.momentum * s, ..setup.clone() }, 1, false).last;
+            let place = |s: f64| dial.place(&Setup { h, momentum: setup.momentum * s, ..setup.clone() });
             const PARTS: u32 = 64;
             let ends = |part: u32| [part - 1, part].map(|part| f64::from(part) / f64::from(PARTS));
             jumps += (1..=PARTS).filter(|part| has_jump(&place, ends(*part), 20)).count();
