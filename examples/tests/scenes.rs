@@ -2,8 +2,10 @@
 //!
 //! `cargo test` builds the examples first; with `--test scenes` alone, run `cargo build --examples` before.
 
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Name, and the columns of the CSV file.
 const SCENES: [(&str, &str); 19] = [
@@ -59,6 +61,21 @@ fn refusal(scene: &str, arguments: &[&str]) -> String {
     errors
 }
 
+/// Runs a check for each case, beside each other: as many at once as the machine has cores. The test fails where one of them does.
+fn for_each<T: Sync>(cases: &[T], check: impl Fn(&T) + Sync) {
+    let next = AtomicUsize::new(0);
+    let workers = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    check(case);
+                }
+            });
+        }
+    });
+}
+
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
@@ -69,14 +86,14 @@ fn text(path: &Path) -> &str {
 
 #[test]
 fn defaults_hold_all_their_claims() {
-    for (scene, _) in SCENES {
+    for_each(&SCENES, |(scene, _)| {
         let figure = file(&format!("{scene}-default.svg"));
         let output = run(scene, &["--figure", text(&figure)]);
         let report = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{scene}: {report}{}", String::from_utf8_lossy(&output.stderr));
         assert!(report.contains("  holds  ") && !report.contains("  skipped  "), "{scene}: {report}");
         assert!(std::fs::read_to_string(figure).expect("the figure").contains("<polyline"));
-    }
+    });
 }
 
 /// Scenes of plans, which short runs do not suit: name, flags, and the columns of the CSV file.
@@ -91,7 +108,7 @@ const PLANS: [(&str, &[&str], &str); 2] = [
 
 #[test]
 fn plans_hold_all_their_claims_and_write_the_promised_columns() {
-    for (scene, arguments, columns) in PLANS {
+    for_each(&PLANS, |&(scene, arguments, columns)| {
         let (csv, figure) = (file(&format!("{scene}-plan.csv")), file(&format!("{scene}-plan.svg")));
         let output = run(scene, &[arguments, &["--csv", text(&csv), "--figure", text(&figure)]].concat());
         let report = String::from_utf8_lossy(&output.stdout);
@@ -101,7 +118,7 @@ fn plans_hold_all_their_claims_and_write_the_promised_columns() {
         assert_eq!(written.lines().next(), Some(columns), "{scene}");
         assert!(written.lines().all(|line| line.split(',').count() == columns.split(',').count()), "{scene}");
         assert!(std::fs::read_to_string(figure).expect("the figure").contains("<polyline"));
-    }
+    });
 }
 
 /// The study is no scene: it has its own flags. The pendulum is the fastest of its systems.
@@ -122,7 +139,7 @@ fn work_and_precision_hold_their_claims() {
 
 #[test]
 fn other_flags_hold_all_their_claims() {
-    for (scene, arguments) in [
+    let cases = [
         ("sphere_geodesics", &["--sphere", "3"][..]),
         ("sphere_geodesics", &["--sphere", "3", "--velocity", "0,0,0,0", "--steps", "10"]),
         ("sphere_geodesics", &["--sphere", "3", "--discretization", "exponential", "--steps", "2000"]),
@@ -175,18 +192,19 @@ fn other_flags_hold_all_their_claims() {
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
         ("inertia_estimation", &["--spin", "0,0,2.67", "--radius", "1e9", "--step-size", "0.5", "--steps", "1200"]),
-    ] {
-        let figure = file(&format!("{scene}-other.svg"));
+    ];
+    for_each(&cases, |&(scene, arguments)| {
+        let figure = file(&format!("{scene}{}.svg", arguments.concat()));
         let output = run(scene, &[arguments, &["--figure", text(&figure)]].concat());
         let report = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{scene} {arguments:?}: {report}{}", String::from_utf8_lossy(&output.stderr));
         assert!(report.contains("  holds  "), "{scene} {arguments:?}: {report}");
-    }
+    });
 }
 
 #[test]
 fn short_runs_of_both_orders_write_the_promised_columns() {
-    for (scene, columns) in SCENES {
+    for_each(&SCENES, |&(scene, columns)| {
         for order in ["1", "2"] {
             let (csv, figure) = (file(&format!("{scene}-{order}.csv")), file(&format!("{scene}-{order}.svg")));
             let arguments =
@@ -200,7 +218,7 @@ fn short_runs_of_both_orders_write_the_promised_columns() {
             assert_eq!(steps, ["0", "4", "8"], "{scene}");
             assert!(lines[1..].iter().all(|line| line.split(',').count() == columns.split(',').count()), "{scene}");
         }
-    }
+    });
 }
 
 /// The largest systems of scenes, both orders: name, flags, and the number of columns of the CSV file.
@@ -317,8 +335,7 @@ fn mistakes_are_explained() {
 /// All sections of the map, with little work: each prints its tables, its claims hold, and every cell is written.
 #[test]
 fn the_map_of_the_edge_holds_its_claims() {
-    let csv = file("extremes.csv");
-    for (section, word, cells) in [
+    let sections = [
         ("step-sizes", "most: off 31 digits", 1000),
         ("inertia", "needle, 1e-12", 200),
         ("magnitudes", "length", 5000),
@@ -326,7 +343,9 @@ fn the_map_of_the_edge_holds_its_claims() {
         ("potentials", "order 16", 70),
         ("random-states", "iterations", 18),
         ("long-runs", "exponent p", 90),
-    ] {
+    ];
+    for_each(&sections, |&(section, word, cells)| {
+        let csv = file(&format!("extremes-{section}.csv"));
         let arguments = ["--quick", "--section", section, "--csv", text(&csv)];
         let output = run("extremes", &arguments);
         let report = String::from_utf8_lossy(&output.stdout);
@@ -336,7 +355,7 @@ fn the_map_of_the_edge_holds_its_claims() {
         assert!(written.starts_with("section,scene,dial,scalar,value,outcome,"));
         assert!(written.lines().all(|line| line.split(',').count() == 13), "{section}");
         assert!(written.lines().count() > cells, "{section}: {}", written.lines().count());
-    }
+    });
     let errors = refusal("extremes", &["--section", "nothing"]);
     assert!(errors.contains("step-sizes"), "{errors}");
 }
