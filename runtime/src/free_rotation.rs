@@ -169,13 +169,14 @@ impl<T: Scalar> FreeRotation<T> {
     ///
     /// # Errors
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
-    #[inline]
+    #[inline(always)]
     pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let (w, x) = in_lanes(|lane| match self.modified_inertia(lane, &of_lane(&m, lane)) {
-            Some(d) => Ok(self.turned(lane, &d, &of_lane(&m, lane))),
-            None => self.long_turn(lane, &of_lane(&m, lane)),
-        })?;
+        let (w, x) = match T::LANES {
+            // no closure: it would be called, and the turn would go through memory
+            1 => in_one_lane(self.lane_turned(0, &m)?),
+            _ => in_lanes(|lane| self.lane_turned(lane, &m))?,
+        };
         Ok((w, self.in_coordinates(x)))
     }
 
@@ -217,14 +218,14 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     /// d_i x of the whole time in a lane, or the coefficients of d; `None` where that is beyond the reach of the series.
-    #[inline]
+    #[inline(always)]
     fn modified_inertia(&self, lane: usize, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
         let invariants = self.invariants(lane, m);
         self.sum_of_series(lane, invariants).map(|sum| self.scaled(lane, sum))
     }
 
     /// α = |m|² and ε = m·Xm.
-    #[inline]
+    #[inline(always)]
     fn invariants(&self, lane: usize, m: &[T::Lane; 3]) -> [T::Lane; 2] {
         let squares = m.map(|component| component * component);
         let epsilon = match &self.axes {
@@ -241,7 +242,7 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     /// x_i d_i, or the coefficients of X d, and τ²/4 ℘(τ/2), by the polynomial of the least degree that is enough.
-    #[inline]
+    #[inline(always)]
     fn sum_of_series(&self, lane: usize, [alpha, epsilon]: [T::Lane; 2]) -> Option<[T::Lane; 4]> {
         macro_rules! degrees {
             ($($number:literal $degree:literal),*) => {$(
@@ -270,7 +271,7 @@ impl<T: Scalar> FreeRotation<T> {
         sum
     }
 
-    #[inline]
+    #[inline(always)]
     fn scaled(&self, lane: usize, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
         match &self.axes {
             Axes::Tensor { .. } if T::DERIVATIVES > 0 => [a, b, c],
@@ -282,7 +283,7 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     /// A multiple of the quaternion with d ρ − m × ρ = ρ₀ m.
-    #[inline]
+    #[inline(always)]
     fn turned(&self, lane: usize, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> (T::Lane, [T::Lane; 3]) {
         match &self.axes {
             Axes::Tensor { inertia, reciprocal, .. } if T::DERIVATIVES > 0 => {
@@ -325,17 +326,46 @@ impl<T: Scalar> FreeRotation<T> {
     ///
     /// # Errors
     /// As [`turn`](Self::turn).
-    #[inline]
+    #[inline(always)]
     pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
         let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let (w, x) = in_lanes(|lane| {
-            let ([[a, b, c, part]], m) = (lane_of(kept, lane).data.0, of_lane(&m, lane));
-            match part == <T::Lane as One>::one() {
-                true => Ok(self.turned(lane, &[a, b, c], &m)),
-                false => self.long_turn_of(lane, &[a, b, c], part, &m),
-            }
-        })?;
+        let (w, x) = match T::LANES {
+            // as in `turn`
+            1 => in_one_lane(self.lane_turned_of(0, kept, &m)?),
+            _ => in_lanes(|lane| self.lane_turned_of(lane, kept, &m))?,
+        };
         Ok((w, self.in_coordinates(x)))
+    }
+
+    /// The turn of one lane.
+    ///
+    /// # Errors
+    /// As [`turn`](Self::turn).
+    #[inline(always)]
+    fn lane_turned(&self, lane: usize, m: &[T; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
+        let m = of_lane(m, lane);
+        match self.modified_inertia(lane, &m) {
+            Some(d) => Ok(self.turned(lane, &d, &m)),
+            None => self.long_turn(lane, &m),
+        }
+    }
+
+    /// The same of a motion that keeps `kept`.
+    ///
+    /// # Errors
+    /// As [`turn_of`](Self::turn_of).
+    #[inline(always)]
+    fn lane_turned_of(
+        &self,
+        lane: usize,
+        kept: &KeptRotation<T>,
+        m: &[T; 3],
+    ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
+        let ([[a, b, c, part]], m) = (lane_of(kept, lane).data.0, of_lane(m, lane));
+        match part == <T::Lane as One>::one() {
+            true => Ok(self.turned(lane, &[a, b, c], &m)),
+            false => self.long_turn_of(lane, &[a, b, c], part, &m),
+        }
     }
 
     /// The same for a lane whose motion was made longer by duplication, or is too long for that.
@@ -526,6 +556,12 @@ fn of_lane<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane
     numbers.map(|number| number.lane(lane))
 }
 
+/// The turn of a single number.
+#[inline(always)]
+fn in_one_lane<T: Scalar>((w, x): (T::Lane, [T::Lane; 3])) -> (T, [T; 3]) {
+    (T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry)))
+}
+
 /// What a function of the lane gives, side by side; NaN in the lanes that fail.
 ///
 /// # Errors
@@ -535,8 +571,7 @@ fn in_lanes<T: Scalar>(
     mut value: impl FnMut(usize) -> Result<(T::Lane, [T::Lane; 3]), Error>,
 ) -> Result<(T, [T; 3]), Error> {
     if T::LANES == 1 {
-        let (w, x) = value(0)?;
-        return Ok((T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry))));
+        return Ok(in_one_lane(value(0)?));
     }
     let nothing = T::Lane::from_f64(f64::NAN);
     let all = each_lane::<T, _>((nothing, [nothing; 3]), value)?;

@@ -61,7 +61,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     ///
     /// The provided method is [`Jacobian::solve`], for a matrix elimination with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
     /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`](crate::linear::solve_dense) for each block on its diagonal.
-    #[inline]
+    #[inline(always)]
     fn correct(jacobian: &Self::Jacobian, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
         jacobian.solve(residual)
     }
@@ -152,7 +152,7 @@ fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
 /// # Errors
 /// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
 /// one; [`Error::NotFinite`] where `target` or the equation is not; [`Error::NotConverged`] where the work was not enough.
-#[inline]
+#[inline(always)]
 pub fn solve<T: Scalar, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
     target: &SVector<T, N>,
@@ -161,7 +161,7 @@ pub fn solve<T: Scalar, const M: usize, const N: usize>(
 }
 
 /// The same after `spent` iterations of another kind.
-#[inline]
+#[inline(always)]
 fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
@@ -169,7 +169,9 @@ fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
 ) -> Result<SVector<T, M>, Error> {
     let (xi, solved, made) = newton(equation, target, allowed(QUICK, E::limit(), spent));
     if !solved.all() {
-        return lane::follow(equation, target, xi, solved, spent + made);
+        // a copy on the cold path only, as within the iteration
+        let reached = xi;
+        return lane::follow(equation, target, &reached, solved, spent + made);
     }
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
@@ -180,7 +182,7 @@ fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
 /// would come next, and is not made if it is negligible. The predictor counts as the correction of ξ = 0, and where it is 0 the
 /// first correction is the predictor.
-#[inline]
+#[inline(always)]
 fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
@@ -240,8 +242,10 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         }
         let others = open & !unpredicted & !contracts;
         if made > 1 && others.any() {
-            let arrived = others & is_round_off(&residual, &jacobian, &old);
-            let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&residual, &residual_before);
+            // copies on the cold path only: what is passed by reference lies in memory in every iteration
+            let (rest, linear, from, rest_before) = (residual, jacobian, old, residual_before);
+            let arrived = others & is_round_off(&rest, &linear, &from);
+            let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&rest, &rest_before);
             (solved, open) = (solved | arrived, open & !arrived & !(others & strays));
             if !open.any() {
                 break;

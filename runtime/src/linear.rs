@@ -118,7 +118,13 @@ pub fn solve_dense<T: Scalar, const M: usize>(
         return eliminated(a, b);
     }
     let (x, orientation, safe) = cofactors::solve(a, b);
-    if safe.all() { Some((x, orientation)) } else { eliminated_at_last((a, b), (x, orientation, safe)) }
+    if safe.all() {
+        return Some((x, orientation));
+    }
+    // Copies on the cold path only: what is passed by reference lies in memory in every solve, and what is returned whole does too.
+    let (a, b, own) = (*a, *b, x);
+    let (x, orientation) = eliminated_at_last((&a, &b), &own, orientation, safe)?;
+    Some((x, orientation))
 }
 
 /// The same where cofactors do not serve in all lanes: near the ends of the exponent range in other units, in which the digits are those of numbers
@@ -127,8 +133,11 @@ pub fn solve_dense<T: Scalar, const M: usize>(
 #[inline(never)]
 fn eliminated_at_last<T: Scalar, const M: usize>(
     (a, b): (&SMatrix<T, M, M>, &SVector<T, M>),
-    (mut x, mut orientation, mut safe): (SVector<T, M>, Orientation, T::Mask),
+    x: &SVector<T, M>,
+    mut orientation: Orientation,
+    mut safe: T::Mask,
 ) -> Option<(SVector<T, M>, Orientation)> {
+    let mut x = *x;
     let unit = power_of_two_near(a.max_abs());
     let (other, turned, other_safe) = cofactors::solve(&a.map(|entry| entry * unit), &b.map(|entry| entry * unit));
     if (!safe & other_safe).any() {

@@ -20,10 +20,11 @@ use num_traits::Zero;
 pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
-    mut xi: SVector<T, M>,
+    xi: &SVector<T, M>,
     solved: T::Mask,
     made: u32,
 ) -> Result<SVector<T, M>, Error> {
+    let mut xi = *xi;
     let mut failure = None;
     let mut is_solved = solved.any();
     for lane in (0..T::LANES).filter(|&lane| !solved.lane(lane)) {

@@ -44,7 +44,12 @@ pub fn solve_linear_equation<T: Scalar, E: LinearEquation<T, M, N>, const M: usi
         (Some((xi, orientation)), Some(branch)) => (xi, orientation.agrees::<T>(branch) & xi.finite()),
         _ => (b, T::Mask::nowhere()),
     };
-    if solved.all() { Ok(xi) } else { lane::follow(&Iterated(equation), target, xi, solved, 1) }
+    if solved.all() {
+        return Ok(xi);
+    }
+    // a copy on the cold path only
+    let reached = xi;
+    lane::follow(&Iterated(equation), target, &reached, solved, 1)
 }
 
 /// The same equation for the solver that follows the path from the identity.
