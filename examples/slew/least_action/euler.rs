@@ -80,19 +80,15 @@ impl Euler {
         let motion = Motion::unpack(y);
         let omega = self.inverse_inertia * motion.momentum;
         let spin = self.inverse_inertia * motion.change;
-        let mut by_momentum = spin;
-        let mut change = Matrix3::zeros();
-        for j in 0..3 {
-            let (eta, delta): (Vector3<f64>, Vector3<f64>) =
-                (motion.by_momentum.column(j).into(), motion.change.column(j).into());
-            by_momentum.set_column(j, &(spin.column(j) + eta.cross(&omega)));
-            change.set_column(j, &(delta.cross(&omega) + motion.momentum.cross(&spin.column(j))));
-        }
+        let column = |matrix: &Matrix3<f64>, j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
+        let by_momentum = [0, 1, 2].map(|j| column(&spin, j) + column(&motion.by_momentum, j).cross(&omega));
+        let change =
+            [0, 1, 2].map(|j| column(&motion.change, j).cross(&omega) + motion.momentum.cross(&column(&spin, j)));
         let rate = Motion {
             attitude: motion.attitude * omega.cross_matrix(),
             momentum: motion.momentum.cross(&omega),
-            by_momentum,
-            change,
+            by_momentum: Matrix3::from_columns(&by_momentum),
+            change: Matrix3::from_columns(&change),
             error: 0.0,
         };
         rate.pack()
@@ -100,14 +96,23 @@ impl Euler {
 }
 
 impl Motion {
+    // slices, as iterators over columns and parts take longer than the equations
     fn pack(&self) -> SVector<f64, 30> {
-        let parts = [self.attitude.as_slice(), self.momentum.as_slice()];
-        let parts = parts.into_iter().chain([self.by_momentum.as_slice(), self.change.as_slice()]);
-        SVector::from_iterator(parts.flatten().copied())
+        let mut y = SVector::<f64, 30>::zeros();
+        let numbers = y.as_mut_slice();
+        numbers[..9].copy_from_slice(self.attitude.as_slice());
+        numbers[9..12].copy_from_slice(self.momentum.as_slice());
+        numbers[12..21].copy_from_slice(self.by_momentum.as_slice());
+        numbers[21..].copy_from_slice(self.change.as_slice());
+        y
     }
 
     fn unpack(y: &SVector<f64, 30>) -> Self {
-        let matrix = |row: usize| Matrix3::from_column_slice(&y.as_slice()[row..row + 9]);
+        let matrix = |row: usize| {
+            let mut matrix = Matrix3::<f64>::zeros();
+            matrix.as_mut_slice().copy_from_slice(&y.as_slice()[row..row + 9]);
+            matrix
+        };
         let momentum = y.fixed_rows::<3>(9).into();
         Self { attitude: matrix(0), momentum, by_momentum: matrix(12), change: matrix(21), error: 0.0 }
     }
