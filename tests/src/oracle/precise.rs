@@ -40,6 +40,7 @@ pub mod energy;
 pub mod equation;
 pub mod group;
 pub mod matrix;
+pub mod on_itself;
 pub mod problem;
 pub mod real;
 pub mod step;

@@ -4,21 +4,17 @@ use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::motion::order;
-use clebsch_tests::oracle::precise::double_double::DoubleDouble;
-use clebsch_tests::oracle::precise::equation::Equation;
 use clebsch_tests::oracle::precise::matrix::Matrix;
-use clebsch_tests::oracle::precise::problem::Problem;
-use clebsch_tests::oracle::precise::real::Real;
-use clebsch_tests::oracle::precise::step::{State, composed_trajectory, deviation, trajectory};
+use clebsch_tests::oracle::precise::on_itself::OnItself;
+use clebsch_tests::oracle::precise::step::{State, deviation};
 use clebsch_tests::oracle::random::Random;
 
-use crate::problem::Precise;
 use crate::shapes::Element;
 
 pub const H: f64 = 0.05;
 
 /// A system whose group acts on itself.
-pub trait OnItself:
+pub trait System:
     Clebsch<Scalar = f64, Time = (), Configuration = Self::Q, Element = Self::Q, Momentum = Self::Mu> + Clone
 {
     type Q: Element;
@@ -26,7 +22,7 @@ pub trait OnItself:
     fn momentum(components: &[f64]) -> Self::Mu;
 }
 
-impl<S, Q, const M: usize> OnItself for S
+impl<S, Q, const M: usize> System for S
 where
     S: Clebsch<Scalar = f64, Time = (), Configuration = Q, Element = Q, Momentum = nalgebra::SVector<f64, M>> + Clone,
     Q: Element,
@@ -39,17 +35,17 @@ where
 }
 
 /// exp of an algebra element whose components are at most `size`.
-pub fn element(problem: &Precise, random: &mut Random, size: f64) -> Matrix<f64> {
+pub fn element(problem: &OnItself, random: &mut Random, size: f64) -> Matrix<f64> {
     let components: Vec<f64> = problem.group.basis.iter().map(|_| size * random.number()).collect();
-    problem.group.combination(&components).exponential()
+    problem.element(&components)
 }
 
-pub fn start<S: OnItself>(problem: &Precise, random: &mut Random) -> (S::Q, S::Mu) {
+pub fn start<S: System>(problem: &OnItself, random: &mut Random) -> (S::Q, S::Mu) {
     let components: Vec<f64> = problem.group.basis.iter().map(|_| 0.4 * random.number()).collect();
     (S::Q::lower(&element(problem, random, 0.3)), S::momentum(&components))
 }
 
-fn run<S: OnItself>(system: &S, h: f64, (q, mu): (S::Q, S::Mu), steps: usize) -> Vec<(S::Q, S::Mu)> {
+fn run<S: System>(system: &S, h: f64, (q, mu): (S::Q, S::Mu), steps: usize) -> Vec<(S::Q, S::Mu)> {
     let stepper = system.stepper(h).expect("a regular system");
     let mut state = stepper.state(q, mu).expect("a state");
     let mut states = vec![(q, mu)];
@@ -61,24 +57,20 @@ fn run<S: OnItself>(system: &S, h: f64, (q, mu): (S::Q, S::Mu), steps: usize) ->
 }
 
 /// 20 steps and those of the oracle, in 30 digits.
-pub fn agrees_with_the_oracle<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
+pub fn agrees_with_the_oracle<S: System>(system: &S, problem: &OnItself, random: &mut Random) {
     let start = start::<S>(problem, random);
     let derived = run(system, H, start, 20);
     let states: Vec<_> = derived.iter().map(|(q, mu)| State { q: vec![q.lift()], n: mu.numbers() }).collect();
-    // a lifted start is the start itself, to the last digit
-    let first = states[0].lift::<DoubleDouble>();
-    let h = DoubleDouble::of(H);
     let composed = S::DERIVATION.contains("composed with");
-    let oracle =
-        if composed { composed_trajectory(problem, h, &first, 20) } else { trajectory(problem, h, &first, 20) };
-    let oracle = oracle.expect("a solvable step");
+    // a lifted start is the start itself, to the last digit
+    let oracle = problem.trajectory(composed, H, &states[0], 20).expect("a solvable step");
     let distance = deviation(&oracle, &states);
     assert!(distance < 1e-11, "{}: {distance:.1e} from the oracle", S::NAME);
     assert!(deviation(&oracle[1..], &states[..20]) > 1e-3, "{}: it moves", S::NAME);
 }
 
 /// The end of a motion for steps that halve.
-pub fn is_of_second_order<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
+pub fn is_of_second_order<S: System>(system: &S, problem: &OnItself, random: &mut Random) {
     let start = start::<S>(problem, random);
     let end = |steps: usize| run(system, 0.8 / steps as f64, start, steps)[steps];
     let ends = [16, 32, 64, 128, 256].map(end);
@@ -90,13 +82,10 @@ pub fn is_of_second_order<S: OnItself>(system: &S, problem: &Precise, random: &m
 }
 
 /// F⁻ℓd, F⁺ℓd and J against the exact derivatives of the closures along the basis.
-pub fn derivatives_are_those_of_the_closures<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
+pub fn derivatives_are_those_of_the_closures<S: System>(system: &S, problem: &OnItself, random: &mut Random) {
     for _ in 0..5 {
         let (q, f) = (element(problem, random, 0.5), element(problem, random, 0.3));
-        let at = [q.clone()];
-        let equation = Equation { problem, factors: &problem.factors(), t: 0.0, h: H, q: &at };
-        let (before, after) =
-            (equation.residual(std::slice::from_ref(&f)), equation.next_momentum(std::slice::from_ref(&f)));
+        let [before, after] = problem.legendre(H, &q, &f);
         let (q, f) = (S::Q::lower(&q), S::Q::lower(&f));
         let near = |found: S::Mu, expected: &[f64], what: &str| {
             let size = expected.iter().fold(1.0, |max, x| f64::max(max, x.abs()));
@@ -109,7 +98,7 @@ pub fn derivatives_are_those_of_the_closures<S: OnItself>(system: &S, problem: &
 }
 
 /// Theorem 1 on (q, p) and Theorem 2 on (q, N): the same q, and N = J(q, p) all the way.
-pub fn representations_agree<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
+pub fn representations_agree<S: System>(system: &S, problem: &OnItself, random: &mut Random) {
     let stepper = system.stepper(H).expect("a regular system");
     let (q, _) = start::<S>(problem, random);
     let p = S::Q::from_numbers(&q.numbers().iter().map(|_| 0.3 * random.number()).collect::<Vec<_>>());
@@ -125,7 +114,7 @@ pub fn representations_agree<S: OnItself>(system: &S, problem: &Precise, random:
 }
 
 /// DᵀΩD = Ω for the step on T*Q in the ambient space of matrices, D by differences of sixth order.
-pub fn is_symplectic<S: OnItself>(system: &S, problem: &Precise, random: &mut Random) {
+pub fn is_symplectic<S: System>(system: &S, problem: &OnItself, random: &mut Random) {
     let constants = system.step_constants(H).expect("a regular system");
     let (q, _) = start::<S>(problem, random);
     let n = q.numbers().len();
@@ -163,7 +152,7 @@ pub fn is_symplectic<S: OnItself>(system: &S, problem: &Precise, random: &mut Ra
 }
 
 /// Without potential the spatial momentum Ad*_{q⁻¹} N stays.
-pub fn conserves_the_momentum_of_the_group<S: OnItself>(free: &S, problem: &Precise, random: &mut Random) {
+pub fn conserves_the_momentum_of_the_group<S: System>(free: &S, problem: &OnItself, random: &mut Random) {
     let start = start::<S>(problem, random);
     let spatial = |(q, mu): &(S::Q, S::Mu)| free.coadjoint(&q.inverted(), mu);
     let expected = spatial(&start);
@@ -174,10 +163,10 @@ pub fn conserves_the_momentum_of_the_group<S: OnItself>(free: &S, problem: &Prec
 }
 
 /// The left action on q⁻¹ by F⁻¹ is the same motion, with the opposite momentum.
-pub fn mirrors<R: OnItself, L: OnItself<Q = R::Q, Mu = R::Mu>>(
+pub fn mirrors<R: System, L: System<Q = R::Q, Mu = R::Mu>>(
     right: &R,
     left: &L,
-    problem: &Precise,
+    problem: &OnItself,
     random: &mut Random,
 ) {
     let (q, mu) = start::<R>(problem, random);

@@ -3,13 +3,12 @@
 use clebsch::Clebsch;
 use clebsch_tests::oracle::precise::group::{Group, group, pseudo_so};
 use clebsch_tests::oracle::precise::matrix::Matrix;
+use clebsch_tests::oracle::precise::on_itself::{Kind, Kinetic, OnItself};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::SMatrix;
 
 use crate::algebra::solutions;
 use crate::checks;
-use crate::problem::{Kinetic, Precise};
-use crate::shapes::Kind;
 
 /// FᵀGF = G: the matrices with ξᵀG + Gξ = 0.
 fn form(g: &Matrix<f64>) -> Group {

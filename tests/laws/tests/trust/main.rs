@@ -12,5 +12,4 @@ mod algebra;
 mod built_in;
 mod checks;
 mod declared;
-mod problem;
 mod shapes;

@@ -2,18 +2,8 @@
 
 use clebsch_tests::oracle::flat::Flat;
 use clebsch_tests::oracle::precise::matrix::Matrix;
+use clebsch_tests::oracle::precise::on_itself::{Kind, shown};
 use nalgebra::{Quaternion, SMatrix};
-
-/// What an element is for the oracle, which knows square matrices alone.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The matrix itself.
-    Matrix,
-    /// A vector a as (I a; 0 1).
-    Vector,
-    /// A unit quaternion as the matrix of multiplication by it from the left; it is the last column.
-    Quaternion,
-}
 
 /// A configuration that is an element of the group too.
 pub trait Element: Flat + Copy + std::fmt::Debug {
@@ -34,16 +24,6 @@ pub trait Element: Flat + Copy + std::fmt::Debug {
     /// The inverse element.
     fn inverted(&self) -> Self {
         Self::lower(&self.lift().inverse())
-    }
-}
-
-/// The numbers that a declaration sees of an element.
-pub fn shown<R: Copy>(kind: Kind, matrix: &Matrix<R>) -> Matrix<R> {
-    let n = matrix.shape().0;
-    match kind {
-        Kind::Matrix => matrix.clone(),
-        Kind::Vector => matrix.translation(),
-        Kind::Quaternion => matrix.block(0..n, n - 1..n),
     }
 }
 

@@ -141,21 +141,21 @@ macro_rules! groups {
                 pub cubic: SMatrix<f64, $n, $n>,
             }
 
-            fn problem(kinetic: Kinetic, linear: &SMatrix<f64, $n, $n>, cubic: &SMatrix<f64, $n, $n>) -> Precise {
-                Precise { group: $basis, kind: Kind::Matrix, kinetic, linear: Matrix::from(linear), cubic: Matrix::from(cubic) }
+            fn problem(kinetic: Kinetic, linear: &SMatrix<f64, $n, $n>, cubic: &SMatrix<f64, $n, $n>) -> OnItself {
+                OnItself { group: $basis, kind: Kind::Matrix, kinetic, linear: Matrix::from(linear), cubic: Matrix::from(cubic) }
             }
-            fn right(random: &mut Random, size: f64) -> (Right, Precise) {
+            fn right(random: &mut Random, size: f64) -> (Right, OnItself) {
                 let (linear, cubic) = (random.matrix() * size, random.matrix() * size);
                 let weight = random.inertia();
                 (Right { weight, linear, cubic }, problem(Kinetic::Chord(Matrix::from(&weight)), &linear, &cubic))
             }
-            fn continuous(random: &mut Random, size: f64) -> (Continuous, Precise) {
+            fn continuous(random: &mut Random, size: f64) -> (Continuous, OnItself) {
                 let (linear, cubic) = (random.matrix() * size, random.matrix() * size);
                 let inertia = random.inertia();
                 let kinetic = Kinetic::of(stringify!($discretization), Matrix::from(&inertia));
                 (Continuous { inertia, linear, cubic }, problem(kinetic, &linear, &cubic))
             }
-            fn exponential(random: &mut Random, size: f64) -> (Exponential, Precise) {
+            fn exponential(random: &mut Random, size: f64) -> (Exponential, OnItself) {
                 let (linear, cubic) = (random.matrix() * size, random.matrix() * size);
                 let inertia = random.inertia();
                 let kinetic = Kinetic::Exponential(Matrix::from(&inertia));

@@ -1,11 +1,34 @@
-//! The problem of the table once more, for the oracle.
+//! A group that acts on itself, whatever the group: one problem, so that its steps are compiled once, here, where they are optimised, and not
+//! by each test that holds a system against it.
 
-use clebsch_tests::oracle::precise::group::Group;
-use clebsch_tests::oracle::precise::matrix::Matrix;
-use clebsch_tests::oracle::precise::problem::{Factor, Problem, right};
-use clebsch_tests::oracle::precise::real::Real;
+use super::double_double::DoubleDouble;
+use super::equation::{Equation, NoSolution};
+use super::group::Group;
+use super::matrix::Matrix;
+use super::problem::{Factor, Problem, right};
+use super::real::Real;
+use super::step::{State, composed_trajectory, trajectory};
 
-use crate::shapes::{Kind, shown};
+/// What an element is in a declaration: square matrices alone are known here.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The matrix itself.
+    Matrix,
+    /// A vector a as (I a; 0 1).
+    Vector,
+    /// A unit quaternion as the matrix of multiplication by it from the left; it is the last column.
+    Quaternion,
+}
+
+/// The numbers that a declaration sees of an element.
+pub fn shown<R: Copy>(kind: Kind, matrix: &Matrix<R>) -> Matrix<R> {
+    let n = matrix.shape().0;
+    match kind {
+        Kind::Matrix => matrix.clone(),
+        Kind::Vector => matrix.translation(),
+        Kind::Quaternion => matrix.block(0..n, n - 1..n),
+    }
+}
 
 /// How the kinetic energy is made.
 #[derive(Clone, Debug)]
@@ -22,11 +45,16 @@ pub enum Kinetic {
 
 /// A group that acts on itself from the right, with V(q) = A·q + (B·q)³/3.
 #[derive(Clone, Debug)]
-pub struct Precise {
+pub struct OnItself {
+    /// The group.
     pub group: Group,
+    /// What its elements are.
     pub kind: Kind,
+    /// Its kinetic energy.
     pub kinetic: Kinetic,
+    /// A.
     pub linear: Matrix<f64>,
+    /// B.
     pub cubic: Matrix<f64>,
 }
 
@@ -41,7 +69,31 @@ impl Kinetic {
     }
 }
 
-impl Precise {
+impl OnItself {
+    /// exp of the algebra element with these components.
+    pub fn element(&self, components: &[f64]) -> Matrix<f64> {
+        self.group.combination(components).exponential()
+    }
+
+    /// F⁻ℓd and F⁺ℓd at the time 0.
+    pub fn legendre(&self, h: f64, q: &Matrix<f64>, f: &Matrix<f64>) -> [Vec<f64>; 2] {
+        let (q, f) = (std::slice::from_ref(q), std::slice::from_ref(f));
+        let equation = Equation { problem: self, factors: &self.factors(), t: 0.0, h, q };
+        [equation.residual(f), equation.next_momentum(f)]
+    }
+
+    /// The states of a motion to 30 digits, in steps of ℓd or of ℓd composed with its adjoint.
+    pub fn trajectory(
+        &self,
+        composed: bool,
+        h: f64,
+        start: &State<f64>,
+        steps: usize,
+    ) -> Result<Vec<State<DoubleDouble>>, NoSolution> {
+        let (h, start) = (DoubleDouble::of(h), start.lift());
+        if composed { composed_trajectory(self, h, &start, steps) } else { trajectory(self, h, &start, steps) }
+    }
+
     /// The coordinates of the projection of a matrix to the algebra: G⁻¹⟨A, E_i⟩.
     fn coordinates<R: Real>(&self, a: &Matrix<R>) -> Matrix<R> {
         let basis = &self.group.basis;
@@ -66,7 +118,7 @@ impl Precise {
     }
 }
 
-impl Problem for Precise {
+impl Problem for OnItself {
     fn factors(&self) -> Vec<Factor> {
         vec![right(self.group.clone())]
     }
