@@ -1,9 +1,12 @@
 //! Every entry point of a system, with numbers replaced: an error that names what is wrong, or results that are finite.
+//!
+//! The walk over places and numbers knows systems as a `dyn Trial` and is compiled once.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::slots::Slots;
-use clebsch::{Clebsch, Error, Real, Scalar, Space, State, Stepper};
+use crate::slots::Part;
+use crate::trial::{FORMULAS, Size, Trial};
+use clebsch::Error;
 
 /// What no computation can go on with.
 pub const BROKEN: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -28,20 +31,6 @@ pub const EXTREME: [f64; 14] = [
 
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
-/// A system with its parameters by field, a step size and a place to start from.
-pub trait Scene: Clebsch<Scalar: Real, Configuration: Slots, Momentum: Slots, Input: Slots> + Clone {
-    /// The system with ordinary parameters.
-    fn ordinary() -> Self;
-    /// A step size of it.
-    fn step_size() -> Self::Scalar;
-    /// A configuration on its orbit.
-    fn configuration() -> Self::Configuration;
-    /// The fields that formulas read, and how many numbers are in each.
-    fn fields(&mut self) -> Vec<(&'static str, usize)>;
-    /// The system with the number `value` at a place of a field.
-    fn with_field(self, field: &str, place: usize, value: f64) -> Self;
-}
-
 /// What has failed.
 pub struct Report {
     scene: &'static str,
@@ -51,7 +40,7 @@ pub struct Report {
 }
 
 impl Report {
-    pub fn new(scene: &'static str) -> Report {
+    fn new(scene: &'static str) -> Report {
         Report { scene, failures: Vec::new(), counts: [0; 2] }
     }
 
@@ -62,26 +51,9 @@ impl Report {
         }
     }
 
-    /// A call whose result has to be finite; what it returns, unless it fails or panics.
-    fn call<R>(
-        &mut self,
-        at: (&str, &str),
-        call: impl FnOnce() -> Result<R, Error>,
-        is_finite: impl FnOnce(&R) -> bool,
-    ) -> Option<R> {
-        let result = catch_unwind(AssertUnwindSafe(call));
-        let outcome = match &result {
-            Err(_) => Outcome::Panicked,
-            Ok(Err(error)) => Outcome::Refused(*error),
-            Ok(Ok(value)) => Outcome::Returned { is_finite: is_finite(value) },
-        };
-        let is_good = self.judge(at, outcome);
-        result.ok().and_then(Result::ok).filter(|_| is_good)
-    }
-
-    /// Whether a call gave something to go on with. Compiled once, while calls are compiled for each system.
-    fn judge(&mut self, (place, entry): (&str, &str), outcome: Outcome) -> bool {
-        match outcome {
+    /// A call whose result has to be finite; whether it gave one to go on with.
+    fn call(&mut self, (place, entry): (&str, &str), call: &mut dyn FnMut() -> Result<bool, Error>) -> bool {
+        match outcome(call) {
             Outcome::Panicked => self.fail(place, &format!("`{entry}` panicked")),
             Outcome::Refused(error) => {
                 self.counts[1] += 1;
@@ -90,45 +62,50 @@ impl Report {
                     self.fail(place, &format!("`{entry}` says {text}"));
                 }
             }
-            Outcome::Returned { is_finite: true } => self.counts[0] += 1,
+            Outcome::Returned { is_finite: true } => {
+                self.counts[0] += 1;
+                return true;
+            }
             Outcome::Returned { is_finite: false } => {
                 self.fail(place, &format!("`{entry}` gave a result that is not finite"));
             }
         }
-        matches!(outcome, Outcome::Returned { is_finite: true })
+        false
+    }
+
+    /// An entry point that takes what the trial holds.
+    fn entry(&mut self, place: &str, entry: &str, trial: &mut dyn Trial) -> bool {
+        self.call((place, entry), &mut || trial.call(entry))
     }
 
     /// A formula that has no error to give: it may pass on what it is given.
-    fn formula<R>(&mut self, (place, entry): (&str, &str), formula: impl FnOnce() -> R) {
-        if catch_unwind(AssertUnwindSafe(formula)).is_err() {
+    fn formula(&mut self, place: &str, entry: &str, trial: &mut dyn Trial) {
+        if matches!(outcome(&mut || trial.call(entry)), Outcome::Panicked) {
             self.fail(place, &format!("`{entry}` panicked"));
         }
     }
 
     /// A call that has to refuse, naming this.
-    fn refused<R>(&mut self, at: (&str, &str), call: impl FnOnce() -> Result<R, Error>, named: &str) {
-        let outcome = match catch_unwind(AssertUnwindSafe(call)) {
-            Err(_) => Outcome::Panicked,
-            Ok(Err(error)) => Outcome::Refused(error),
-            Ok(Ok(_)) => Outcome::Returned { is_finite: true },
-        };
-        self.judge_refusal(at, outcome, named);
-    }
-
-    /// Whether it did; compiled once too.
-    fn judge_refusal(&mut self, (place, entry): (&str, &str), outcome: Outcome, named: &str) {
+    fn refused(&mut self, (place, entry): (&str, &str), call: &mut dyn FnMut() -> Result<bool, Error>, named: &str) {
         let names = |error: Error| match error {
             Error::NotFinite { name } => name == named,
             Error::StepSize { .. } => named == "the step size",
             _ => false,
         };
-        match outcome {
+        match outcome(call) {
             Outcome::Refused(error) if names(error) => self.counts[1] += 1,
             Outcome::Refused(error) => {
                 self.fail(place, &format!("`{entry}` says {error:?} and not that {named} is broken"));
             }
             Outcome::Returned { .. } => self.fail(place, &format!("`{entry}` takes it")),
             Outcome::Panicked => self.fail(place, &format!("`{entry}` panicked")),
+        }
+    }
+
+    /// Entry points that have to refuse what the trial holds.
+    fn all_refused(&mut self, place: &str, entries: &[&str], trial: &mut dyn Trial, named: &str) {
+        for entry in entries {
+            self.refused((place, entry), &mut || trial.call(entry), named);
         }
     }
 }
@@ -141,113 +118,71 @@ enum Outcome {
     Returned { is_finite: bool },
 }
 
-fn is_finite<S: Clebsch>(state: &State<S>) -> bool {
-    state.configuration().is_finite() && state.momentum().is_finite()
-}
-
-/// A momentum that motions of the configuration can have.
-pub fn momentum<S: Scene>(stepper: &Stepper<S>) -> S::Momentum {
-    let momentum = S::Momentum::filled(Scalar::from_ratio(3, 10));
-    stepper.project(&S::configuration(), &momentum).expect("a projection")
-}
-
-/// A step that is compiled once for all calls.
-#[inline(never)]
-pub fn step<S: Clebsch>(stepper: &Stepper<S>, state: &State<S>) -> Result<State<S>, Error> {
-    stepper.step(state)
-}
-
-/// The same with an input.
-#[inline(never)]
-fn step_with<S: Clebsch>(stepper: &Stepper<S>, state: &State<S>, input: &S::Input) -> Result<State<S>, Error> {
-    stepper.step_with(state, input)
+fn outcome(call: &mut dyn FnMut() -> Result<bool, Error>) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(call)) {
+        Err(_) => Outcome::Panicked,
+        Ok(Err(error)) => Outcome::Refused(error),
+        Ok(Ok(is_finite)) => Outcome::Returned { is_finite },
+    }
 }
 
 /// All entry points that take a state, from (q, N).
-pub fn steps<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, q: S::Configuration, mu: S::Momentum) {
-    let at = |entry| (place, entry);
-    let (zero, small) = (S::Scalar::from_f64(0.0), S::Scalar::from_f64(0.1));
-    formulas(report, place, stepper, q, mu);
-    report.call(at("project"), || stepper.project(&q, &mu), |mu| mu.is_finite());
-    report.call(at("inverse_legendre"), || stepper.inverse_legendre_at(zero, &q, &mu), |f| f.is_finite());
-    let cotangent = report.call(at("cotangent_state"), || stepper.cotangent_state(q, q), |_| true);
-    if let Some(start) = cotangent {
-        report.call(
-            at("step_symmetric"),
-            || stepper.step_symmetric(&start),
-            |next| next.configuration().is_finite() && next.covector().is_finite(),
-        );
+fn steps(report: &mut Report, place: &str, trial: &mut dyn Trial) {
+    FORMULAS.iter().for_each(|formula| report.formula(place, formula, trial));
+    report.entry(place, "project", trial);
+    report.entry(place, "inverse_legendre", trial);
+    if report.entry(place, "cotangent_state", trial) {
+        report.entry(place, "step_symmetric", trial);
     }
-    report.call(at("staggered_state"), || stepper.staggered_state(q, mu), is_finite);
-    let Some(start) = report.call(at("state"), || stepper.state(q, mu), is_finite) else { return };
-    report.call(at("step"), || step(stepper, &start), is_finite);
-    report.call(at("step_with"), || step_with(stepper, &start, &S::Input::filled(small)), is_finite);
-    report.call(at("advance"), || stepper.advance(&start, 3), is_finite);
-    report.call(at("trajectory"), || stepper.trajectory(start).take(4).last().unwrap_or(Ok(start)), is_finite);
-    report.call(at("another step size"), || step(&stepper.system().stepper(small)?, &start), is_finite);
-    report.formula(at("energy"), || (stepper.energy(&start), stepper.synchronized_energy(&start)));
-    report.formula(at("synchronized"), || stepper.synchronized(&start));
-    report.formula(at("failure"), || stepper.failure(&start, 0));
-    report.call(at("step_each"), || Ok(stepper.step_each(&start).0), is_finite);
-    ensemble(report, place, stepper, &start);
-}
-
-/// What is evaluated as it stands.
-fn formulas<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, q: S::Configuration, mu: S::Momentum) {
-    let (at, zero) = (|entry| (place, entry), S::Scalar::from_f64(0.0));
-    report.formula(at("momentum_map"), || stepper.momentum_map(&q, &q));
-    report.formula(at("momentum_matrix"), || stepper.momentum_components(&stepper.momentum_matrix(&mu)));
-    report.formula(at("potential"), || stepper.potential_at(zero, &q));
-    let broken = S::Element::filled(S::Scalar::from_f64(f64::NAN));
-    report.formula(at("legendre"), || stepper.legendre_at(zero, &q, &broken));
-    report.formula(at("legendre_next"), || stepper.legendre_next_at(zero, &q, &broken));
-    report.formula(at("act"), || (stepper.act(&broken, &q), stepper.coadjoint(&broken, &mu)));
+    report.entry(place, "staggered_state", trial);
+    if !report.entry(place, "state", trial) {
+        return;
+    }
+    for entry in ["step", "step_with", "advance", "trajectory", "another step size"] {
+        report.entry(place, entry, trial);
+    }
+    ["energy", "synchronized", "failure"].iter().for_each(|formula| report.formula(place, formula, trial));
+    report.entry(place, "step_each", trial);
+    ensemble(report, place, trial);
 }
 
 /// Bodies of an ensemble stay where they were when their step fails, and the others do not notice.
-fn ensemble<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, start: &State<S>) {
-    let bodies = || stepper.clone().ensemble([start.lane(0), start.lane(0)]).map_err(|failure| failure.error);
-    let Some(mut bodies) = report.call((place, "Ensemble"), bodies, |_| true) else { return };
-    report.formula((place, "Ensemble::advance"), || bodies.advance(2));
-    let last: Vec<_> = bodies.bodies().collect();
-    if !last.iter().all(|(q, mu)| q.is_finite() && mu.is_finite()) {
+fn ensemble(report: &mut Report, place: &str, trial: &mut dyn Trial) {
+    if !report.entry(place, "Ensemble", trial) {
+        return;
+    }
+    report.formula(place, "Ensemble::advance", trial);
+    let [are_finite, have_stayed] = trial.bodies();
+    if !are_finite {
         report.fail(place, "a body of the ensemble is not finite");
     }
-    let stays = bodies.failures().filter(|failure| failure.step == 0).all(|failure| {
-        let (q, mu) = &last[failure.body];
-        format!("{q:?} {mu:?}") == format!("{:?} {:?}", start.lane(0).0, start.lane(0).1)
-    });
-    if !stays {
+    if !have_stayed {
         report.fail(place, "a body whose step failed did not stay where it was");
     }
 }
 
 /// One number of the scene after the other is replaced.
-pub fn check<S: Scene>() -> Report {
-    let mut report = Report::new(S::NAME);
-    let (q, h) = (S::configuration(), S::step_size());
-    let stepper = S::ordinary().stepper(h).expect("an ordinary system");
-    let mu = momentum(&stepper);
+pub fn check(trial: &mut dyn Trial) -> Report {
+    let mut report = Report::new(trial.name());
     let before = report.counts[1];
-    steps(&mut report, "nothing replaced", &stepper, q, mu);
+    steps(&mut report, "nothing replaced", trial);
     // a system with forces, or of momenta alone, has no covectors to step
-    assert!(report.counts[1] - before <= 1, "{}: an ordinary step fails", S::NAME);
+    assert!(report.counts[1] - before <= 1, "{}: an ordinary step fails", trial.name());
 
-    parameters::<S>(&mut report, mu);
+    parameters(&mut report, trial);
     for value in BROKEN.into_iter().chain(EXTREME) {
-        configurations(&mut report, &stepper, value, mu);
-        momenta(&mut report, &stepper, value, mu);
-        inputs(&mut report, &stepper, value, mu);
-        step_sizes::<S>(&mut report, value, mu);
+        trial.restore();
+        configurations(&mut report, trial, value);
+        momenta(&mut report, trial, value);
+        inputs(&mut report, trial, value);
+        step_sizes(&mut report, trial, value);
     }
     report
 }
 
-fn parameters<S: Scene>(report: &mut Report, mu: S::Momentum) {
-    let (q, h) = (S::configuration(), S::step_size());
-    for (field, count) in S::ordinary().fields() {
+fn parameters(report: &mut Report, trial: &mut dyn Trial) {
+    for (field, count) in trial.fields() {
         for (entry, value) in (0..count).flat_map(|entry| BROKEN.map(|value| (entry, value))) {
-            let system = S::ordinary().with_field(field, entry, value);
             let place = format!("{field}[{entry}] = {value:e}");
             // fields of tuples are called as they are read
             let named = match field {
@@ -255,94 +190,93 @@ fn parameters<S: Scene>(report: &mut Report, mu: S::Momentum) {
                 "1" => "self.1",
                 other => other,
             };
-            match S::NAME == "Harmonics" && field == "coefficients" {
-                // what methods read is not known
-                true => report.refused((&place, "state"), || system.stepper(h)?.state(q, mu), GRADIENT),
-                false => report.refused((&place, "stepper"), || system.stepper(h), named),
+            // what methods read is not known
+            let is_opaque = report.scene == "Harmonics" && field == "coefficients";
+            let mut call = || {
+                trial.stepper(Some((field, entry, value)), Size::Ordinary)?;
+                if is_opaque { trial.call("state") } else { Ok(true) }
+            };
+            match is_opaque {
+                true => report.refused((&place, "state"), &mut call, GRADIENT),
+                false => report.refused((&place, "stepper"), &mut call, named),
             }
         }
         for (entry, value) in (0..count).flat_map(|entry| EXTREME.map(|value| (entry, value))) {
-            let system = S::ordinary().with_field(field, entry, value);
             let place = format!("{field}[{entry}] = {value:e}");
-            if let Some(stepper) = report.call((&place, "stepper"), || system.stepper(h), |_| true) {
-                steps(report, &place, &stepper, q, mu);
+            let mut stepper = || trial.stepper(Some((field, entry, value)), Size::Ordinary);
+            if report.call((&place, "stepper"), &mut stepper) {
+                steps(report, &place, trial);
             }
         }
     }
 }
 
-fn configurations<S: Scene>(report: &mut Report, stepper: &Stepper<S>, value: f64, mu: S::Momentum) {
-    let mut configuration = S::configuration();
-    for entry in 0..configuration.slots().len() {
-        let (q, place) = (S::configuration().with(entry, value), format!("q[{entry}] = {value:e}"));
+fn configurations(report: &mut Report, trial: &mut dyn Trial, value: f64) {
+    for entry in 0..trial.slots(Part::Configuration).len() {
+        let place = format!("q[{entry}] = {value:e}");
+        trial.replace(Part::Configuration, entry, value);
         if value.is_finite() {
-            steps(report, &place, stepper, q, mu);
-            covectors(report, &place, stepper, q);
+            steps(report, &place, trial);
+            report.entry(&place, "step_symmetric of a covector", trial);
             continue;
         }
-        report.refused((&place, "state"), || stepper.state(q, mu), "the configuration");
-        report.refused((&place, "staggered_state"), || stepper.staggered_state(q, mu), "the configuration");
-        report.refused((&place, "project"), || stepper.project(&q, &mu), "the configuration");
-        report.refused((&place, "cotangent_state"), || stepper.cotangent_state(q, q), "the configuration");
-        report.refused((&place, "covector"), || stepper.cotangent_state(configuration, q), "the covector");
-        let zero = S::Scalar::from_f64(0.0);
-        let named = "the configuration";
-        report.refused((&place, "inverse_legendre"), || stepper.inverse_legendre_at(zero, &q, &mu), named);
-        formulas(report, &place, stepper, q, mu);
+        let entries = ["state", "staggered_state", "project", "cotangent_state", "inverse_legendre"];
+        report.all_refused(&place, &entries, trial, "the configuration");
+        report.all_refused(&place, &["covector"], trial, "the covector");
+        FORMULAS.iter().for_each(|formula| report.formula(&place, formula, trial));
     }
+    trial.restore();
 }
 
-fn covectors<S: Scene>(report: &mut Report, place: &str, stepper: &Stepper<S>, p: S::Configuration) {
-    let start = || stepper.cotangent_state(S::configuration(), p);
-    let is_finite = |state: &clebsch::CotangentState<S>| state.covector().is_finite();
-    report.call((place, "step_symmetric of a covector"), || stepper.step_symmetric(&start()?), is_finite);
-}
-
-fn momenta<S: Scene>(report: &mut Report, stepper: &Stepper<S>, value: f64, mu: S::Momentum) {
-    let (q, mut entries) = (S::configuration(), mu);
-    let count = entries.slots().len();
-    let replaced = (0..count).map(|entry| (mu.with(entry, value), format!("N[{entry}] = {value:e}")));
-    for (mu, place) in replaced.chain([(mu.with_all(value), format!("N = {value:e}"))]) {
+fn momenta(report: &mut Report, trial: &mut dyn Trial, value: f64) {
+    let count = trial.slots(Part::Momentum).len();
+    for entry in 0..=count {
+        let place = match entry == count {
+            true => format!("N = {value:e}"),
+            false => format!("N[{entry}] = {value:e}"),
+        };
+        trial.restore();
+        match entry == count {
+            true => trial.slots(Part::Momentum).into_iter().for_each(|slot| slot.put(value)),
+            false => trial.replace(Part::Momentum, entry, value),
+        }
         if value.is_finite() {
-            steps(report, &place, stepper, q, mu);
+            steps(report, &place, trial);
             // the nearest that is a momentum of a motion
-            if let Ok(mu) = stepper.project(&q, &mu) {
-                steps(report, &place, stepper, q, mu);
+            if trial.call("projected").is_ok() {
+                steps(report, &place, trial);
             }
             continue;
         }
-        let zero = S::Scalar::from_f64(0.0);
-        report.refused((&place, "state"), || stepper.state(q, mu), "the momentum");
-        report.refused((&place, "staggered_state"), || stepper.staggered_state(q, mu), "the momentum");
-        report.refused((&place, "project"), || stepper.project(&q, &mu), "the momentum");
-        report.refused((&place, "inverse_legendre"), || stepper.inverse_legendre_at(zero, &q, &mu), "the momentum");
-        formulas(report, &place, stepper, q, mu);
+        let entries = ["state", "staggered_state", "project", "inverse_legendre"];
+        report.all_refused(&place, &entries, trial, "the momentum");
+        FORMULAS.iter().for_each(|formula| report.formula(&place, formula, trial));
     }
+    trial.restore();
 }
 
-fn inputs<S: Scene>(report: &mut Report, stepper: &Stepper<S>, value: f64, mu: S::Momentum) {
-    let Ok(start) = stepper.state(S::configuration(), mu) else { return };
-    let mut input = S::Input::origin();
-    for entry in 0..input.slots().len() {
-        let (u, place) = (S::Input::origin().with(entry, value), format!("u[{entry}] = {value:e}"));
+fn inputs(report: &mut Report, trial: &mut dyn Trial, value: f64) {
+    if trial.call("state").is_err() {
+        return;
+    }
+    for entry in 0..trial.slots(Part::Input).len() {
+        let place = format!("u[{entry}] = {value:e}");
+        trial.slots(Part::Input).into_iter().for_each(|slot| slot.put(0.0));
+        trial.slots(Part::Input).into_iter().nth(entry).expect("a place").put(value);
         match value.is_finite() {
-            true => drop(report.call((&place, "step_with"), || step_with(stepper, &start, &u), is_finite)),
-            false => report.refused((&place, "step_with"), || step_with(stepper, &start, &u), "the input"),
+            true => drop(report.entry(&place, "step_with", trial)),
+            false => report.all_refused(&place, &["step_with"], trial, "the input"),
         }
     }
+    trial.restore();
 }
 
-fn step_sizes<S: Scene>(report: &mut Report, value: f64, mu: S::Momentum) {
-    let mut h = S::Scalar::from_f64(value);
-    // the extremes of single precision
-    if value.is_finite() && !h.is_finite() {
-        h = S::Scalar::from_f64(f64::from(f32::MAX.copysign(value as f32)));
-    }
+fn step_sizes(report: &mut Report, trial: &mut dyn Trial, value: f64) {
     let place = format!("h = {value:e}");
+    let mut stepper = || trial.stepper(None, Size::Of(value));
     if !value.is_finite() || value == 0.0 {
-        return report.refused((&place, "stepper"), || S::ordinary().stepper(h), "the step size");
-    }
-    if let Some(stepper) = report.call((&place, "stepper"), || S::ordinary().stepper(h), |_| true) {
-        steps(report, &place, &stepper, S::configuration(), mu);
+        report.refused((&place, "stepper"), &mut stepper, "the step size");
+    } else if report.call((&place, "stepper"), &mut stepper) {
+        steps(report, &place, trial);
     }
 }

@@ -8,3 +8,4 @@ mod checks;
 mod longest;
 mod slots;
 mod systems;
+mod trial;

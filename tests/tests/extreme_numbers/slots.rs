@@ -28,6 +28,14 @@ fn single(value: f64) -> f32 {
     }
 }
 
+/// The numbers that a trial starts from.
+#[derive(Clone, Copy)]
+pub enum Part {
+    Configuration,
+    Momentum,
+    Input,
+}
+
 /// What is made of numbers.
 pub trait Slots {
     /// Visits all of them, in an order of its own.
@@ -39,15 +47,6 @@ pub trait Slots {
         Self: Sized,
     {
         self.slots().into_iter().nth(place).expect("a place").put(value);
-        self
-    }
-
-    /// The same with the number `value` everywhere.
-    fn with_all(mut self, value: f64) -> Self
-    where
-        Self: Sized,
-    {
-        self.slots().into_iter().for_each(|slot| slot.put(value));
         self
     }
 }

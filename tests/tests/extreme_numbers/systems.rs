@@ -1,8 +1,9 @@
 //! The accepted fixtures with ordinary parameters.
 
-use crate::checks::{Scene, check};
+use crate::checks::check;
 use crate::longest::longest_steps;
 use crate::slots::Slots;
+use crate::trial::{Of, Scene, Trial};
 use clebsch_tests::fixtures::*;
 use clebsch_tests::scenes::*;
 use nalgebra::*;
@@ -36,7 +37,7 @@ macro_rules! scenes {
 
             #[test]
             fn $name() {
-                check_scene::<$module::$system$(<$number>)?>();
+                check_scene(&mut Of::<$module::$system$(<$number>)?>::new());
             }
         )*
 
@@ -46,13 +47,13 @@ macro_rules! scenes {
 }
 
 /// All checks of a scene.
-fn check_scene<S: Scene>() {
-    let report = check::<S>();
+fn check_scene(trial: &mut dyn Trial) {
+    let report = check(trial);
     let [results, errors] = report.counts;
     let count = report.failures.len();
     let shown: Vec<_> = report.failures.into_iter().take(40).collect();
     assert!(count == 0, "{count} failures\n{}", shown.join("\n"));
-    let [refused, bent] = longest_steps::<S>();
+    let [refused, bent] = longest_steps(trial);
     println!(
         "{results} results, {errors} errors, {refused} steps too long, {bent} of which not in proportion to the momentum"
     );

@@ -1,0 +1,209 @@
+//! What is compiled for each system: its entry points, each called in one place.
+
+use crate::slots::{Part, Slot, Slots};
+use clebsch::__private::Scheme;
+use clebsch::{Body, Clebsch, CotangentState, Ensemble, Error, Real, Scalar, Space, State, Stepper};
+
+/// A system with its parameters by field, a step size and a place to start from.
+pub trait Scene: Clebsch<Scalar: Real, Configuration: Slots, Momentum: Slots, Input: Slots> + Clone {
+    /// The system with ordinary parameters.
+    fn ordinary() -> Self;
+    /// A step size of it.
+    fn step_size() -> Self::Scalar;
+    /// A configuration on its orbit.
+    fn configuration() -> Self::Configuration;
+    /// The fields that formulas read, and how many numbers are in each.
+    fn fields(&mut self) -> Vec<(&'static str, usize)>;
+    /// The system with the number `value` at a place of a field.
+    fn with_field(self, field: &str, place: usize, value: f64) -> Self;
+}
+
+/// What is evaluated as it stands.
+pub const FORMULAS: [&str; 6] = ["momentum_map", "momentum_matrix", "potential", "legendre", "legendre_next", "act"];
+
+/// A step size.
+#[derive(Clone, Copy)]
+pub enum Size {
+    /// The one of the scene.
+    Ordinary,
+    /// So many times that.
+    Times(i64),
+    /// This one; where single precision has no such number, its largest one.
+    Of(f64),
+}
+
+/// A scene whose numbers are replaced, whatever its types.
+pub trait Trial {
+    /// The name of the system.
+    fn name(&self) -> &'static str;
+    /// [`Scene::fields`].
+    fn fields(&self) -> Vec<(&'static str, usize)>;
+    /// The ordinary numbers everywhere, and the ordinary stepper.
+    fn restore(&mut self);
+    /// Another stepper, with a number replaced at a place of a field.
+    fn stepper(&mut self, replaced: Option<(&str, usize, f64)>, h: Size) -> Result<bool, Error>;
+    /// The numbers of a part.
+    fn slots(&mut self, part: Part) -> Vec<Slot<'_>>;
+    /// One number of a part, the others being ordinary.
+    fn replace(&mut self, part: Part, place: usize, value: f64) {
+        self.restore();
+        self.slots(part).into_iter().nth(place).expect("a place").put(value);
+    }
+    /// Calls an entry point with the numbers as they are; whether its result is finite.
+    fn call(&mut self, entry: &str) -> Result<bool, Error>;
+    /// Whether all bodies of the ensemble are finite, and whether those whose first step failed are where they were.
+    fn bodies(&self) -> [bool; 2];
+    /// Whether a step that is too long names the longest one: none is tried where each would take constants of kilobytes, but for free
+    /// motions, where it is known.
+    fn knows_the_longest(&self) -> bool;
+}
+
+/// The trial of a system.
+pub struct Of<S: Scene> {
+    /// The ordinary stepper and a momentum that motions of the configuration can have.
+    ordinary: (Stepper<S>, S::Momentum),
+    stepper: Stepper<S>,
+    q: S::Configuration,
+    mu: S::Momentum,
+    input: S::Input,
+    start: Option<State<S>>,
+    cotangent: Option<CotangentState<S>>,
+    ensemble: Option<Ensemble<S>>,
+}
+
+impl<S: Scene> Of<S> {
+    pub fn new() -> Self {
+        let stepper = S::ordinary().stepper(S::step_size()).expect("an ordinary system");
+        let (q, mu) = (S::configuration(), S::Momentum::filled(Scalar::from_ratio(3, 10)));
+        let mu = stepper.project(&q, &mu).expect("a projection");
+        let input = S::Input::filled(S::Scalar::from_f64(0.1));
+        let ordinary = (stepper.clone(), mu);
+        Of { ordinary, stepper, q, mu, input, start: None, cotangent: None, ensemble: None }
+    }
+
+    fn start(&self) -> State<S> {
+        self.start.expect("a state")
+    }
+
+    /// The step, compiled once.
+    #[inline(never)]
+    fn step(stepper: &Stepper<S>, start: &State<S>) -> Result<bool, Error> {
+        stepper.step(start).map(|next| is_finite(&next))
+    }
+}
+
+fn is_finite<S: Clebsch>(state: &State<S>) -> bool {
+    state.configuration().is_finite() && state.momentum().is_finite()
+}
+
+impl<S: Scene> Trial for Of<S> {
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn fields(&self) -> Vec<(&'static str, usize)> {
+        S::ordinary().fields()
+    }
+
+    fn restore(&mut self) {
+        (self.stepper, self.mu) = self.ordinary.clone();
+        (self.q, self.input) = (S::configuration(), S::Input::filled(S::Scalar::from_f64(0.1)));
+    }
+
+    fn stepper(&mut self, replaced: Option<(&str, usize, f64)>, h: Size) -> Result<bool, Error> {
+        let h = match h {
+            Size::Ordinary => S::step_size(),
+            Size::Times(times) => S::step_size() * S::Scalar::from_ratio(times, 1),
+            Size::Of(value) => match S::Scalar::from_f64(value) {
+                h if value.is_finite() && !h.is_finite() => {
+                    S::Scalar::from_f64(f64::from(f32::MAX.copysign(value as f32)))
+                }
+                h => h,
+            },
+        };
+        let mut system = S::ordinary();
+        if let Some((field, place, value)) = replaced {
+            system = system.with_field(field, place, value);
+        }
+        self.stepper = system.stepper(h)?;
+        Ok(true)
+    }
+
+    fn slots(&mut self, part: Part) -> Vec<Slot<'_>> {
+        match part {
+            Part::Configuration => self.q.slots(),
+            Part::Momentum => self.mu.slots(),
+            Part::Input => self.input.slots(),
+        }
+    }
+
+    fn call(&mut self, entry: &str) -> Result<bool, Error> {
+        let Of { stepper, q, mu, .. } = &*self;
+        let (q, mu, zero) = (*q, *mu, S::Scalar::from_f64(0.0));
+        let broken = || S::Element::filled(S::Scalar::from_f64(f64::NAN));
+        match entry {
+            "momentum_map" => drop(stepper.momentum_map(&q, &q)),
+            "momentum_matrix" => drop(stepper.momentum_components(&stepper.momentum_matrix(&mu))),
+            "potential" => drop(stepper.potential_at(zero, &q)),
+            "legendre" => drop(stepper.legendre_at(zero, &q, &broken())),
+            "legendre_next" => drop(stepper.legendre_next_at(zero, &q, &broken())),
+            "act" => drop((stepper.act(&broken(), &q), stepper.coadjoint(&broken(), &mu))),
+            "project" => return Ok(stepper.project(&q, &mu)?.is_finite()),
+            "projected" => self.mu = stepper.project(&q, &mu)?,
+            "inverse_legendre" => return Ok(stepper.inverse_legendre_at(zero, &q, &mu)?.is_finite()),
+            "cotangent_state" => self.cotangent = Some(stepper.cotangent_state(q, q)?),
+            "covector" => self.cotangent = Some(stepper.cotangent_state(S::configuration(), q)?),
+            "step_symmetric" | "step_symmetric of a covector" => {
+                let start = match entry {
+                    "step_symmetric" => self.cotangent.expect("a state"),
+                    _ => stepper.cotangent_state(S::configuration(), q)?,
+                };
+                let next = stepper.step_symmetric(&start)?;
+                return Ok(
+                    next.covector().is_finite() && (entry != "step_symmetric" || next.configuration().is_finite())
+                );
+            }
+            "staggered_state" => return Ok(is_finite(&stepper.staggered_state(q, mu)?)),
+            "state" => {
+                let start = stepper.state(q, mu)?;
+                self.start = Some(start);
+                return Ok(is_finite(&start));
+            }
+            "step" => return Self::step(stepper, &self.start()),
+            "another step size" => {
+                let other = stepper.system().stepper(S::Scalar::from_f64(0.1))?;
+                return Self::step(&other, &self.start());
+            }
+            "step_with" => return Ok(is_finite(&stepper.step_with(&self.start(), &self.input)?)),
+            "advance" => return Ok(is_finite(&stepper.advance(&self.start(), 3)?)),
+            "trajectory" => {
+                let start = self.start();
+                return Ok(is_finite(&stepper.trajectory(start).take(4).last().unwrap_or(Ok(start))?));
+            }
+            "energy" => drop((stepper.energy(&self.start()), stepper.synchronized_energy(&self.start()))),
+            "synchronized" => drop(stepper.synchronized(&self.start())),
+            "failure" => drop(stepper.failure(&self.start(), 0)),
+            "step_each" => return Ok(is_finite(&stepper.step_each(&self.start()).0)),
+            "Ensemble" => {
+                let body = self.start().lane(0);
+                self.ensemble = Some(stepper.clone().ensemble([body, body]).map_err(|failure| failure.error)?);
+            }
+            "Ensemble::advance" => drop(self.ensemble.as_mut().expect("an ensemble").advance(2)),
+            other => unreachable!("no entry point `{other}`"),
+        }
+        Ok(true)
+    }
+
+    fn bodies(&self) -> [bool; 2] {
+        let (ensemble, start) = (self.ensemble.as_ref().expect("an ensemble"), self.start().lane(0));
+        let last: Vec<Body<S>> = ensemble.bodies().collect();
+        let shown = |(q, mu): &Body<S>| format!("{q:?} {mu:?}");
+        let mut failed = ensemble.failures().filter(|failure| failure.step == 0);
+        let are_finite = last.iter().all(|(q, mu)| q.is_finite() && mu.is_finite());
+        [are_finite, failed.all(|failure| shown(&last[failure.body]) == shown(&start))]
+    }
+
+    fn knows_the_longest(&self) -> bool {
+        size_of::<<S::Scheme as Scheme<S>>::Constants>() <= 2048 || S::IS_FREE_MOTION
+    }
+}
