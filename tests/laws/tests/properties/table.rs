@@ -167,7 +167,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("pendulums_stay_on_the_sphere",                   &["Stepper::project"]),
         ("suggested_steps_reach_their_error",              &["Stepper::suggest_step_size"]),
     ]),
-    ("tests/tests/saved/main.rs", &[
+    ("tests/laws/tests/saved/main.rs", &[
         ("saved_states_resume_bit_for_bit", &["Stepper::resume"]),
     ]),
     ("tests/laws/tests/properties/whole.rs", &[
