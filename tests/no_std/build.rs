@@ -111,10 +111,13 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
         let instances = INSTANCES.iter().find(|(name, _)| *name == system.name);
         for (suffix, parameters) in instances.map_or(&[("", "")] as &[_], |(_, instances)| *instances) {
             let path = format!("{}{parameters}", system.name);
-            let symbol = format!("{name}{suffix}.f64");
-            let mut export = |kind: &str, more: &str| {
-                writeln!(text, "crate::{kind}!(\"{symbol}\", {path}{more});").expect("text");
+            let mut of_method = |kind: &str, method: &str, more: &str| {
+                writeln!(text, "crate::{kind}!(\"{name}{method}{suffix}.f64\", {path}{more});").expect("text");
             };
+            for method in &system.methods {
+                of_method("stepping", &format!(".{method}"), &format!(", {method}"));
+            }
+            let mut export = |kind: &str, more: &str| of_method(kind, "", more);
             if !system.is_control_alone {
                 export("stepping", "");
             }
@@ -137,6 +140,8 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
 /// A struct that derives the trait, and what its declaration asks for.
 struct System {
     name: String,
+    /// Those beside the declared dials.
+    methods: Vec<String>,
     is_control_alone: bool,
     is_controlled: bool,
     has_tangent: bool,
@@ -156,6 +161,7 @@ fn declared(tokens: TokenStream) -> Declared {
     let mut macros: Vec<(String, Vec<TokenTree>)> = Vec::new();
     for item in items(tokens) {
         let derives = has_word(&item, "derive") && has_word(&item, "Clebsch");
+        let is_unit = matches!(item.as_slice(), [.., TokenTree::Ident(word), TokenTree::Ident(_), TokenTree::Punct(_)] if word == "struct");
         let defined = name_after(&item, "macro_rules").filter(|_| derives);
         let called = macros.iter().find(|(name, _)| item.first().is_some_and(|first| first.to_string() == *name));
         if let Some(name) = defined {
@@ -168,6 +174,9 @@ fn declared(tokens: TokenStream) -> Declared {
             declared.text += &text(&item);
         } else if let Some(name) = name_after(&item, "struct").filter(|_| derives) {
             declared.systems.push(system(name, [&item]));
+            declared.text += &text(&item);
+        } else if is_unit && !derives {
+            // it may stand for a method
             declared.text += &text(&item);
         } else {
             assert!(!derives, "a declaration is in something else, where it is not found: {}", text(&item));
@@ -182,6 +191,7 @@ fn system<'a>(name: String, tokens: impl IntoIterator<Item = &'a Vec<TokenTree>>
     let is_control_alone = says("controls") || says("dynamics");
     System {
         name,
+        methods: tokens.clone().into_iter().flat_map(|tokens| methods(tokens)).collect(),
         is_control_alone,
         is_controlled: is_control_alone || says("effort"),
         has_tangent: emits("tangent"),
@@ -244,6 +254,12 @@ fn first_type(call: &[TokenTree]) -> Option<String> {
         TokenTree::Ident(word) => Some(word.to_string()).filter(|word| word.starts_with(char::is_uppercase)),
         _ => None,
     })
+}
+
+/// `NAME` of each `method NAME =`.
+fn methods(tokens: &[TokenTree]) -> Vec<String> {
+    let words = flat(tokens);
+    words.windows(3).filter(|part| part[0] == "method" && part[2] == "=").map(|part| part[1].clone()).collect()
 }
 
 /// Whether a word stands somewhere among the tokens.

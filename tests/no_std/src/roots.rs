@@ -3,23 +3,23 @@
 //! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because nothing is conserved or
 //! because it has lanes, [`Absent`] has one that does nothing.
 
-use clebsch::{Clebsch, Error, Space, State, Stepper};
+use clebsch::{Clebsch, Error, Method, Space, State, Stepper};
 
 /// The steps of a plan, and the edges of a path.
 pub const STEPS: usize = 16;
 
 /// What a stepper does not have itself.
-pub trait Absent<S: Clebsch> {
-    fn conserved(&self, _: &State<S>) {}
-    fn step_tangent(&self, _: &State<S>) {}
-    fn suggest_step_size(&self, _: &State<S>, _: S::Scalar, _: S::Scalar) {}
+pub trait Absent<S: Clebsch, M: Method<S>> {
+    fn conserved(&self, _: &State<S, M>) {}
+    fn step_tangent(&self, _: &State<S, M>) {}
+    fn suggest_step_size(&self, _: &State<S, M>, _: S::Scalar, _: S::Scalar) {}
     fn state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
     fn cotangent_state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Configuration) {}
     fn staggered_state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
     fn inverse_legendre(&self, _: &S::Configuration, _: &S::Momentum) {}
 }
 
-impl<S: Clebsch> Absent<S> for Stepper<S> {}
+impl<S: Clebsch, M: Method<S>> Absent<S, M> for Stepper<S, M> {}
 
 /// Whether an operation succeeds, under the name `clebsch.operation.system`.
 #[macro_export]
@@ -39,10 +39,13 @@ macro_rules! export {
     };
 }
 
-/// A stepper with all that it can do.
+/// A stepper with all that it can do, by the declared dials or by a method.
 #[macro_export]
 macro_rules! stepping {
     ($name:literal, $type:ty) => {
+        $crate::stepping!($name, $type, clebsch::Declared);
+    };
+    ($name:literal, $type:ty, $method:ty) => {
         const _: () = {
             use clebsch::{Clebsch, CotangentState, Integrator, SavedState, State, Stepper};
             use core::hint::black_box;
@@ -50,82 +53,91 @@ macro_rules! stepping {
             use $crate::roots::{self, Absent};
 
             type S = $type;
+            type M = $method;
             type T = <S as Clebsch>::Scalar;
             type Q = <S as Clebsch>::Configuration;
             type N = <S as Clebsch>::Momentum;
 
-            $crate::export!("stepper", $name, |system: &S, h: &T, made: &mut Option<Stepper<S>>| {
+            $crate::export!("stepper", $name, |system: &S, h: &T, made: &mut Option<Stepper<S, M>>| {
                 *made = Some(roots::stepper(system, *h)?);
             });
-            $crate::export!("state", $name, |stepper: &Stepper<S>, q: &Q, mu: &N, made: &mut State<S>| {
+            $crate::export!("state", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &N, made: &mut State<S, M>| {
                 *made = stepper.state(*q, *mu)?;
             });
-            $crate::export!("staggered", $name, |stepper: &Stepper<S>, q: &Q, mu: &N, made: &mut State<S>| {
+            $crate::export!("staggered", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &N, made: &mut State<S, M>| {
                 *made = stepper.staggered_state(*q, *mu)?;
             });
-            $crate::export!("timed", $name, |stepper: &Stepper<S>, t: &T, q: &Q, mu: &N| {
+            $crate::export!("timed", $name, |stepper: &Stepper<S, M>, t: &T, q: &Q, mu: &N| {
                 let _ = black_box(stepper.state_at(*t, *q, *mu));
                 let _ = black_box(stepper.cotangent_state_at(*t, *q, *q));
                 let _ = black_box(stepper.staggered_state_at(*t, *q, *mu));
             });
-            $crate::export!("cotangent", $name, |stepper: &Stepper<S>, q: &Q, p: &Q, made: &mut CotangentState<S>| {
-                *made = stepper.cotangent_state(*q, *p)?;
-            });
-            $crate::export!("project", $name, |stepper: &Stepper<S>, q: &Q, mu: &mut N| {
+            $crate::export!(
+                "cotangent",
+                $name,
+                |stepper: &Stepper<S, M>, q: &Q, p: &Q, made: &mut CotangentState<S>| {
+                    *made = stepper.cotangent_state(*q, *p)?;
+                }
+            );
+            $crate::export!("project", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &mut N| {
                 *mu = stepper.project(q, mu)?;
             });
-            $crate::export!("resume", $name, |stepper: &Stepper<S>, saved: &SavedState<S>, made: &mut State<S>| {
+            $crate::export!("resume", $name, |stepper: &Stepper<S, M>,
+                                              saved: &SavedState<S, M>,
+                                              made: &mut State<S, M>| {
                 *made = stepper.resume(*saved)?;
             });
-            $crate::export!("step", $name, |stepper: &Stepper<S>, state: &mut State<S>| {
+            $crate::export!("step", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>| {
                 *state = stepper.step(state)?;
             });
-            $crate::export!("step_with", $name, |stepper: &Stepper<S>,
-                                                 state: &mut State<S>,
+            $crate::export!("step_with", $name, |stepper: &Stepper<S, M>,
+                                                 state: &mut State<S, M>,
                                                  u: &<S as Clebsch>::Input| {
                 *state = stepper.step_with(state, u)?;
             });
-            $crate::export!("integrator", $name, |integrator: &mut Integrator<S>, u: &<S as Clebsch>::Input| {
+            $crate::export!("integrator", $name, |integrator: &mut Integrator<S, M>, u: &<S as Clebsch>::Input| {
                 integrator.step_with(u)?;
                 integrator.advance(2)?;
             });
-            $crate::export!("step_each", $name, |stepper: &Stepper<S>, state: &mut State<S>| {
+            $crate::export!("step_each", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>| {
                 *state = stepper.step_each(state).0;
             });
-            $crate::export!("failure", $name, |stepper: &Stepper<S>, state: &State<S>, lane: usize| {
+            $crate::export!("failure", $name, |stepper: &Stepper<S, M>, state: &State<S, M>, lane: usize| {
                 stepper.failure(state, lane).map_or(Ok(()), Err)?;
             });
-            $crate::export!("step_symmetric", $name, |stepper: &Stepper<S>, state: &mut CotangentState<S>| {
+            $crate::export!("step_symmetric", $name, |stepper: &Stepper<S, M>, state: &mut CotangentState<S>| {
                 *state = stepper.step_symmetric(state)?;
             });
-            $crate::export!("step_tangent", $name, |stepper: &Stepper<S>, state: &State<S>| {
+            $crate::export!("step_tangent", $name, |stepper: &Stepper<S, M>, state: &State<S, M>| {
                 let _ = black_box(stepper.step_tangent(state));
             });
-            $crate::export!("advance", $name, |stepper: &Stepper<S>, state: &mut State<S>, steps: usize| {
+            $crate::export!("advance", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>, steps: usize| {
                 *state = stepper.advance(state, steps)?;
             });
-            $crate::export!("trajectory", $name, |stepper: &Stepper<S>, state: &mut State<S>, steps: usize| {
+            $crate::export!("trajectory", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>, steps: usize| {
                 for next in stepper.trajectory(*state).take(steps) {
                     *state = next?;
                 }
             });
-            $crate::export!("suggest_step_size", $name, |stepper: &Stepper<S>,
-                                                         state: &State<S>,
+            $crate::export!("suggest_step_size", $name, |stepper: &Stepper<S, M>,
+                                                         state: &State<S, M>,
                                                          error: &T,
                                                          time: &T| {
                 let _ = black_box(stepper.suggest_step_size(state, *error, *time));
             });
-            $crate::export!("energies", $name, |stepper: &Stepper<S>, state: &State<S>, energies: &mut [T; 3]| {
+            $crate::export!("energies", $name, |stepper: &Stepper<S, M>,
+                                                state: &State<S, M>,
+                                                energies: &mut [T; 3]| {
                 *energies = [stepper.energy(state), stepper.kinetic_energy(state), stepper.synchronized_energy(state)];
             });
-            $crate::export!("momenta", $name, |stepper: &Stepper<S>, state: &State<S>, mu: &mut N| {
+            $crate::export!("momenta", $name, |stepper: &Stepper<S, M>, state: &State<S, M>, mu: &mut N| {
                 let _ = black_box(stepper.conserved(state));
                 *mu = stepper.synchronized(state);
             });
-            $crate::export!("formulas", $name, |stepper: &Stepper<S>, t: &T, q: &Q, p: &Q, mu: &mut N| {
+            $crate::export!("formulas", $name, |stepper: &Stepper<S, M>, t: &T, q: &Q, p: &Q, mu: &mut N| {
                 roots::formulas(stepper, *t, q, p, mu)?;
             });
-            $crate::export!("inverse_legendre", $name, |stepper: &Stepper<S>, q: &Q, mu: &N| {
+            $crate::export!("inverse_legendre", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &N| {
                 let _ = black_box(stepper.inverse_legendre(q, mu));
             });
         };
@@ -134,14 +146,14 @@ macro_rules! stepping {
 
 /// A stepper of step size `h`.
 #[inline]
-pub fn stepper<S: Clebsch + Clone>(system: &S, h: S::Scalar) -> Result<Stepper<S>, Error> {
-    system.stepper(h)
+pub fn stepper<S: Clebsch + Clone, M: Method<S>>(system: &S, h: S::Scalar) -> Result<Stepper<S, M>, Error> {
+    system.stepper_by::<M>(h)
 }
 
 /// What is derived, besides steps.
 #[inline]
-pub fn formulas<S: Clebsch>(
-    stepper: &Stepper<S>,
+pub fn formulas<S: Clebsch, M: Method<S>>(
+    stepper: &Stepper<S, M>,
     t: S::Scalar,
     q: &S::Configuration,
     p: &S::Configuration,
