@@ -4,6 +4,9 @@
 //! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work,
 //! until it arrives or is found to turn back: then no solution is connected to the identity. [`solve_linear_equation`] does
 //! without iteration where ρ is affine in ξ.
+//!
+//! Solves are always inlined in the part of the step that calls them, once: the result of a call lies in memory, and a step of a small system
+//! would wait for it. What is cold is not.
 
 mod fixed_point;
 mod jacobian;

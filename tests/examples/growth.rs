@@ -149,8 +149,9 @@ impl Builds {
     fn seconds(&self, declaration: &str) -> f64 {
         let empty = self.build("");
         let step = "pub fn step(stepper: &clebsch::Stepper<System>, state: &clebsch::State<System>) -> Result<clebsch::State<System>, clebsch::Error> { stepper.step(state) }";
-        let source =
-            format!("#![allow(missing_docs)]\nuse clebsch::Clebsch;\nuse nalgebra::*;\n{declaration}\n{step}\n");
+        let source = format!(
+            "#![allow(missing_docs, unused_imports)]\nuse clebsch::Clebsch;\nuse nalgebra::*;\n{declaration}\n{step}\n"
+        );
         self.build(&source) - empty
     }
 

@@ -102,8 +102,9 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
     }
 }
 
-/// ρ_k(x), the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ; freed of denominators by A (…) C where
-/// that is possible; and whether it was.
+/// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
+///
+/// They are freed of denominators by A (…) C where that is possible. The second value says whether they were.
 fn residual<'g>(
     sources: &Sources<'_, 'g>,
     before: &[Covector<'g>],

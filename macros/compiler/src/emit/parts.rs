@@ -456,7 +456,7 @@ impl Emitter<'_, '_> {
         } else {
             self.coordinates_of(index, step)
         };
-        // what a call returns lies in memory in pieces, and waits there until it is read as vectors: as long as a tenth of a short step
+        // what a call returns lies in memory in pieces, and reading it as vectors waits for them: a tenth of a short step
         let inline = if self.is_short() { quote!(#[inline(always)]) } else { quote!(#[inline]) };
         quote! {
             #inline
