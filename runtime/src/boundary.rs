@@ -7,36 +7,37 @@
 //! | file | what it does |
 //! |---|---|
 //! | `guess` | the path to start from |
-//! | `coarse` | the same with few edges, where there are many |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `sweep` | linearises and eliminates backward, moves the vertices forward |
 //! | `vertex` | eliminates one vertex in the backward sweep |
 //! | `pivot` | the M×M linear algebra of one vertex |
-//! | `free_time` | chooses the step size |
 //! | `several` | other ways between the same endpoints |
 //! | `end` | the gap to the target and the motions that fix it |
+//! | `extremal` | what the caller stores for each edge, and what a problem is answered with |
 
-mod coarse;
 mod end;
 mod extremal;
-mod free_time;
 mod guess;
 mod newton;
-mod node;
 mod pivot;
 mod several;
 mod sweep;
+#[cfg(test)]
+mod tests;
 mod vertex;
 
-pub use extremal::{Extremal, States};
+pub use extremal::{Extremal, Node, States};
 pub use guess::Guess;
-pub use node::Node;
 pub use several::Way;
 
+use crate::newton::{Bracket, Sample, Trial};
+use crate::scheme::{Constants, Scheme};
 use crate::stepper::check_time;
 use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
-use num_traits::{One, Zero};
-use sweep::Endpoints;
+use core::iter::once;
+use core::ops::RangeInclusive;
+use num_traits::Zero;
+use sweep::{Endpoints, Search};
 
 /// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
 #[derive(Debug)]
@@ -147,25 +148,79 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         'a: 'p,
     {
         self.check(start, &guess, path.len())?;
-        let zero = S::Scalar::zero();
-        let sign = if self.stepper.h < zero { -S::Scalar::one() } else { S::Scalar::one() };
-        let Stepper { system, h, constants } = self.stepper;
-        let endpoints = Endpoints { system, h: *h, constants, time: self.time, start, target, sign };
-        let end = endpoints.prepare(path, &guess)?;
-        let solved = endpoints.newton(path, end, guess != Guess::Geodesic)?;
-        let gap = target.map_or(zero, |target| solved.end.distance_squared(target).sqrt());
+        let mut search = self.search(self.stepper.h, &self.stepper.constants, start, target, path);
+        search.prepare(&guess)?;
+        let (summary, iterations) = search.newton(guess != Guess::Geodesic)?;
+        let end = search.last;
         Ok(Extremal {
             stepper: self.stepper,
-            path,
+            nodes: path,
             time: self.time,
-            action: solved.summary.action,
-            residual: solved.summary.residual_squared.sqrt(),
-            gap,
-            negative: solved.summary.negative,
-            iterations: solved.sweeps,
-            end: solved.end,
-            after: solved.summary.after,
+            action: summary.action,
+            residual: summary.residual_squared.sqrt(),
+            gap: target.map_or(S::Scalar::zero(), |target| end.distance_squared(target).sqrt()),
+            negative: summary.negative,
+            iterations,
+            end,
+            final_momentum: summary.after,
         })
+    }
+
+    /// The step size in `steps`, and with it the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is
+    /// critical: where the energy is ∂φ/∂t. It is looked for where the sum falls, from the step size of the stepper on, and at a limit
+    /// the sum may fall beyond it.
+    ///
+    /// The nodes hold the extremal then: a stepper of that step size and [`Guess::Path`] give it with all that is known of it. By the
+    /// envelope theorem the derivative by h is that at a fixed path, here a central difference, so that h has ten digits of an `f64` and
+    /// the action all.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`] for limits that are not positive numbers in order, [`Error::NoExtremal`], and those of [`solve`](Self::solve).
+    pub fn free_time(
+        &self,
+        start: &S::Configuration,
+        target: Option<&S::Configuration>,
+        steps: RangeInclusive<S::Scalar>,
+        guess: Guess<S::Scalar, M>,
+        path: &mut [Node<S, M>],
+    ) -> Result<S::Scalar, Error> {
+        let bracket = Bracket::within(&steps)?;
+        self.check(start, &guess, path.len())?;
+        target.map_or(Ok(()), |target| self.stepper.check_configuration(target))?;
+        let third = S::Scalar::EPSILON.powf(S::Scalar::from_ratio(1, 3));
+        let accuracy = S::Scalar::from_f64(4.0) * third * third;
+        let mut guess = guess;
+        let trial = |h| {
+            let constants = S::Scheme::constants(&self.stepper.system, h)?;
+            let mut search = self.search(h, &constants, start, target, path);
+            search.prepare(&guess)?;
+            let (_, sweeps) = search.newton(guess != Guess::Geodesic)?;
+            guess = Guess::Path;
+            let step = third * h;
+            let longer = search.sum_at(h + step)?;
+            let shorter = search.sum_at(h - step)?;
+            let size = (longer.abs() + shorter.abs()) / h;
+            let sample = Sample { h, slope: (longer - shorter) / (step + step), size };
+            Ok(Trial { answer: h, sample, sweeps })
+        };
+        let (h, _) = bracket.critical(self.stepper.h, accuracy, false, trial)?;
+        Ok(h)
+    }
+
+    /// The search of an extremal with the step size `h`, for which there are these constants.
+    fn search<'p>(
+        &self,
+        h: S::Scalar,
+        constants: &'p Constants<S>,
+        start: &'p S::Configuration,
+        target: Option<&'p S::Configuration>,
+        path: &'p mut [Node<S, M>],
+    ) -> Search<'p, S, M>
+    where
+        'a: 'p,
+    {
+        let problem = Endpoints { system: &self.stepper.system, h, constants, time: self.time, start, target };
+        Search { problem, path, last: *start }
     }
 
     /// Start and guess are finite, the start on the declared space, nodes those of whole steps.
@@ -181,5 +236,19 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+    /// Σ ℓd + φ of the path as it is, with another step size.
+    fn sum_at(&self, h: T) -> Result<T, Error> {
+        let system = self.problem.system;
+        let constants = S::Scheme::constants(system, h)?;
+        let problem = Endpoints { h, constants: &constants, ..self.problem };
+        let ends = self.path.iter().skip(1).map(|node| &node.configuration).chain(once(&self.last));
+        let price = system.endpoint(problem.time_of_end(self.path.len()), &self.last).price;
+        Ok(self.path.iter().zip(ends).enumerate().fold(price, |sum, (index, (node, next))| {
+            sum + problem.momenta(index, &node.configuration, &node.increment, next).lagrangian
+        }))
     }
 }

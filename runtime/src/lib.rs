@@ -153,6 +153,7 @@ mod element;
 mod energy;
 mod error;
 mod exponential;
+mod fields;
 mod free_rotation;
 mod free_rotation_4d;
 pub mod group;

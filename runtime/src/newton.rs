@@ -10,18 +10,17 @@
 //! | `spectrum` | eigenvalues of a pivot that is not definite |
 //! | `gap` | what separates an end from its target |
 //! | `free_time` | the step size at which the action or the price is critical |
-//! | `bracket` | the zero of its slope |
 
-mod bracket;
 mod curvature;
 mod free_time;
 mod gap;
 mod ldl;
 mod spectrum;
+#[cfg(test)]
+mod tests;
 
-pub(crate) use bracket::Sample;
-pub(crate) use curvature::{Curvature, Share, adapted, turned_over};
-pub(crate) use free_time::{Trial, check_limits, critical_step_size};
-pub(crate) use gap::{arc_per_chord, is_reached, shortest, shortest_with_kernel};
+pub(crate) use curvature::{Curvature, adapted};
+pub(crate) use free_time::{Bracket, Sample, Trial};
+pub(crate) use gap::{arc_per_chord, is_reached, shortest};
 pub(crate) use ldl::{Ldl, UNITS};
-pub(crate) use spectrum::Spectrum;
+pub(crate) use spectrum::{Equilibrated, Spectrum};

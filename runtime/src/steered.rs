@@ -50,7 +50,7 @@ where
 pub fn displacement<T: Scalar, const M: usize>(metric: &SMatrix<T, M, M>, approach: &SVector<T, M>) -> SVector<T, M> {
     let mut displacement = *approach;
     for lane in 0..T::LANES {
-        set_lane(&mut displacement, lane, &shortest(&lane_of(metric, lane), &lane_of(approach, lane)));
+        set_lane(&mut displacement, lane, &shortest(&lane_of(metric, lane), &lane_of(approach, lane)).0);
     }
     displacement
 }

@@ -1,18 +1,71 @@
-//! What a problem with fixed endpoints is answered with.
+//! What a problem with fixed endpoints is answered with, and what the caller stores for it.
 
-use super::Node;
+use super::pivot::Feedback;
 use super::sweep::time_after;
+use crate::fields::{copied, debug, getters};
 use crate::scheme::Scheme;
-use crate::{Real, State, Stepper, Time, Variational};
-use core::fmt::{self, Debug, Formatter};
+use crate::{Clebsch, Real, Space, State, Stepper, Time, Variational};
 use core::iter::FusedIterator;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
+
+/// One edge of a path with the vertex where it starts. Made by [`Boundary::rest`](crate::Boundary::rest), filled by
+/// [`Boundary::solve`](crate::Boundary::solve).
+pub struct Node<S: Clebsch, const M: usize> {
+    pub(super) configuration: S::Configuration,
+    pub(super) increment: S::Element,
+    pub(super) momentum: SVector<S::Scalar, M>,
+    /// K and s of the vertex where the edge ends: its motion is η_{k+1} = −s − K η_k.
+    pub(super) feedback: Feedback<S::Scalar, M>,
+    /// The last motion of the vertex where the edge ends, to take it back.
+    pub(super) motion: SVector<S::Scalar, M>,
+}
+
+impl<S: Variational<M, Scalar: Real>, const M: usize> Node<S, M> {
+    /// The edge that stays at `q`.
+    pub(super) fn rest(system: &S, q: &S::Configuration) -> Self {
+        let zero = Space::origin();
+        let feedback = Feedback { gain: Space::origin(), shift: zero };
+        Self { configuration: *q, increment: system.retraction(&zero), momentum: zero, feedback, motion: zero }
+    }
+
+    /// Newton's correction of the vertex where the edge ends, after that of the vertex where it starts.
+    #[inline]
+    pub(super) fn correction(&self, motion: &SVector<S::Scalar, M>) -> SVector<S::Scalar, M> {
+        -self.feedback.shift - self.feedback.gain * motion
+    }
+}
+
+impl<S: Clebsch, const M: usize> Node<S, M> {
+    getters! {
+        /// The configuration q_k where the edge starts.
+        ref configuration: S::Configuration;
+
+        /// The increment F_k − I of the group element that moves q_k to q_{k+1}; for translations F_k itself.
+        ref increment: S::Element;
+
+        /// The momentum N_k = F⁻ℓd at q_k, before the kick of the step that follows.
+        ref momentum: SVector<S::Scalar, M>;
+    }
+
+    /// The matrix K of optimal feedback: where q_k is found at Φ_{exp η}(q_k), the extremal from there to the target passes
+    /// Φ_{exp η′}(q_{k+1}) with η′ = −Kη + O(η²).
+    ///
+    /// It is of the last linearisation, from which the path may have moved by √ε of its size: K is known to as much.
+    ///
+    /// Shape M×M. For the last edge η′ has only motions that fix the target: K = 0 where the action is free.
+    #[inline]
+    pub fn gain(&self) -> &SMatrix<S::Scalar, M, M> {
+        &self.feedback.gain
+    }
+}
+
+copied!(Node<S, M> where [S: Clebsch, const M: usize]: configuration, increment, momentum, gain);
 
 /// A path between fixed endpoints on which the action is critical, solved to round-off by
 /// [`Boundary::solve`](crate::Boundary::solve). The nodes that it was solved in hold the path itself.
 pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub(super) stepper: &'a Stepper<S>,
-    pub(super) path: &'a [Node<S, M>],
+    pub(super) nodes: &'a [Node<S, M>],
     pub(super) time: S::Scalar,
     pub(super) action: S::Scalar,
     pub(super) residual: S::Scalar,
@@ -20,55 +73,41 @@ pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub(super) negative: usize,
     pub(super) iterations: u32,
     pub(super) end: S::Configuration,
-    pub(super) after: SVector<S::Scalar, M>,
+    pub(super) final_momentum: SVector<S::Scalar, M>,
 }
 
 impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
-    /// The action Σ ℓd, in the unit of ℓd: J·s.
-    pub fn action(&self) -> S::Scalar {
-        self.action
-    }
+    getters! {
+        /// The action Σ ℓd, in the unit of ℓd: J·s.
+        copy action: S::Scalar;
 
-    /// The number of linearisations of the path that were made, without those of a path of few edges that it was begun with.
-    pub fn iterations(&self) -> u32 {
-        self.iterations
-    }
+        /// The number of linearisations of the path that were made, without those of a path of few edges that it was begun with.
+        copy iterations: u32;
 
-    /// The largest |F⁺ℓd(edge k−1) − F⁻ℓd(edge k)| that round-off has left, in the unit of the momentum.
-    pub fn residual(&self) -> S::Scalar {
-        self.residual
-    }
+        /// The largest |F⁺ℓd(edge k−1) − F⁻ℓd(edge k)| that round-off has left, in the unit of the momentum.
+        copy residual: S::Scalar;
 
-    /// The distance |target − q_N| that round-off has left, as the root of the sum of squares of all entries.
-    pub fn gap(&self) -> S::Scalar {
-        self.gap
-    }
+        /// The distance |target − q_N| that round-off has left, as the root of the sum of squares of all entries.
+        copy gap: S::Scalar;
 
-    /// The Morse index, the number of independent variations that make the action smaller: 0 on a strict local minimum, where no
-    /// vertex is conjugate to the target. Counted in the last linearisation, within √ε of the path. For a negative step size, those that make it larger.
-    pub fn negative(&self) -> usize {
-        self.negative
+        /// The Morse index, the number of independent variations that make the action smaller: 0 on a strict local minimum, where no
+        /// vertex is conjugate to the target. Counted in the last linearisation, within √ε of the path. For a negative step size, those that make it larger.
+        copy negative: usize;
+
+        /// The momentum N_N at the target, before the kick of a step from there.
+        ref final_momentum: SVector<S::Scalar, M>;
+
+        /// The configuration q_N: the target up to the [`gap`](Self::gap).
+        ref end: S::Configuration;
+
+        /// The edges in order, with configuration, increment, momentum and gain.
+        copy nodes: &'a [Node<S, M>];
     }
 
     /// The momentum N_0 at the start: [`Stepper::step`] leads from there to the target.
     pub fn momentum(&self) -> &SVector<S::Scalar, M> {
         // by construction: a path has at least one node, so that the other answer is never given
-        self.path.first().map_or(&self.after, Node::momentum)
-    }
-
-    /// The momentum N_N at the target, before the kick of a step from there.
-    pub fn final_momentum(&self) -> &SVector<S::Scalar, M> {
-        &self.after
-    }
-
-    /// The configuration q_N: the target up to the [`gap`](Self::gap).
-    pub fn end(&self) -> &S::Configuration {
-        &self.end
-    }
-
-    /// The edges in order, with configuration, increment, momentum and gain.
-    pub fn nodes(&self) -> &'a [Node<S, M>] {
-        self.path
+        self.nodes.first().map_or(&self.final_momentum, Node::momentum)
     }
 
     /// The states (q, N) at the starts of all steps and at the end, N + 1 of them; a stepper can go on from each.
@@ -79,31 +118,22 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
     /// The state after so many steps.
     fn state(&self, steps: usize) -> Option<State<S>> {
         let edges = steps.checked_mul(S::EDGES.max(1))?;
-        let (configuration, momentum) = match self.path.get(edges) {
+        let (configuration, momentum) = match self.nodes.get(edges) {
             Some(node) => (node.configuration, node.momentum),
-            None if edges == self.path.len() => (self.end, self.after),
+            None if edges == self.nodes.len() => (self.end, self.final_momentum),
             None => return None,
         };
         let Stepper { system, h, constants } = self.stepper;
-        let t = time_after::<S, M>(self.time, *h, steps);
+        let t = time_after::<S>(self.time, *h, steps);
         let left = S::Scheme::left(system, constants, t, &configuration, &momentum);
         let held = S::Scheme::held(&configuration, &momentum);
         Some(State { time: S::Time::at(t), configuration, held, left, h: *h })
     }
 }
 
-/// Without the path, which is long.
-impl<S: Variational<M, Scalar: Real>, const M: usize> Debug for Extremal<'_, S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Extremal")
-            .field("action", &self.action)
-            .field("iterations", &self.iterations)
-            .field("residual", &self.residual)
-            .field("gap", &self.gap)
-            .field("negative", &self.negative)
-            .finish_non_exhaustive()
-    }
-}
+// without the path, which is long
+debug!(Extremal<'_, S, M> where [S: Variational<M, Scalar: Real>, const M: usize]:
+    action, iterations, residual, gap, negative);
 
 /// The states of an [`Extremal`].
 #[derive(Debug)]

@@ -1,12 +1,11 @@
-//! The path that Newton's method starts from.
+//! The path that Newton's method starts from. A path of many edges is begun with few, which cost little.
 
-use super::Node;
-use super::coarse::interpolated;
 use super::newton::unreachable;
-use super::sweep::Endpoints;
-use crate::{Error, Real, Scalar, Variational};
+use super::sweep::{Endpoints, Search};
+use crate::newton::Curvature;
+use crate::scheme::Scheme;
+use crate::{Error, Real, Space, Variational};
 use nalgebra::SVector;
-use num_traits::{One, Zero};
 
 /// Where the search for an extremal starts. Extremals between two endpoints are not unique: the guess selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,59 +23,87 @@ pub enum Guess<T, const M: usize> {
 
 /// Corrections of a constant group element, or of a whole path, until its end is near the target.
 const PASSES: usize = 60;
+/// The edges of a coarse path, an even number: a step has at most two.
+pub(super) const COARSE: usize = 8;
+/// Edges from which on a coarse path is made.
+const MANY: usize = 4 * COARSE;
+/// Corrections of the coarse path.
+const CORRECTIONS: usize = 3;
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
-    /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest. Returns q_N.
+/// The motions of the vertices of a coarse path, q_0 first.
+type Motions<T, const M: usize> = [SVector<T, M>; COARSE + 1];
+
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+    /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest.
     ///
     /// # Errors
     /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
-    pub fn prepare(&self, path: &mut [Node<S, M>], guess: &Guess<S::Scalar, M>) -> Result<S::Configuration, Error> {
-        let end = match guess {
-            Guess::Geodesic if self.target.is_none() => {
-                self.fill(path, SVector::from_element(S::Scalar::zero()));
-                self.roll_out(path)
-            }
-            Guess::Geodesic => {
-                let gap = self.end(self.start, path.len());
+    pub fn prepare(&mut self, guess: &Guess<T, M>) -> Result<(), Error> {
+        match guess {
+            Guess::Geodesic if self.problem.target.is_some() => {
+                let gap = self.problem.end(self.problem.start, self.path.len());
                 if gap.is_orthogonal() {
                     return Err(Error::UndeterminedDirection { distance: gap.distance.to_f64() });
                 }
-                let eta = self.fill(path, SVector::from_element(S::Scalar::zero()));
-                self.refined(path, &eta)
+                let eta = self.constant(Space::origin());
+                let motions = self.coarse(&eta);
+                self.fill(&eta);
+                match motions {
+                    Some(motions) => {
+                        let mut motion = interpolated(&motions, self.path.len());
+                        self.displace(|index, _| motion(index + 1));
+                    }
+                    None => self.roll_out(),
+                }
+            }
+            Guess::Geodesic => {
+                let eta = self.constant(Space::origin());
+                self.fill(&eta);
+                self.roll_out();
             }
             Guess::Velocity(velocity) => {
-                let edges = S::Scalar::from_f64(S::EDGES.max(1) as f64);
-                self.fill(path, velocity * (self.h / edges));
-                self.roll_out(path)
+                let edges = T::from_f64(S::EDGES.max(1) as f64);
+                let eta = self.constant(velocity * (self.problem.h / edges));
+                self.fill(&eta);
+                self.roll_out();
             }
-            Guess::Path => self.roll_out(path),
-        };
-        let end = self.close(path, end, S::Scalar::from_ratio(1, 8));
-        let gap = self.end(&end, path.len());
+            Guess::Path => self.roll_out(),
+        }
+        self.close(T::from_ratio(1, 8));
+        let gap = self.end();
         if !(gap.distance.is_finite() && gap.along.is_finite()) {
             return Err(Error::NotFinite { name: "the end of the guessed path" });
         }
-        if gap.is_orthogonal() { Err(unreachable(&gap)) } else { Ok(end) }
+        if gap.is_orthogonal() { Err(unreachable(&gap)) } else { Ok(()) }
     }
 
-    /// Fills the nodes with the same group element τ(η), after corrections of η that bring the end to the target.
+    /// η of the group element τ(η) that all edges share, corrected so that the end is brought to the target.
     ///
     /// Each correction is the arc over the gap, divided by the number of edges. It is exact where all motions commute and along the
-    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close). Returns η.
-    pub fn fill(&self, path: &mut [Node<S, M>], eta: SVector<S::Scalar, M>) -> SVector<S::Scalar, M> {
-        let system = self.system;
-        let edges = S::Scalar::from_f64(path.len() as f64);
-        let end_of = |eta: &SVector<S::Scalar, M>| {
-            let q = system.advance(self.start, &self.power(eta, path.len()));
-            self.end(&q, path.len())
+    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close).
+    fn constant(&self, mut eta: SVector<T, M>) -> SVector<T, M> {
+        let Endpoints { system, start, .. } = self.problem;
+        let edges = self.path.len();
+        let end_of = |eta: &SVector<T, M>| {
+            // τ(η)ᴺ by squaring
+            let mut square = system.retraction(eta);
+            let mut power = system.retraction(&Space::origin());
+            let mut exponent = edges;
+            while exponent > 0 {
+                if exponent & 1 == 1 {
+                    power = system.compose(&power, &square);
+                }
+                square = system.compose(&square, &square);
+                exponent >>= 1;
+            }
+            self.problem.end(&system.advance(start, &power), edges)
         };
-        let mut eta = eta;
         let mut end = end_of(&eta);
         for _ in 0..PASSES {
-            if end.is_near(S::Scalar::from_ratio(1, 256)) || end.is_orthogonal() {
+            if end.is_near(T::from_ratio(1, 256)) || end.is_orthogonal() {
                 break;
             }
-            let next = eta + end.arc() / edges;
+            let next = eta + end.arc() / T::from_f64(edges as f64);
             let next_end = end_of(&next);
             // Written so that NaN leaves the loop.
             if next_end.distance < end.distance {
@@ -85,67 +112,95 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
                 break;
             }
         }
-        let increment = system.retraction(&eta);
-        path.iter_mut().for_each(|node| node.increment = increment);
         eta
     }
 
-    /// Moves the vertices of a path of equal edges τ(η) to where a path of few edges finds them. Returns q_N.
-    fn refined(&self, path: &mut [Node<S, M>], eta: &SVector<S::Scalar, M>) -> S::Configuration {
-        let edges = path.len();
-        let Some(increment) = path.last().map(|node| node.increment) else { return *self.start };
-        let motions = self.coarse(path, eta);
-        path.iter_mut().for_each(|node| node.increment = increment);
-        match motions {
-            Some(motions) => {
-                let mut motion = interpolated(&motions, edges);
-                self.displace(path, |index, _| motion(index + 1))
-            }
-            None => self.roll_out(path),
-        }
+    /// Makes all increments those of τ(η).
+    fn fill(&mut self, eta: &SVector<T, M>) {
+        let increment = self.problem.system.retraction(eta);
+        self.path.iter_mut().for_each(|node| node.increment = increment);
     }
 
-    /// The increment of τ(η)ⁿ, by squaring.
-    fn power(&self, eta: &SVector<S::Scalar, M>, exponent: usize) -> S::Element {
-        let system = self.system;
-        let mut square = system.retraction(eta);
-        let mut power = system.retraction(&SVector::from_element(S::Scalar::zero()));
-        let mut rest = exponent;
-        while rest > 0 {
-            if rest & 1 == 1 {
-                power = system.compose(&power, &square);
+    /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least.
+    ///
+    /// The path has as many steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where
+    /// corrections are no small motions towards a minimum: steps may be too long then for what happens in them.
+    fn coarse(&mut self, eta: &SVector<T, M>) -> Option<Motions<T, M>> {
+        let ratio = T::from_f64(self.path.len() as f64) / T::from_f64(COARSE as f64);
+        let path = self.path.get_mut(..COARSE).filter(|_| ratio >= T::from_f64((MANY / COARSE) as f64))?;
+        let h = self.problem.h * ratio;
+        let constants = S::Scheme::constants(self.problem.system, h).ok()?;
+        let problem = Endpoints { h, constants: &constants, ..self.problem };
+        let mut few = Search { problem, path, last: self.last };
+        let eta = few.constant(eta * ratio);
+        few.fill(&eta);
+        few.roll_out();
+        let mut motions: Motions<T, M> = Space::origin();
+        let mut bound = T::one();
+        for _ in 0..CORRECTIONS {
+            let summary = few.eliminate(&few.end(), Curvature::exact(T::zero()));
+            // Written so that NaN is no progress.
+            if !(summary.negative == 0 && summary.size <= bound) {
+                return None;
             }
-            square = system.compose(&square, &square);
-            rest >>= 1;
+            few.correct(T::one());
+            motions.iter_mut().skip(1).zip(few.path.iter()).for_each(|(sum, node)| *sum += node.motion);
+            // The next correction would be less than what few edges differ by from many.
+            if summary.size <= T::from_ratio(1, 8) {
+                return motions.is_finite().then_some(motions);
+            }
+            bound = summary.size * T::from_ratio(1, 2);
         }
-        power
+        None
     }
 
     /// Moves vertex k by k/N of what the end lacks, until the gap is below `enough` of the size of the configuration or no pass makes
-    /// it smaller. Returns q_N.
+    /// it smaller.
     #[cold]
-    pub fn close(&self, path: &mut [Node<S, M>], end: S::Configuration, enough: S::Scalar) -> S::Configuration {
-        let edges = S::Scalar::from_f64(path.len() as f64);
-        let (mut q, mut gap) = (end, self.end(&end, path.len()));
-        let mut fraction = S::Scalar::one();
+    pub fn close(&mut self, enough: T) {
+        let edges = T::from_f64(self.path.len() as f64);
+        let mut gap = self.end();
+        let mut fraction = T::one();
         for _ in 0..PASSES {
             if gap.is_near(enough) || gap.is_orthogonal() || !gap.distance.is_finite() {
                 break;
             }
             let motion = gap.arc() * fraction;
-            let next = self.displace(path, |index, _| motion * (S::Scalar::from_f64((index + 1) as f64) / edges));
-            let next_gap = self.end(&next, path.len());
+            self.displace(|index, _| motion * (T::from_f64((index + 1) as f64) / edges));
+            let next = self.end();
             // Written so that NaN is taken back.
-            if next_gap.distance < gap.distance {
-                (q, gap) = (next, next_gap);
-            } else {
-                q = self.take_back(path);
-                if gap.is_reached() {
-                    break;
-                }
-                fraction *= S::Scalar::from_ratio(1, 2);
+            if next.distance < gap.distance {
+                gap = next;
+                continue;
             }
+            self.take_back();
+            if gap.is_reached() {
+                break;
+            }
+            fraction *= T::from_ratio(1, 2);
         }
-        q
+    }
+}
+
+/// The motions of the vertices of a path of so many edges after the first, one after the other: cubics through those of the four coarse
+/// vertices about each.
+pub(super) fn interpolated<T: Real, const M: usize>(
+    motions: &Motions<T, M>,
+    edges: usize,
+) -> impl FnMut(usize) -> SVector<T, M> {
+    let half = T::from_ratio(1, 2);
+    let sixth = T::from_ratio(1, 6);
+    let spacing = T::from_f64(COARSE as f64) / T::from_f64(edges as f64);
+    let mut first = 0;
+    move |k| {
+        while first < COARSE - 3 && k * COARSE >= (first + 2) * edges {
+            first += 1;
+        }
+        let x = T::from_f64(k as f64) * spacing - T::from_f64(first as f64);
+        let (a, b, c) = (x - T::one(), x - T::from_f64(2.0), x - T::from_f64(3.0));
+        let (early, late) = (b * c, x * a);
+        let weights = [-a * early * sixth, x * early * half, -late * c * half, late * b * sixth];
+        let nearest = motions.iter().skip(first).zip(weights);
+        nearest.fold(SVector::from_element(T::zero()), |sum, (motion, weight)| sum + motion * weight)
     }
 }

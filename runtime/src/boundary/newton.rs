@@ -1,12 +1,10 @@
 //! Newton's method on a path, and what is done where it does not contract.
 
-use super::Node;
 use super::end::PathEnd;
-use super::sweep::Endpoints;
+use super::sweep::Search;
 use super::vertex::PathSummary;
-use crate::newton::{Curvature, Share, adapted};
-use crate::{Error, Real, Scalar, Variational};
-use num_traits::{One, Zero};
+use crate::newton::{Curvature, adapted};
+use crate::{Error, Real, Variational};
 
 /// Backward sweeps of which one solution may make use.
 const SWEEPS: u32 = 200;
@@ -15,44 +13,50 @@ const HALVINGS: usize = 6;
 /// Damping beyond which no step goes downhill but for round-off.
 const DAMPING_LIMIT: f64 = 1e12;
 
-/// A path on which the action is critical.
-pub(super) struct CriticalPath<S: Variational<M, Scalar: Real>, const M: usize> {
-    pub summary: PathSummary<S::Scalar, M>,
-    pub end: S::Configuration,
-    pub sweeps: u32,
-}
-
-/// What the sweep before told.
-struct Progress<T> {
-    size: T,
-    action: T,
-    decrement: T,
-}
-
-impl<T: Real> Progress<T> {
+impl<T: Real, const M: usize> PathSummary<T, M> {
     /// Whether the correction takes so little from the action, √ε of it, that the action tells no more how good it was.
     fn is_near(&self) -> bool {
         self.size * self.size <= T::EPSILON.sqrt()
     }
 
-    /// Whether the correction is so small beside the path that an extremal near it was to be expected.
-    fn is_small(&self) -> bool {
-        self.size <= T::from_ratio(1, 8)
-    }
-
     /// Whether the next correction is half of this one at most. Written so that NaN is none.
-    fn is_halved_by(&self, size: T) -> bool {
-        size <= T::from_ratio(1, 2) * self.size
+    fn is_halved_by(&self, next: &Self) -> bool {
+        next.size <= T::from_ratio(1, 2) * self.size
     }
 
     /// Whether the correction was small and the next one is not smaller: it has gone where the action does not bend, or is round-off.
-    fn is_astray(&self, size: T) -> bool {
-        self.is_near() && !self.is_halved_by(size)
+    fn is_led_astray(&self, next: &Self) -> bool {
+        self.is_near() && !self.is_halved_by(next)
+    }
+
+    /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
+    ///
+    /// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of
+    /// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
+    #[inline]
+    fn has_converged(&self, before: Option<&Self>, is_closed: bool, curvature: Curvature<T>) -> bool {
+        let seen = T::EPSILON.sqrt();
+        let is_stationary = |units| is_closed && self.is_stationary(units);
+        let is_steadied = curvature == Curvature::exact(seen);
+        self.size <= self.round_off()
+            || self.size <= seen
+                && match before.filter(|before| is_steadied && before.size <= seen) {
+                    Some(before) => !before.is_halved_by(self) || is_stationary(1024.0),
+                    None => is_stationary(16.0),
+                }
+    }
+
+    /// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
+    #[inline]
+    fn is_last(&self, before: Option<&Self>) -> bool {
+        let contraction = |before: &Self| self.size / before.size;
+        self.size <= T::EPSILON.sqrt()
+            && before.is_some_and(|before| self.size * contraction(before) * contraction(before) <= T::EPSILON)
     }
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
-    /// The critical point of the action near the path, which ends at `end`; where `any_index` is false, a minimum is looked for.
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+    /// The critical point of the action near the path; where `any_index` is false, a minimum is looked for. With the number of sweeps.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
     /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
@@ -65,193 +69,115 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
     /// # Errors
     /// [`Error::NotFinite`], [`Error::Unreachable`], [`Error::NoExtremal`].
     #[inline]
-    pub fn newton(
-        &self,
-        path: &mut [Node<S, M>],
-        end: S::Configuration,
-        any_index: bool,
-    ) -> Result<CriticalPath<S, M>, Error> {
-        let (mut end, mut any_index) = (end, any_index);
-        let mut before: Option<Progress<S::Scalar>> = None;
-        let mut curvature = Curvature::kept();
-        let mut size = S::Scalar::zero();
+    pub fn newton(&mut self, mut any_index: bool) -> Result<(PathSummary<T, M>, u32), Error> {
+        let zero = T::zero();
+        let seen = T::EPSILON.sqrt();
+        let exact = Curvature::exact(zero);
+        let mut before: Option<PathSummary<T, M>> = None;
+        let mut curvature = exact;
+        let mut size = zero;
         for sweeps in 1..=SWEEPS {
-            let gap = self.end(&end, path.len());
-            let summary = self.eliminate(path, &end, &gap, curvature);
-            size = summary.size();
-            if !summary.action.is_finite() && (sweeps == 1 || curvature.is_mirrored()) {
+            let gap = self.end();
+            let summary = self.eliminate(&gap, curvature);
+            size = summary.size;
+            if !summary.action.is_finite() && (sweeps == 1 || curvature.is_mirrored) {
                 return Err(Error::NotFinite { name: "the action of the path" });
             }
-            let damped = curvature.added().0 > S::Scalar::zero();
-            if !damped && has_converged(&summary, before.as_ref(), gap.is_closed() || gap.is_orthogonal(), curvature) {
-                return if gap.is_reached() {
-                    Ok(CriticalPath { summary, end, sweeps })
-                } else {
-                    Err(unreachable(&gap))
-                };
+            let is_damped = curvature.damping > zero;
+            let is_closed = gap.is_closed() || gap.is_orthogonal();
+            if !is_damped && summary.has_converged(before.as_ref(), is_closed, curvature) {
+                return if gap.is_reached() { Ok((summary, sweeps)) } else { Err(unreachable(&gap)) };
             }
-            let at_saddle = !damped && summary.negative > 0 && size <= S::Scalar::EPSILON.sqrt();
-            if curvature.is_mirrored() && at_saddle {
-                // By symmetry no gradient leads away from here, and the action has no digits left to go by.
-                (curvature, any_index, before) = (Curvature::kept(), true, None);
+            if curvature.is_mirrored && !is_damped && summary.negative > 0 && size <= seen {
+                // By symmetry no gradient leads away from this saddle, and the action has no digits left to go by.
+                (curvature, any_index, before) = (exact, true, None);
                 continue;
             }
-            let is_astray = before.as_ref().is_some_and(|before| before.is_astray(size));
-            if let Curvature::Mirrored { damping, .. } = &mut curvature
-                && !is_astray
-            {
-                match self.descend(path, &summary) {
-                    Some((q, fraction)) => {
-                        end = q;
-                        *damping = damping_after(*damping, fraction);
-                    }
-                    None if *damping > S::Scalar::from_f64(DAMPING_LIMIT) => {
-                        return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
-                    }
-                    None => {
-                        (*damping, before) = (damping_after(*damping, S::Scalar::zero()), None);
-                        continue;
-                    }
+            let is_astray = before.is_some_and(|before| before.is_led_astray(&summary));
+            if curvature.is_mirrored && !is_astray {
+                let halvings = self.descend(&summary);
+                if halvings.is_none() && curvature.damping > T::from_f64(DAMPING_LIMIT) {
+                    return Err(Error::NoExtremal { correction: size.to_f64(), iterations: sweeps });
                 }
+                curvature.damping = adapted(curvature.damping, T::from_ratio(1, 8), halvings.unwrap_or(HALVINGS));
+                before = halvings.map(|_| summary);
             } else if self.is_progress(&summary, before.as_ref(), any_index, curvature) {
-                end = self.correct(path, S::Scalar::one());
-                if is_last(&summary, before.as_ref())
-                    && let Some(summary) = self.found(path, &end, &summary)
+                self.correct(T::one());
+                if summary.is_last(before.as_ref())
+                    && let Some(summary) = self.found(&summary)
                 {
-                    return Ok(CriticalPath { summary, end, sweeps });
+                    return Ok((summary, sweeps));
                 }
+                before = Some(summary);
             } else {
-                let is_near_any = any_index && before.as_ref().is_some_and(Progress::is_small);
-                if before.is_some() {
-                    end = self.take_back(path);
+                // A correction that is small beside the path was to lead to an extremal near it.
+                let is_small = before.is_some_and(|before| before.size <= T::from_ratio(1, 8));
+                if before.take().is_some() {
+                    self.take_back();
                 }
-                end = self.close(path, end, S::Scalar::zero());
-                (before, curvature) = (None, after_failure(curvature, is_near_any || is_astray));
-                continue;
+                self.close(zero);
+                let is_near_any = curvature == exact && (any_index && is_small || is_astray);
+                let steadied = curvature.is_mirrored || is_near_any;
+                curvature = if steadied { Curvature::exact(seen) } else { Curvature::mirrored(zero, zero) };
             }
-            before = Some(Progress { size, action: summary.action, decrement: summary.decrement });
         }
         Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
     }
 
     /// What is known of a path after its last correction, if that is what it was: if the gap is closed and the residual is round-off.
     #[inline]
-    fn found(
-        &self,
-        path: &mut [Node<S, M>],
-        end: &S::Configuration,
-        before: &PathSummary<S::Scalar, M>,
-    ) -> Option<PathSummary<S::Scalar, M>> {
-        let gap = self.end(end, path.len());
-        let summary = self.measure(path, end, &gap, before);
-        let unit = S::Scalar::from_f64(4.0) * S::Scalar::EPSILON * summary.edges.sqrt();
-        (gap.along <= unit * gap.scale && gap.is_reached() && summary.is_stationary(S::Scalar::from_f64(16.0)))
-            .then_some(summary)
+    fn found(&mut self, before: &PathSummary<T, M>) -> Option<PathSummary<T, M>> {
+        let gap = self.end();
+        let summary = self.measure(&gap, before);
+        let is_closed = gap.along <= summary.round_off() * gap.scale && gap.is_reached();
+        (is_closed && summary.is_stationary(16.0)).then_some(summary)
     }
 
     /// Whether a full step is made next. Comparisons are written so that NaN is none.
     #[inline]
     fn is_progress(
         &self,
-        summary: &PathSummary<S::Scalar, M>,
-        before: Option<&Progress<S::Scalar>>,
+        summary: &PathSummary<T, M>,
+        before: Option<&PathSummary<T, M>>,
         any_index: bool,
-        curvature: Curvature<S::Scalar>,
+        curvature: Curvature<T>,
     ) -> bool {
         if summary.negative > 0 && !any_index {
             return false;
         }
-        let size = summary.size();
         match before {
             // One that is larger than the path leads to another extremal than that near the guess.
-            None if any_index && curvature == Curvature::kept() => size <= S::Scalar::one(),
-            None => size.is_finite(),
+            None if any_index && curvature == Curvature::exact(T::zero()) => summary.size <= T::one(),
+            None => summary.size.is_finite(),
             Some(before) => {
-                let is_lower = || summary.negative == 0 && self.is_lower(summary.action, before, S::Scalar::one());
-                before.is_halved_by(size) || (!before.is_near() && is_lower())
+                let is_lower = || summary.negative == 0 && self.is_lower(summary.action, before, T::one());
+                before.is_halved_by(summary) || (!before.is_near() && is_lower())
             }
         }
     }
 
     /// Armijo's rule: a step of this fraction took at least a hundredth of what the slope promises.
-    fn is_lower(&self, action: S::Scalar, before: &Progress<S::Scalar>, fraction: S::Scalar) -> bool {
-        let promised = before.decrement * fraction * S::Scalar::from_ratio(1, 100);
-        (action - before.action) * self.sign <= -(promised * self.sign)
+    fn is_lower(&self, action: T, before: &PathSummary<T, M>, fraction: T) -> bool {
+        let promised = before.decrement * fraction * T::from_ratio(1, 100);
+        let sign = self.problem.sign();
+        (action - before.action) * sign <= -(promised * sign)
     }
 
-    /// A step that makes the action smaller, or a full one where the action has no digits left to tell. Returns q_N and the fraction of
-    /// Newton's correction that was made; `None` where that would be too small.
+    /// Makes a step that makes the action smaller, or a full one where the action has no digits left to tell. Returns how often it was halved;
+    /// `None` where it would be too small.
     #[cold]
-    fn descend(
-        &self,
-        path: &mut [Node<S, M>],
-        summary: &PathSummary<S::Scalar, M>,
-    ) -> Option<(S::Configuration, S::Scalar)> {
-        let size = summary.size();
-        let before = Progress { size, action: summary.action, decrement: summary.decrement };
-        let mut fraction = S::Scalar::one();
-        if before.is_near() && summary.negative == 0 {
-            return Some((self.correct(path, fraction), fraction));
-        }
-        for _ in 0..HALVINGS {
-            if self.is_lower(self.action_after(path, fraction), &before, fraction) {
-                return Some((self.correct(path, fraction), fraction));
+    fn descend(&mut self, summary: &PathSummary<T, M>) -> Option<usize> {
+        let is_trusted = summary.is_near() && summary.negative == 0;
+        let mut fraction = T::one();
+        for halvings in 0..HALVINGS {
+            if is_trusted || self.is_lower(self.action_after(fraction), summary, fraction) {
+                self.correct(fraction);
+                return Some(halvings);
             }
-            fraction *= S::Scalar::from_ratio(1, 2);
+            fraction *= T::from_ratio(1, 2);
         }
         None
     }
-}
-
-/// The damping after a step of this fraction.
-fn damping_after<T: Real>(damping: T, fraction: T) -> T {
-    let made = if fraction >= T::one() {
-        Share::Whole
-    } else if fraction < T::from_ratio(1, 4) {
-        Share::Little
-    } else {
-        Share::Part
-    };
-    adapted(damping, T::from_ratio(1, 8), made)
-}
-
-/// What is tried where this curvature failed; `near` where the extremal that is looked for is that near the path.
-fn after_failure<T: Real>(curvature: Curvature<T>, near: bool) -> Curvature<T> {
-    let may_be_steadied = near && curvature == Curvature::kept();
-    if curvature.is_mirrored() || may_be_steadied { Curvature::steadied() } else { Curvature::mirrored(T::zero()) }
-}
-
-/// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
-///
-/// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of
-/// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
-#[inline]
-fn has_converged<T: Real, const M: usize>(
-    summary: &PathSummary<T, M>,
-    before: Option<&Progress<T>>,
-    closed: bool,
-    curvature: Curvature<T>,
-) -> bool {
-    let (size, seen) = (summary.size(), T::EPSILON.sqrt());
-    let is_stationary = |units| closed && summary.is_stationary(T::from_f64(units));
-    if size <= T::from_f64(4.0) * T::EPSILON * summary.edges.sqrt() {
-        return true;
-    }
-    let last = before.filter(|before| curvature == Curvature::steadied() && before.size <= seen);
-    size <= seen
-        && match last {
-            Some(before) => !before.is_halved_by(size) || is_stationary(1024.0),
-            None => is_stationary(16.0),
-        }
-}
-
-/// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
-#[inline]
-fn is_last<T: Real, const M: usize>(summary: &PathSummary<T, M>, before: Option<&Progress<T>>) -> bool {
-    let size = summary.size();
-    let contraction = |before: &Progress<T>| size / before.size;
-    size <= T::EPSILON.sqrt()
-        && before.is_some_and(|before| size * contraction(before) * contraction(before) <= T::EPSILON)
 }
 
 /// The gap that is left where none of it can be closed.

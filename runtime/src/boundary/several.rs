@@ -5,7 +5,7 @@ use crate::space::larger;
 use crate::{Error, Real, Scalar, Variational};
 use core::cmp::Ordering;
 use nalgebra::SVector;
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 /// One of several extremals between the same endpoints, found by [`Boundary::several`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,8 @@ pub struct Way<T, const M: usize> {
 
 /// The angles, in quarters of a turn, that guessed velocities go through: there and back from any point of a closed orbit, and one turn more.
 const QUARTERS: [f64; 4] = [1.0, 3.0, 5.0, 7.0];
+/// The signs of the two directions that a velocity is along; the first two where they are one.
+const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
 /// Momenta that differ by less, relative to their size, are those of one extremal.
 const APART: f64 = 1e-6;
 
@@ -43,22 +45,36 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
         target: &S::Configuration,
         path: &mut [Node<S, M>],
     ) -> Result<[Option<Way<S::Scalar, M>>; K], Error> {
-        self.check(start, &Guess::Geodesic, path.len())?;
+        let nodes = path.len();
+        self.check(start, &Guess::Geodesic, nodes)?;
         self.stepper.check_configuration(target)?;
         let mut ways = [None; K];
         let mut failure = None;
-        for guess in self.guesses(path.len()) {
-            match self.solve(start, target, guess, path) {
-                Ok(extremal) => insert(
-                    &mut ways,
-                    Way {
-                        action: extremal.action(),
-                        momentum: *extremal.momentum(),
-                        negative: extremal.negative(),
-                        guess,
-                    },
-                ),
-                Err(error) => failure = failure.or(Some(error)),
+        let mut look = |guess| match self.solve(start, target, guess, path) {
+            Ok(extremal) => {
+                let (action, momentum, negative) = (extremal.action, *extremal.momentum(), extremal.negative);
+                insert(&mut ways, Way { action, momentum, negative, guess });
+            }
+            Err(error) => {
+                failure.get_or_insert(error);
+            }
+        };
+        look(Guess::Geodesic);
+        let steps = S::Scalar::from_f64((nodes / S::EDGES.max(1)) as f64);
+        let quarter = S::Scalar::PI * S::Scalar::from_ratio(1, 2) / (self.stepper.h * steps);
+        for angle in QUARTERS {
+            let length = S::Scalar::from_f64(angle) * quarter;
+            for (i, j) in (0..M).flat_map(|i| (i..M).map(move |j| (i, j))) {
+                let (count, share) =
+                    if i == j { (2, S::Scalar::one()) } else { (4, S::Scalar::from_ratio(1, 2).sqrt()) };
+                for signs in SIGNS.into_iter().take(count) {
+                    let [first, second] = signs.map(|sign| S::Scalar::from_f64(sign) * length * share);
+                    look(Guess::Velocity(SVector::from_fn(|k, _| match k {
+                        k if k == i => first,
+                        k if k == j => second,
+                        _ => S::Scalar::zero(),
+                    })));
+                }
             }
         }
         match failure {
@@ -66,38 +82,10 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
             _ => Ok(ways),
         }
     }
-
-    /// The shortest way, then ±(E_i ± E_j), i ≤ j, through each of the angles.
-    fn guesses(&self, nodes: usize) -> impl Iterator<Item = Guess<S::Scalar, M>> + use<S, M> {
-        let steps = S::Scalar::from_f64((nodes / S::EDGES.max(1)) as f64);
-        let quarter = S::Scalar::PI * S::Scalar::from_ratio(1, 2) / (self.stepper.h * steps);
-        let pairs = (0..M).flat_map(|i| (i..M).map(move |j| (i, j)));
-        let signs = [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
-        let velocity = move |((i, j), (a, b), angle): ((usize, usize), (f64, f64), f64)| {
-            let (zero, length) = (S::Scalar::zero(), S::Scalar::from_f64(angle) * quarter);
-            let [first, second] = [a, b].map(|sign| S::Scalar::from_f64(sign) * length);
-            let half = S::Scalar::from_ratio(1, 2).sqrt();
-            let entry = |k: usize| match (k == i, k == j) {
-                (true, true) => first,
-                (true, false) => first * half,
-                (false, true) => second * half,
-                (false, false) => zero,
-            };
-            Guess::Velocity(SVector::from_fn(|k, _| entry(k)))
-        };
-        let mixed = QUARTERS.into_iter().flat_map(move |angle| {
-            let pairs = pairs.clone();
-            pairs.flat_map(move |(i, j)| {
-                let count = if i == j { 2 } else { 4 };
-                signs.into_iter().take(count).map(move |sign| ((i, j), sign, angle))
-            })
-        });
-        core::iter::once(Guess::Geodesic).chain(mixed.map(velocity))
-    }
 }
 
 /// Puts a way in its place, if it is none of those that are known; of more than K the one with the largest action is dropped.
-fn insert<T: Real, const M: usize, const K: usize>(ways: &mut [Option<Way<T, M>>; K], way: Way<T, M>) {
+fn insert<T: Real, const M: usize>(ways: &mut [Option<Way<T, M>>], mut way: Way<T, M>) {
     let is_known = |known: &Way<T, M>| {
         let apart = known.momentum - way.momentum;
         let size = larger(known.momentum.dot(&known.momentum), way.momentum.dot(&way.momentum));
@@ -106,7 +94,6 @@ fn insert<T: Real, const M: usize, const K: usize>(ways: &mut [Option<Way<T, M>>
     if ways.iter().flatten().any(is_known) {
         return;
     }
-    let mut way = way;
     for place in ways {
         match place {
             None => {

@@ -13,16 +13,14 @@
 
 use super::Node;
 use super::end::PathEnd;
-use super::pivot::Feedback;
 use super::vertex::{PathSummary, Pending};
 use crate::newton::Curvature;
 use crate::scheme::Constants;
-use crate::{Edge, Momenta, Real, Scalar, Space, Variational};
+use crate::space::larger;
+use crate::{Clebsch, Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
-use num_traits::Zero;
 
 /// Fixed endpoints for a system and a step size.
-#[derive(Clone, Copy)]
 pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub system: &'a S,
     pub h: S::Scalar,
@@ -32,160 +30,40 @@ pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize>
     pub start: &'a S::Configuration,
     /// The last configuration; `None` where it is free, at the price of the end.
     pub target: Option<&'a S::Configuration>,
-    /// The sign of the step size: that of the Hessian at a minimum.
-    pub sign: S::Scalar,
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
+/// A path from the start, on the way from a guess to an extremal.
+pub(super) struct Search<'a, S: Variational<M, Scalar: Real>, const M: usize> {
+    pub problem: Endpoints<'a, S, M>,
+    pub path: &'a mut [Node<S, M>],
+    /// q_N
+    pub last: S::Configuration,
+}
+
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M> {
     /// What is known of a path of so many edges that ends at `q`.
     #[inline]
-    pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<S::Scalar, M> {
+    pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<T, M> {
         match self.target {
             Some(target) => PathEnd::of(self.system, q, target),
             None => PathEnd::free(&self.system.endpoint(self.time_of_end(edges), q), q.max_abs()),
         }
     }
 
-    pub fn time_of_end(&self, edges: usize) -> S::Scalar {
+    pub fn time_of_end(&self, edges: usize) -> T {
         // the price of the end may depend on the time where nothing else does
-        self.time + S::Scalar::from_f64((edges / S::EDGES.max(1)) as f64) * self.h
+        self.time + T::from_f64((edges / S::EDGES.max(1)) as f64) * self.h
     }
 
-    /// Linearises and eliminates a path that ends at `last_vertex`: fills momenta, gains and shifts of the nodes.
-    #[inline]
-    pub fn eliminate(
-        &self,
-        path: &mut [Node<S, M>],
-        last_vertex: &S::Configuration,
-        end: &PathEnd<S::Scalar, M>,
-        curvature: Curvature<S::Scalar>,
-    ) -> PathSummary<S::Scalar, M> {
-        let mut summary = PathSummary::of_nothing(path.len());
-        let Some((last, rest)) = path.split_last_mut() else { return summary };
-        let mut pending = self.eliminate_end(rest.len(), last, last_vertex, end, curvature, &mut summary);
-        let mut next = &last.configuration;
-        for (index, node) in rest.iter_mut().enumerate().rev() {
-            let edge = self.edge(index, &node.configuration, &node.increment, next);
-            summary.count(&edge);
-            let feedback = Feedback { gain: &mut node.gain, shift: &mut node.shift };
-            let solution = summary.eliminate(&edge, &pending, self.sign, curvature, feedback);
-            pending = Pending::behind(&edge, &solution);
-            node.momentum = edge.before;
-            next = &node.configuration;
-        }
-        summary
-    }
-
-    /// The last edge and the vertex where it ends, apart from the loop over the others.
-    #[inline(never)]
-    fn eliminate_end(
-        &self,
-        index: usize,
-        last: &mut Node<S, M>,
-        last_vertex: &S::Configuration,
-        end: &PathEnd<S::Scalar, M>,
-        curvature: Curvature<S::Scalar>,
-        summary: &mut PathSummary<S::Scalar, M>,
-    ) -> Pending<S::Scalar, M> {
-        let edge = self.edge(index, &last.configuration, &last.increment, last_vertex);
-        summary.count(&edge);
-        let feedback = Feedback { gain: &mut last.gain, shift: &mut last.shift };
-        let solution = summary.eliminate_end(&edge, end, self.sign, curvature, feedback);
-        last.momentum = edge.before;
-        Pending::behind(&edge, &solution)
-    }
-
-    /// Momenta, action and residual of a path that ends at `last_vertex`, without second derivatives: gains and shifts of the nodes stay
-    /// those of the sweep that `before` tells of.
-    pub fn measure(
-        &self,
-        path: &mut [Node<S, M>],
-        last_vertex: &S::Configuration,
-        end: &PathEnd<S::Scalar, M>,
-        before: &PathSummary<S::Scalar, M>,
-    ) -> PathSummary<S::Scalar, M> {
-        let mut next = last_vertex;
-        let edges = path.iter_mut().enumerate().rev().map(|(index, node)| {
-            let momenta = self.momenta(index, &node.configuration, &node.increment, next);
-            node.momentum = momenta.before;
-            next = &node.configuration;
-            momenta
-        });
-        before.measured(edges, end)
-    }
-
-    /// Moves the vertices by `fraction` of Newton's correction. Returns q_N.
-    #[inline]
-    pub fn correct(&self, path: &mut [Node<S, M>], fraction: S::Scalar) -> S::Configuration {
-        let mut motion = SVector::from_element(S::Scalar::zero());
-        self.displace(path, |_, node| {
-            motion = -node.shift - node.gain * motion;
-            motion * fraction
-        })
-    }
-
-    /// Takes the last displacement back, up to round-off. Returns q_N.
-    #[cold]
-    pub fn take_back(&self, path: &mut [Node<S, M>]) -> S::Configuration {
-        self.displace(path, |_, node| -node.motion)
-    }
-
-    /// Moves the vertex where the edge number `index` ends by `motion(index, node)`, for all edges in order: F_k ↦ τ(η_k)⁻¹ F_k τ(η_{k+1}).
-    /// Returns q_N.
-    #[inline]
-    pub fn displace(
-        &self,
-        path: &mut [Node<S, M>],
-        mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<S::Scalar, M>,
-    ) -> S::Configuration {
-        let system = self.system;
-        let mut q = *self.start;
-        let mut back = system.retraction(&SVector::from_element(S::Scalar::zero()));
-        for (index, node) in path.iter_mut().enumerate() {
-            let next = motion(index, node);
-            let behind = system.compose(&back, &node.increment);
-            let [ahead, inverse] = system.retractions(&next);
-            node.increment = system.compose(&behind, &ahead);
-            node.configuration = q;
-            node.motion = next;
-            q = system.advance(&q, &node.increment);
-            back = inverse;
-        }
-        q
-    }
-
-    /// The action after `fraction` of Newton's correction.
-    #[cold]
-    pub fn action_after(&self, path: &[Node<S, M>], fraction: S::Scalar) -> S::Scalar {
-        let system = self.system;
-        let zero = SVector::<S::Scalar, M>::from_element(S::Scalar::zero());
-        let (mut q, mut motion, mut action) = (*self.start, zero, S::Scalar::zero());
-        for (index, node) in path.iter().enumerate() {
-            let behind = system.compose(&system.retraction(&(motion * -fraction)), &node.increment);
-            motion = -node.shift - node.gain * motion;
-            let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
-            let next = system.advance(&q, &increment);
-            action += self.momenta(index, &q, &increment, &next).lagrangian;
-            q = next;
-        }
-        match self.target {
-            Some(_) => action,
-            None => action + self.system.endpoint(self.time_of_end(path.len()), &q).price,
-        }
-    }
-
-    /// The configurations that the increments lead to. Returns q_N.
-    pub fn roll_out(&self, path: &mut [Node<S, M>]) -> S::Configuration {
-        path.iter_mut().fold(*self.start, |q, node| {
-            node.configuration = q;
-            self.system.advance(&q, &node.increment)
-        })
+    /// The sign of the step size: that of the Hessian at a minimum.
+    pub fn sign(&self) -> T {
+        if self.h < T::zero() { -T::one() } else { T::one() }
     }
 
     #[inline(always)]
-    fn edge(&self, index: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Edge<S::Scalar, M> {
+    fn edge(&self, index: usize, node: &Node<S, M>, next: &S::Configuration) -> Edge<T, M> {
         let (t, edge) = self.place(index);
-        self.system.edge(self.constants, edge, t, q, d, next, &S::Input::origin())
+        self.system.edge(self.constants, edge, t, &node.configuration, &node.increment, next, &S::Input::origin())
     }
 
     #[inline]
@@ -195,25 +73,158 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Endpoints<'_, S, M> {
         q: &S::Configuration,
         d: &S::Element,
         next: &S::Configuration,
-    ) -> Momenta<S::Scalar, M> {
+    ) -> Momenta<T, M> {
         let (t, edge) = self.place(index);
         self.system.momenta(self.constants, edge, t, q, d, next, &S::Input::origin())
     }
 
     /// The time at which the step of an edge starts, and the number of the edge in it.
     #[inline]
-    fn place(&self, index: usize) -> (S::Scalar, usize) {
+    fn place(&self, index: usize) -> (T, usize) {
         let per_step = S::EDGES.max(1);
-        (time_after::<S, M>(self.time, self.h, index / per_step), index % per_step)
+        (time_after::<S>(self.time, self.h, index / per_step), index % per_step)
+    }
+
+    /// The last edge and the vertex where it ends, apart from the loop over the others.
+    #[inline(never)]
+    fn eliminate_end(
+        &self,
+        (index, node): (usize, &mut Node<S, M>),
+        next: &S::Configuration,
+        end: &PathEnd<T, M>,
+        curvature: Curvature<T>,
+        summary: &mut PathSummary<T, M>,
+    ) -> Pending<T, M> {
+        let edge = self.edge(index, node, next);
+        summary.count(&edge);
+        node.momentum = edge.before;
+        summary.eliminate_end(&edge, end, self.sign(), curvature, &mut node.feedback)
+    }
+}
+
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+    /// What is known where the path ends.
+    #[inline]
+    pub fn end(&self) -> PathEnd<T, M> {
+        self.problem.end(&self.last, self.path.len())
+    }
+
+    /// Linearises and eliminates: fills momenta, gains and shifts of the nodes.
+    #[inline]
+    pub fn eliminate(&mut self, end: &PathEnd<T, M>, curvature: Curvature<T>) -> PathSummary<T, M> {
+        let problem = &self.problem;
+        let sign = problem.sign();
+        let mut summary = PathSummary::of_nothing(self.path.len());
+        let Some((last, others)) = self.path.split_last_mut() else { return summary };
+        let mut pending = problem.eliminate_end((others.len(), last), &self.last, end, curvature, &mut summary);
+        let mut next = &last.configuration;
+        for (index, node) in others.iter_mut().enumerate().rev() {
+            let edge = problem.edge(index, node, next);
+            summary.count(&edge);
+            pending = summary.eliminate(&edge, &pending, sign, curvature, &mut node.feedback);
+            node.momentum = edge.before;
+            next = &node.configuration;
+        }
+        summary.finish();
+        summary
+    }
+
+    /// Momenta, action and residual, without second derivatives: gains and shifts of the nodes stay those of the sweep that `before` tells of.
+    pub fn measure(&mut self, end: &PathEnd<T, M>, before: &PathSummary<T, M>) -> PathSummary<T, M> {
+        let zero = T::zero();
+        let mut summary = PathSummary { action: zero, momenta: zero, residual_squared: zero, ..*before };
+        let mut next = &self.last;
+        let mut later: Option<SVector<T, M>> = None;
+        for (index, node) in self.path.iter_mut().enumerate().rev() {
+            let Momenta { lagrangian, before, after } =
+                self.problem.momenta(index, &node.configuration, &node.increment, next);
+            let residual = match (later, &end.kernel) {
+                (Some(later), _) => after - later,
+                (None, Some(kernel)) => kernel * (after + end.slope),
+                (None, None) => SVector::from_element(zero),
+            };
+            if later.is_none() {
+                summary.after = after;
+            }
+            summary.action += lagrangian;
+            summary.momenta += before.dot(&before);
+            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
+            node.momentum = before;
+            next = &node.configuration;
+            later = Some(before);
+        }
+        summary.action += end.price;
+        summary
+    }
+
+    /// Moves the vertices by `fraction` of Newton's correction.
+    #[inline]
+    pub fn correct(&mut self, fraction: T) {
+        let mut motion = SVector::from_element(T::zero());
+        self.displace(|_, node| {
+            motion = node.correction(&motion);
+            motion * fraction
+        });
+    }
+
+    /// Takes the last displacement back, up to round-off.
+    #[cold]
+    pub fn take_back(&mut self) {
+        self.displace(|_, node| -node.motion);
+    }
+
+    /// Moves the vertex where the edge number `index` ends by `motion(index, node)`, for all edges in order: F_k ↦ τ(η_k)⁻¹ F_k τ(η_{k+1}).
+    #[inline]
+    pub fn displace(&mut self, mut motion: impl FnMut(usize, &Node<S, M>) -> SVector<T, M>) {
+        let system = self.problem.system;
+        let mut q = *self.problem.start;
+        let mut back = system.retraction(&SVector::from_element(T::zero()));
+        for (index, node) in self.path.iter_mut().enumerate() {
+            let next = motion(index, node);
+            let behind = system.compose(&back, &node.increment);
+            let [ahead, inverse] = system.retractions(&next);
+            node.increment = system.compose(&behind, &ahead);
+            node.configuration = q;
+            node.motion = next;
+            q = system.advance(&q, &node.increment);
+            back = inverse;
+        }
+        self.last = q;
+    }
+
+    /// The action after `fraction` of Newton's correction.
+    #[cold]
+    pub fn action_after(&self, fraction: T) -> T {
+        let system = self.problem.system;
+        let mut q = *self.problem.start;
+        let mut motion = SVector::<T, M>::from_element(T::zero());
+        let mut action = T::zero();
+        for (index, node) in self.path.iter().enumerate() {
+            let behind = system.compose(&system.retraction(&(motion * -fraction)), &node.increment);
+            motion = node.correction(&motion);
+            let increment = system.compose(&behind, &system.retraction(&(motion * fraction)));
+            let next = system.advance(&q, &increment);
+            action += self.problem.momenta(index, &q, &increment, &next).lagrangian;
+            q = next;
+        }
+        match self.problem.target {
+            Some(_) => action,
+            None => action + system.endpoint(self.problem.time_of_end(self.path.len()), &q).price,
+        }
+    }
+
+    /// The configurations that the increments lead to.
+    pub fn roll_out(&mut self) {
+        let system = self.problem.system;
+        self.last = self.path.iter_mut().fold(*self.problem.start, |q, node| {
+            node.configuration = q;
+            system.advance(&q, &node.increment)
+        });
     }
 }
 
 /// t₀ + kh; t₀ where the time does not matter.
 #[inline]
-pub(super) fn time_after<S: Variational<M, Scalar: Real>, const M: usize>(
-    start: S::Scalar,
-    h: S::Scalar,
-    steps: usize,
-) -> S::Scalar {
+pub(super) fn time_after<S: Clebsch>(start: S::Scalar, h: S::Scalar, steps: usize) -> S::Scalar {
     if size_of::<S::Time>() == 0 { start } else { start + S::Scalar::from_f64(steps as f64) * h }
 }

@@ -1,11 +1,11 @@
 //! One vertex in the backward sweep: its block of the Hessian, its elimination, and the sums over all of them.
 
 use super::end::PathEnd;
-use super::pivot::{Feedback, Solution, solve};
+use super::pivot::{Feedback, Pivot, Solution, lower_triangle};
 use crate::linear::rows;
 use crate::newton::Curvature;
 use crate::space::larger;
-use crate::{Edge, Momenta, Real};
+use crate::{Edge, Real};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -16,6 +16,8 @@ pub(super) struct PathSummary<T, const M: usize> {
     pub action: T,
     /// Twice what Newton's correction would take from the action.
     pub decrement: T,
+    /// The size of Newton's correction relative to the path, in the norm of the Hessian.
+    pub size: T,
     /// The largest |E_k|².
     pub residual_squared: T,
     /// The momentum at the end.
@@ -23,11 +25,11 @@ pub(super) struct PathSummary<T, const M: usize> {
     /// The Morse index.
     pub negative: usize,
     /// Σ|ℓd|
-    magnitude: T,
+    pub magnitude: T,
     /// Σ|N_k|²
-    momenta: T,
+    pub momenta: T,
     /// Σ|tr ∂F⁺ℓd/∂η′|
-    stiffness: T,
+    pub stiffness: T,
     /// The number of edges.
     pub edges: T,
 }
@@ -43,29 +45,13 @@ pub(super) struct Pending<T, const M: usize> {
 }
 
 impl<T: Real, const M: usize> PathSummary<T, M> {
-    /// The size of Newton's correction relative to the path, in the norm of the Hessian.
-    ///
-    /// It is compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
-    pub fn size(&self) -> T {
-        if self.decrement == T::zero() {
-            return T::zero();
-        }
-        let kinetic = if self.stiffness > T::zero() { self.momenta * self.edges / self.stiffness } else { T::zero() };
-        (self.decrement.abs() / (self.magnitude + kinetic)).sqrt()
-    }
-
-    /// Whether the residual is at most so many units in the last place of the momentum, as the root of its mean square.
-    pub fn is_stationary(&self, units: T) -> bool {
-        let unit = units * T::EPSILON;
-        self.residual_squared * self.edges <= unit * unit * self.momenta
-    }
-
     /// The sums before the first edge.
     pub fn of_nothing(edges: usize) -> Self {
         let zero = T::zero();
         Self {
             action: zero,
             decrement: zero,
+            size: zero,
             residual_squared: zero,
             after: SVector::from_element(zero),
             negative: 0,
@@ -76,27 +62,27 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         }
     }
 
-    /// Action, momenta and residual of another path near this one, from its last edge to its first.
+    /// After the last vertex: measures Newton's correction.
+    ///
+    /// It is compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
     #[inline]
-    pub fn measured(&self, edges: impl Iterator<Item = Momenta<T, M>>, end: &PathEnd<T, M>) -> Self {
-        let mut summary = Self { action: T::zero(), momenta: T::zero(), residual_squared: T::zero(), ..*self };
-        let mut later: Option<SVector<T, M>> = None;
-        for Momenta { lagrangian, before, after } in edges {
-            let residual = match (later, &end.kernel) {
-                (Some(later), _) => after - later,
-                (None, Some(kernel)) => kernel * (after + end.slope),
-                (None, None) => SVector::from_element(T::zero()),
-            };
-            if later.is_none() {
-                summary.after = after;
-            }
-            summary.action += lagrangian;
-            summary.momenta += before.dot(&before);
-            summary.residual_squared = larger(summary.residual_squared, residual.dot(&residual));
-            later = Some(before);
+    pub fn finish(&mut self) {
+        if self.decrement != T::zero() {
+            let is_stiff = self.stiffness > T::zero();
+            let kinetic = if is_stiff { self.momenta * self.edges / self.stiffness } else { T::zero() };
+            self.size = (self.decrement.abs() / (self.magnitude + kinetic)).sqrt();
         }
-        summary.action += end.price;
-        summary
+    }
+
+    /// Whether the residual is at most so many units in the last place of the momentum, as the root of its mean square.
+    pub fn is_stationary(&self, units: f64) -> bool {
+        let unit = T::from_f64(units) * T::EPSILON;
+        self.residual_squared * self.edges <= unit * unit * self.momenta
+    }
+
+    /// The size of a correction of vertices that is round-off.
+    pub fn round_off(&self) -> T {
+        T::from_f64(4.0) * T::EPSILON * self.edges.sqrt()
     }
 
     /// Adds up what scales the correction.
@@ -108,13 +94,6 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.stiffness += edge.after_by_end.trace().abs();
     }
 
-    #[inline]
-    fn count_vertex(&mut self, residual: &SVector<T, M>, solution: &Solution<T, M>) {
-        self.residual_squared = larger(self.residual_squared, residual.dot(residual));
-        self.decrement += solution.decrement;
-        self.negative += solution.negative;
-    }
-
     /// The interior vertex where `edge` ends.
     #[inline(always)]
     pub fn eliminate(
@@ -123,20 +102,17 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         pending: &Pending<T, M>,
         sign: T,
         curvature: Curvature<T>,
-        feedback: Feedback<'_, T, M>,
-    ) -> Solution<T, M> {
-        let mut pivot = lower_half(&edge.after_by_end);
-        for (row, pending) in pivot.iter_mut().zip(&pending.hessian) {
+        feedback: &mut Feedback<T, M>,
+    ) -> Pending<T, M> {
+        let mut d = lower_half(&edge.after_by_end);
+        for (row, pending) in d.iter_mut().zip(&pending.hessian) {
             row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
         }
-        let (damping, steadiness) = curvature.added();
-        if damping + steadiness > T::zero() {
-            damp(&mut pivot, edge, self.edges, (damping + steadiness) * sign);
-        }
-        let gradient = pending.gradient + edge.after;
-        let solution = solve(&pivot, &coupling(edge), &gradient, sign, curvature, feedback);
-        self.count_vertex(&(edge.after - pending.before), &solution);
-        solution
+        // H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ
+        let c = from_fn(|i| from_fn(|j| -edge.before_by_end[(j, i)]));
+        let pivot = Pivot { d, c, g: pending.gradient + edge.after, sign };
+        let solution = self.solve(pivot, edge, &(edge.after - pending.before), curvature, feedback);
+        Pending::behind(edge, &solution)
     }
 
     /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others.
@@ -149,49 +125,61 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         end: &PathEnd<T, M>,
         sign: T,
         curvature: Curvature<T>,
-        feedback: Feedback<'_, T, M>,
-    ) -> Solution<T, M> {
-        let Feedback { gain, shift } = feedback;
+        feedback: &mut Feedback<T, M>,
+    ) -> Pending<T, M> {
         self.after = edge.after;
         self.action += end.price;
         self.magnitude += end.price.abs();
         self.decrement += end.closing.dot(&(edge.after_by_end * end.closing)).abs();
+        let closing = edge.before_by_end * end.closing;
         let Some(kernel) = &end.kernel else {
-            (*gain, *shift) = (SMatrix::from_element(T::zero()), -end.closing);
-            return Solution {
-                hessian: [[T::zero(); M]; M],
-                gradient: edge.before_by_end * end.closing,
-                decrement: T::zero(),
-                negative: 0,
-            };
+            *feedback = Feedback { gain: SMatrix::from_element(T::zero()), shift: -end.closing };
+            let hessian = [[T::zero(); M]; M];
+            return Pending::behind(edge, &Solution { hessian, gradient: closing, decrement: T::zero(), negative: 0 });
         };
-        let gradient = kernel * (edge.after + end.slope + edge.after_by_end * end.closing);
         let size = edge.after_by_end.trace().abs() * sign;
-        let pivot = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
-        let coupling = -kernel * edge.before_by_end.transpose();
-        let mut pivot = lower_half(&pivot);
-        let (damping, steadiness) = curvature.added();
-        if damping + steadiness > T::zero() {
-            damp(&mut pivot, edge, self.edges, (damping + steadiness) * sign);
+        let d = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
+        let c = -kernel * edge.before_by_end.transpose();
+        let g = kernel * (edge.after + end.slope + edge.after_by_end * end.closing);
+        let pivot = Pivot { d: lower_half(&d), c: rows(&c), g, sign };
+        let residual = kernel * (edge.after + end.slope);
+        let solution = self.solve(pivot, edge, &residual, curvature, feedback);
+        feedback.gain = kernel * feedback.gain;
+        feedback.shift = kernel * feedback.shift - end.closing;
+        Pending::behind(edge, &Solution { gradient: solution.gradient + closing, ..solution })
+    }
+
+    /// Eliminates the vertex where `edge` ends from its damped equations.
+    #[inline(always)]
+    fn solve(
+        &mut self,
+        mut pivot: Pivot<T, M>,
+        edge: &Edge<T, M>,
+        residual: &SVector<T, M>,
+        curvature: Curvature<T>,
+        feedback: &mut Feedback<T, M>,
+    ) -> Solution<T, M> {
+        let added = curvature.damping + curvature.steadiness;
+        if added > T::zero() {
+            damp(&mut pivot.d, edge, self.edges, added * pivot.sign);
         }
-        let feedback = Feedback { gain: &mut *gain, shift: &mut *shift };
-        let solution = solve(&pivot, &rows(&coupling), &gradient, sign, curvature, feedback);
-        self.count_vertex(&(kernel * (edge.after + end.slope)), &solution);
-        (*gain, *shift) = (kernel * *gain, kernel * *shift - end.closing);
-        Solution { gradient: solution.gradient + edge.before_by_end * end.closing, ..solution }
+        let solution = pivot.solve(curvature, feedback);
+        self.residual_squared = larger(self.residual_squared, residual.dot(residual));
+        self.decrement += solution.decrement;
+        self.negative += solution.negative;
+        solution
     }
 }
 
 impl<T: Real, const M: usize> Pending<T, M> {
     /// After the elimination of the vertex where `edge` ends.
     #[inline]
-    pub fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
+    fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
         let mut hessian = lower_half(&edge.before_by_start);
         for (row, eliminated) in hessian.iter_mut().zip(&solution.hessian) {
             row.iter_mut().zip(eliminated).for_each(|(entry, eliminated)| *entry = -(*entry + *eliminated));
         }
-        let gradient = -(edge.before + solution.gradient);
-        Self { hessian, gradient, before: edge.before }
+        Self { hessian, gradient: -(edge.before + solution.gradient), before: edge.before }
     }
 }
 
@@ -205,22 +193,9 @@ fn damp<T: Real, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edg
     }
 }
 
-/// H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ by rows
-#[inline]
-fn coupling<T: Real, const M: usize>(edge: &Edge<T, M>) -> [[T; M]; M] {
-    from_fn(|i| from_fn(|j| -edge.before_by_end[(j, i)]))
-}
-
 /// The lower triangle of the symmetric part of A by rows, with 0 above.
 #[inline]
 fn lower_half<T: Real, const M: usize>(a: &SMatrix<T, M, M>) -> [[T; M]; M] {
     let half = T::from_ratio(1, 2);
-    let mut lower = [[T::zero(); M]; M];
-    for (i, row) in lower.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().take(i).enumerate() {
-            *entry = (a[(i, j)] + a[(j, i)]) * half;
-        }
-        row[i] = a[(i, i)];
-    }
-    lower
+    lower_triangle(|i, j| if i == j { a[(i, i)] } else { (a[(i, j)] + a[(j, i)]) * half })
 }

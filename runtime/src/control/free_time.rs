@@ -10,7 +10,7 @@
 use super::newton::CriticalPlan;
 use super::sweep::Problem;
 use super::{Control, Optimum, Stage, Target};
-use crate::newton::{Sample, Trial, check_limits, critical_step_size};
+use crate::newton::{Bracket, Sample, Trial};
 use crate::{Controlled, Error, Real, Scalar};
 use core::ops::RangeInclusive;
 
@@ -27,28 +27,18 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         steps: RangeInclusive<S::Scalar>,
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
-        check_limits(&steps)?;
+        let bracket = Bracket::within(&steps)?;
         self.check(start, &target, plan)?;
         let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
-        let trial = |h| Ok(self.trial(start, &target, h, plan).unwrap_or_else(Trial::Lost));
-        let ((solved, h), sweeps) = critical_step_size(steps, self.h, accuracy, trial)?;
+        let trial = |h| {
+            let constants = self.system.prepare(h)?;
+            let problem = self.problem(start, &target, h, &constants);
+            let solved = problem.attempt(plan)?;
+            let sample = problem.slope(plan, &solved.last)?;
+            Ok(Trial { sample, sweeps: solved.sweeps, answer: (solved, h) })
+        };
+        let ((solved, h), sweeps) = bracket.critical(self.h, accuracy, true, trial)?;
         Ok(Optimum::new(plan, CriticalPlan { sweeps, ..solved }, h))
-    }
-
-    /// The plan for a step size, and dV/dh there.
-    #[allow(clippy::type_complexity, reason = "a solution with its step size")]
-    fn trial(
-        &self,
-        start: &S::Place,
-        target: &Target<S::Place>,
-        h: S::Scalar,
-        plan: &mut [Stage<S, D, U, C>],
-    ) -> Result<Trial<S::Scalar, (CriticalPlan<S, D, U, C>, S::Scalar)>, Error> {
-        let constants = self.system.prepare(h)?;
-        let problem = self.problem(start, target, h, &constants);
-        let solved = problem.attempt(plan)?;
-        let sample = problem.slope(plan, &solved.last)?;
-        Ok(Trial::Found { sample, sweeps: solved.sweeps, answer: (solved, h) })
     }
 }
 

@@ -1,35 +1,22 @@
-//! How far the inputs move the end: the Gramian, and the multipliers of the target that it answers for.
+//! How far the inputs move the end: the Gramian Γ = Σ_k Q_uνᵀ Q_uu⁻¹ Q_uν of all inputs of a plan, and the multipliers of the target that it
+//! answers for.
 
-use super::pivot::equilibrated;
 use crate::Real;
-use crate::newton::Spectrum;
-use nalgebra::{SMatrix, SVector};
-
-/// Γ = Σ_k Q_uνᵀ Q_uu⁻¹ Q_uν of all inputs of a plan.
-pub(super) struct Gramian<T, const D: usize> {
-    spectrum: Spectrum<T, D>,
-    scale: SVector<T, D>,
-}
+use crate::newton::Equilibrated;
+use nalgebra::SMatrix;
 
 /// R in units of |Γ⁻¹|.
 const STIFFNESS: f64 = 4.0;
 /// Eigenvalues below so many units in the last place of the largest are those of directions that no input reaches.
 const UNITS: f64 = 256.0;
 
-impl<T: Real, const D: usize> Gramian<T, D> {
-    /// Of a symmetric matrix.
-    #[cold]
-    pub fn of(gamma: &SMatrix<T, D, D>) -> Self {
-        let (spectrum, scale) = equilibrated(gamma);
-        Self { spectrum, scale }
-    }
-
+/// Of a Gramian.
+impl<T: Real, const D: usize> Equilibrated<T, D> {
     /// Γ⁺, 0 in directions that no input reaches.
     pub fn inverse(&self) -> SMatrix<T, D, D> {
         let least = T::from_f64(UNITS) * T::EPSILON * self.spectrum.largest();
         // Written so that NaN stays NaN.
-        let inverse = self.spectrum.map(|value| if value.abs() <= least { T::zero() } else { value.recip() });
-        SMatrix::from_fn(|i, j| self.scale[i] * inverse[(i, j)] * self.scale[j])
+        self.map(|value| if value.abs() <= least { T::zero() } else { value.recip() })
     }
 
     /// R for the next sweep, where this is the Gramian with R: a multiple of |Γ⁻¹| of the Gramian without, Γ_R⁻¹ = Γ⁻¹ + R.
@@ -38,7 +25,7 @@ impl<T: Real, const D: usize> Gramian<T, D> {
     pub fn weight(&self, gramian: &SMatrix<T, D, D>, weight: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
         let inverse = self.inverse();
         let reached = gramian * inverse;
-        let (spectrum, scale) = equilibrated(&(inverse - reached.tr_mul(&(weight * reached))));
+        let Self { spectrum, scale } = Self::of(&(inverse - reached.tr_mul(&(weight * reached))));
         let absolute = spectrum.map(|value| value.abs() * T::from_f64(STIFFNESS));
         let length = |i: usize| if scale[i] > T::zero() { scale[i].recip() } else { T::zero() };
         SMatrix::from_fn(|i, j| length(i) * absolute[(i, j)] * length(j))
@@ -46,17 +33,12 @@ impl<T: Real, const D: usize> Gramian<T, D> {
 
     /// The number of directions that inputs reach, where all Q_uu are positive.
     pub fn rank(&self) -> usize {
-        self.count(T::from_f64(UNITS) * T::EPSILON)
+        self.count_above(T::from_f64(UNITS) * T::EPSILON)
     }
 
     /// The number of positive eigenvalues. Directions in which the curvature of the price vanishes on plans that arrive, as those of a
     /// symmetry do, count for none.
     pub fn positive(&self) -> usize {
-        self.count(T::EPSILON.powf(T::from_ratio(1, 3)))
-    }
-
-    fn count(&self, least: T) -> usize {
-        let least = least * self.spectrum.largest();
-        self.spectrum.values.iter().filter(|&&value| value > least).count()
+        self.count_above(T::EPSILON.powf(T::from_ratio(1, 3)))
     }
 }

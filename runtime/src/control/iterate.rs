@@ -2,11 +2,10 @@
 
 use super::barrier::Barrier;
 use super::end::PlanEnd;
-use super::gramian::Gramian;
 use super::search::Made;
 use super::sweep::{PlanSummary, Settings};
 use crate::Real;
-use crate::newton::{Curvature, Share, adapted};
+use crate::newton::{Curvature, Equilibrated, adapted};
 use crate::space::larger;
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
@@ -89,7 +88,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
             weight: SMatrix::from_element(zero),
             gap_price: None,
             barrier: barrier.unwrap_or(Barrier::none()),
-            curvature: Curvature::Mirrored { damping: zero, steadiness: zero },
+            curvature: Curvature::mirrored(zero, zero),
             bend: T::one(),
             is_last: false,
         };
@@ -119,11 +118,11 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     pub fn judge<const U: usize>(
         &mut self,
         summary: &PlanSummary<T, D, U>,
-        gramian: &Gramian<T, D>,
+        gramian: &Equilibrated<T, D>,
         stiffer: &SMatrix<T, D, D>,
     ) -> Use {
         let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
-        if !self.settings.curvature.is_mirrored() {
+        if !self.settings.curvature.is_mirrored {
             let index = if self.is_priced() { summary.negative } else { index(summary.negative, self.rank, gramian) };
             let depth = summary.fall.map_or(T::zero(), |(_, _, depth)| depth);
             let is_deep = matches!(self.before, Some(before) if depth > T::from_f64(DEPTH) * before);
@@ -146,7 +145,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         let rank = gramian.rank();
         self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
         if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
-            self.settings.curvature = Curvature::Kept { steadiness: self.steadiness() };
+            self.settings.curvature = Curvature::exact(self.steadiness());
         } else if summary.negative > FLAT && is_bent {
             self.bend_less();
             self.is_probed = false;
@@ -204,12 +203,12 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
     /// Whether a critical plan may be a saddle that can be left; the next sweep tells.
     pub fn may_be_at_saddle(&mut self, negative: usize, size: T) -> bool {
-        let may_be = negative > 0 && !self.is_cornered && self.settings.curvature.is_mirrored();
+        let may_be = negative > 0 && !self.is_cornered && self.settings.curvature.is_mirrored;
         if may_be {
             self.settings.bend = T::one();
             self.damping = T::zero();
             self.before = Some(size);
-            self.settings.curvature = Curvature::Kept { steadiness: self.steadiness() };
+            self.settings.curvature = Curvature::exact(self.steadiness());
         }
         may_be
     }
@@ -230,7 +229,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
     /// The curvature of the next sweep, so that it goes down.
     fn mirrored(&self) -> Curvature<T> {
-        Curvature::Mirrored { damping: self.damping, steadiness: self.steadiness() }
+        Curvature::mirrored(self.damping, self.steadiness())
     }
 
     fn bend_less(&mut self) {
@@ -314,12 +313,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         } else if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
             self.settings.weight = stiffer;
         }
-        let share = match refused {
-            0 => Share::Whole,
-            1 | 2 => Share::Part,
-            _ => Share::Little,
-        };
-        self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), share);
+        self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), refused);
         self.before = Some(size);
         self.settings.curvature = self.mirrored();
         if refused <= 1 {
@@ -335,6 +329,6 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
 /// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
 /// of −Γ, less the number of conditions.
-pub(super) fn index<T: Real, const D: usize>(negative: usize, rank: usize, gramian: &Gramian<T, D>) -> usize {
+pub(super) fn index<T: Real, const D: usize>(negative: usize, rank: usize, gramian: &Equilibrated<T, D>) -> usize {
     (negative + gramian.positive()).saturating_sub(rank)
 }

@@ -4,11 +4,10 @@ use super::Stage;
 use super::attempt::Approach;
 use super::barrier::Barrier;
 use super::end::PlanEnd;
-use super::gramian::Gramian;
 use super::iterate::{Iterate, ROUNDS, Use, Verdict, index};
 use super::search::{Descent, Evidence};
 use super::sweep::{PlanSummary, Problem, Settings};
-use crate::newton::Curvature;
+use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
@@ -53,7 +52,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             *sweeps += 1;
             let end = self.end(plan, &now.last);
             let summary = self.eliminate(plan, &now.last, &end, &now.settings)?;
-            let gramian = Gramian::of(&summary.gramian);
+            let gramian = Equilibrated::of(&summary.gramian);
             let descent = Descent::of(&summary, &end, &gramian, &now.settings);
             let (change, decrement) = descent.correction(one);
             if !summary.price.is_finite() {
@@ -189,11 +188,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         sweeps: u32,
     ) -> Result<CriticalPlan<S, D, U, C>, Error> {
         let end = self.end(plan, &now.last);
-        let settings = Settings { curvature: Curvature::kept(), is_last: true, ..now.settings };
+        let settings = Settings { curvature: Curvature::exact(S::Scalar::zero()), is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
         let closed = PlanEnd { lack: SVector::from_element(S::Scalar::zero()), ..end };
         let summary = self.eliminate(plan, &now.last, &closed, &settings)?;
-        let negative = index(summary.negative, now.rank, &Gramian::of(&summary.gramian));
+        let negative = index(summary.negative, now.rank, &Equilibrated::of(&summary.gramian));
         Ok(CriticalPlan { summary, last: now.last, end, negative, sweeps })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::Real;
 use crate::linear::rows;
-use crate::newton::{Curvature, Ldl, Spectrum, UNITS, turned_over};
+use crate::newton::{Curvature, Equilibrated, Ldl, UNITS};
 use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
 
@@ -34,7 +34,7 @@ impl<T: Real, const U: usize> Pivot<T, U> {
     #[inline]
     pub fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
         let mut h = *h;
-        let (damping, steadiness) = curvature.added();
+        let Curvature { damping, steadiness, .. } = curvature;
         if larger(damping, steadiness) > T::zero() {
             for i in 0..U {
                 let entry = h[(i, i)];
@@ -66,17 +66,20 @@ impl<T: Real, const U: usize> Pivot<T, U> {
 /// From the eigenvalues of the matrix with its diagonal scaled to ±1. Directions without any curvature are left alone.
 #[cold]
 fn spectral<T: Real, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Pivot<T, U> {
-    let (spectrum, scale) = equilibrated(h);
+    let scaled = Equilibrated::of(h);
+    let Equilibrated { spectrum, scale } = &scaled;
     let largest = spectrum.largest();
     let noise = T::from_f64(UNITS) * T::EPSILON * largest;
-    let inverse = spectrum.map(|value| match curvature {
+    let inverse = scaled.map(|value| {
         // Written so that NaN stays NaN.
-        _ if value.abs() <= noise && !curvature.is_mirrored() || largest == T::zero() => T::zero(),
-        Curvature::Kept { .. } => value.recip(),
-        Curvature::Mirrored { .. } if value > noise => value.recip(),
-        Curvature::Mirrored { .. } => turned_over(value, &spectrum).recip(),
+        if value.abs() <= noise && !curvature.is_mirrored || largest == T::zero() {
+            T::zero()
+        } else if !curvature.is_mirrored || value > noise {
+            value.recip()
+        } else {
+            spectrum.turned_over(value).recip()
+        }
     });
-    let inverse = SMatrix::from_fn(|i, j| scale[i] * inverse[(i, j)] * scale[j]);
     let wrong = -T::EPSILON.sqrt() * largest;
     let negative = spectrum.values.iter().filter(|&&value| value < wrong).count();
     let least = (0..U).fold(0, |least, i| if spectrum.values[i] < spectrum.values[least] { i } else { least });
@@ -85,17 +88,4 @@ fn spectral<T: Real, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<
         direction: SVector::from_fn(|i, _| scale[i] * spectrum.vectors[(i, least)]),
     });
     Pivot { factors: Factors::Spectral(inverse), negative, fall }
-}
-
-/// The eigenvalues of S A S with S = diag |A|^(−1/2), and the diagonal of S; rows that are nothing beside the others count as 0.
-///
-/// The choice of units of the rows changes neither.
-pub(super) fn equilibrated<T: Real, const M: usize>(a: &SMatrix<T, M, M>) -> (Spectrum<T, M>, SVector<T, M>) {
-    let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)].abs()));
-    let nothing = T::EPSILON * T::EPSILON.sqrt() * largest;
-    let scale = SVector::<T, M>::from_fn(|i, _| {
-        let entry = a[(i, i)].abs();
-        if entry <= nothing { T::zero() } else { entry.sqrt().recip() }
-    });
-    (Spectrum::of(&SMatrix::from_fn(|i, j| scale[i] * a[(i, j)] * scale[j])), scale)
 }

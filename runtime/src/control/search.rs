@@ -5,9 +5,9 @@
 
 use super::Stage;
 use super::end::PlanEnd;
-use super::gramian::Gramian;
 use super::rollout::Rolled;
 use super::sweep::{PlanSummary, Problem, Settings};
+use crate::newton::Equilibrated;
 use crate::space::larger;
 use crate::{Controlled, Real, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -57,7 +57,7 @@ impl<'a, T: Real, const D: usize> Descent<'a, T, D> {
     pub fn of<const U: usize>(
         summary: &PlanSummary<T, D, U>,
         end: &'a PlanEnd<T, D>,
-        gramian: &Gramian<T, D>,
+        gramian: &Equilibrated<T, D>,
         settings: &Settings<T, D>,
     ) -> Self {
         Self {

@@ -14,10 +14,9 @@
 use super::Stage;
 use super::barrier::Barrier;
 use super::end::{Goal, PlanEnd};
-use super::gramian::Gramian;
 use super::pivot::Fall;
 use super::quadratic::{Policy, Quadratic, Value};
-use crate::newton::Curvature;
+use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
@@ -172,7 +171,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             (stage.next_costate, stage.costate) = (value.costate, before.costate);
             (stage.shift, stage.gain, stage.by_multiplier) = (policy.shift, policy.gain, policy.by_multiplier);
             if settings.is_last {
-                let inverse = Gramian::of(&summary.gramian).inverse();
+                let inverse = Equilibrated::of(&summary.gramian).inverse();
                 stage.gain += policy.by_multiplier * (inverse * before.by_multiplier.transpose());
             }
             value = before;

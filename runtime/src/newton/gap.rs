@@ -23,7 +23,7 @@ pub(crate) fn arc_per_chord<T: Real>(along: T, across: T) -> Option<T> {
 /// A⁻¹b by L Δ Lᵀ; `None` where a pivot is below √ε of its diagonal.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
-fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
+pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
     let mut l: [[T; M]; M] = from_fn(|i| from_fn(|j| a[(i, j)]));
     let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));
     let mut x: [T; M] = from_fn(|i| b[i]);
@@ -49,15 +49,10 @@ fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> 
     Some(SVector::from_fn(|i, _| x[i]))
 }
 
-/// The smallest x with A x = b, for a symmetric A with no negative eigenvalue.
+/// The smallest x with A x = b for a symmetric A with no negative eigenvalue, and the orthogonal projector to the kernel of A, of eigenvalues
+/// below √ε of the largest; `None` where there is no kernel.
 #[inline]
-pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> SVector<T, M> {
-    shortest_with_kernel(a, b).0
-}
-
-/// The same, and the orthogonal projector to the kernel of A, of eigenvalues below √ε of the largest; `None` where there is no kernel.
-#[inline]
-pub(crate) fn shortest_with_kernel<T: Real, const M: usize>(
+pub(crate) fn shortest<T: Real, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
@@ -69,7 +64,7 @@ pub(crate) fn shortest_with_kernel<T: Real, const M: usize>(
 
 /// A⁺b and the projector to the kernel of A.
 #[cold]
-fn singular<T: Real, const M: usize>(
+pub fn singular<T: Real, const M: usize>(
     a: &SMatrix<T, M, M>,
     b: &SVector<T, M>,
 ) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
@@ -78,31 +73,4 @@ fn singular<T: Real, const M: usize>(
     let inverse = spectrum.map(|value| if value > tolerance { value.recip() } else { T::zero() });
     let kernel = spectrum.map(|value| if value > tolerance { T::zero() } else { T::one() });
     (inverse * b, Some(kernel))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{arc_per_chord, regular, singular};
-    use nalgebra::{Matrix3, Vector3};
-
-    #[test]
-    fn kernels_are_found() {
-        let q = Vector3::new(0.6, 0.0, 0.8);
-        let metric = Matrix3::identity() - q * q.transpose();
-        let b = Vector3::new(0.8, 2.0, -0.6);
-        assert_eq!(regular(&metric, &b), None);
-        let (closing, kernel) = singular(&metric, &b);
-        assert!((closing - b).amax() < 1e-15);
-        assert!((kernel.unwrap() - q * q.transpose()).amax() < 1e-15);
-        assert_eq!(regular(&(Matrix3::identity() * 2.0), &b), Some(b / 2.0));
-    }
-
-    #[test]
-    fn arcs_are_no_shorter_than_chords() {
-        let angle = 3.1_f64;
-        let arc = angle.sin() * arc_per_chord(angle.sin(), 1.0 - angle.cos()).expect("it is longer");
-        assert!((arc - angle).abs() < 1e-12, "{arc}");
-        assert_eq!(arc_per_chord(1.0, 0.0), None);
-        assert_eq!(arc_per_chord(0.0, 0.0), None);
-    }
 }

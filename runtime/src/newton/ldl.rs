@@ -19,53 +19,41 @@ pub(crate) const UNITS: f64 = 16.0;
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 impl<T: Real, const M: usize> Ldl<T, M> {
     /// Where all of Δ has the sign of `sign`.
-    ///
-    /// Nothing leaves the loop, which is then unrolled.
     #[inline]
     pub fn definite(a: &[[T; M]; M], sign: T) -> Option<Self> {
+        Self::factored(a, false, |pivot, _| pivot * sign > T::zero())
+    }
+
+    /// Where all of Δ is positive, and more than round-off of the diagonal.
+    #[inline]
+    pub fn positive(a: &[[T; M]; M]) -> Option<Self> {
+        let unit = T::from_f64(UNITS) * T::EPSILON;
+        Self::factored(a, true, |pivot, entry| pivot > unit * entry && pivot > T::zero())
+    }
+
+    /// Where `is_regular(Δ_kk, A_kk)` of all pivots. The product of a column and its multiple is rounded as (multiple)·(column), or the other
+    /// way round where `column_first`.
+    ///
+    /// Nothing leaves the loop, which is then unrolled.
+    #[inline(always)]
+    fn factored(a: &[[T; M]; M], column_first: bool, is_regular: impl Fn(T, T) -> bool) -> Option<Self> {
         let mut l = *a;
         let mut reciprocals = [T::zero(); M];
         let mut is_definite = true;
         for k in 0..M {
             let pivot = l[k][k];
             // Written so that NaN is not definite.
-            is_definite &= pivot * sign > T::zero() && pivot.is_finite();
+            is_definite &= is_regular(pivot, a[k][k]) && pivot.is_finite();
             reciprocals[k] = pivot.recip();
             let column: [T; M] = from_fn(|i| l[i][k]);
             for i in k + 1..M {
                 l[i][k] = column[i] * reciprocals[k];
                 for j in k + 1..=i {
-                    l[i][j] -= l[i][k] * column[j];
+                    l[i][j] -= if column_first { column[i] * l[j][k] } else { l[i][k] * column[j] };
                 }
             }
         }
         is_definite.then_some(Self { l, reciprocals })
-    }
-
-    /// Where all of Δ is positive, and more than round-off of the diagonal.
-    ///
-    /// The product of a column and its multiple is rounded as (column)·(multiple), not the other way round as by [`definite`](Self::definite).
-    #[inline]
-    pub fn positive(a: &[[T; M]; M]) -> Option<Self> {
-        let mut l = *a;
-        let mut reciprocals = [T::zero(); M];
-        for k in 0..M {
-            let pivot = l[k][k];
-            let least = T::from_f64(UNITS) * T::EPSILON * a[k][k];
-            // Written so that NaN is refused.
-            if !(pivot > least && pivot > T::zero() && pivot.is_finite()) {
-                return None;
-            }
-            reciprocals[k] = pivot.recip();
-            for i in k + 1..M {
-                let entry = l[i][k];
-                l[i][k] = entry * reciprocals[k];
-                for j in k + 1..=i {
-                    l[i][j] -= entry * l[j][k];
-                }
-            }
-        }
-        Some(Self { l, reciprocals })
     }
 
     /// B ↦ L⁻¹B
@@ -96,40 +84,5 @@ impl<T: Real, const M: usize> Ldl<T, M> {
                 }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Ldl;
-
-    const A: [[f64; 4]; 4] =
-        [[4.0, 1.0, 0.5, -1.0], [1.0, 5.0, 0.25, 0.5], [0.5, 0.25, 3.0, 0.75], [-1.0, 0.5, 0.75, 6.0]];
-
-    #[test]
-    fn definite_matrices_are_inverted() {
-        let negative = A.map(|row| row.map(|entry| -entry));
-        let [positive, other] = [Ldl::definite(&A, 1.0), Ldl::positive(&A)].map(|factors| factors.expect("definite"));
-        for (a, factors) in [(A, positive), (A, other), (negative, Ldl::definite(&negative, -1.0).expect("definite"))] {
-            let b = [[1.0], [-2.0], [0.5], [3.0]];
-            let mut w = b;
-            factors.forward(&mut w);
-            let mut x = factors.divided(&w);
-            factors.backward(&mut x);
-            for (row, [b]) in a.iter().zip(b) {
-                let product: f64 = row.iter().zip(x).map(|(entry, [x])| entry * x).sum();
-                assert!((product - b).abs() < 1e-14, "{product} for {b}");
-            }
-        }
-    }
-
-    #[test]
-    fn others_are_refused() {
-        let mut indefinite = A;
-        indefinite[2][2] = -3.0;
-        assert!(Ldl::definite(&indefinite, 1.0).is_none() && Ldl::positive(&indefinite).is_none());
-        assert!(Ldl::definite(&A, -1.0).is_none());
-        assert!(Ldl::positive(&[[f64::NAN]]).is_none() && Ldl::definite(&[[f64::NAN]], 1.0).is_none());
-        assert!(Ldl::positive(&[[1.0, 1.0], [1.0, 1.0 + f64::EPSILON]]).is_none(), "round-off");
     }
 }

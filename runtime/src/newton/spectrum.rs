@@ -1,6 +1,7 @@
 //! Eigenvalues of small symmetric matrices, where a pivot is not positive or a metric has a kernel.
 
 use crate::Real;
+use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
 
 /// A = V Λ Vᵀ of a symmetric matrix.
@@ -11,6 +12,9 @@ pub(crate) struct Spectrum<T, const M: usize> {
     /// V: its columns are orthonormal.
     pub vectors: SMatrix<T, M, M>,
 }
+
+/// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
+const MIRRORED: f64 = 1e-4;
 
 /// Sweeps over all pairs of rows. Convergence is quadratic: six do for M = 3, ten for M = 64.
 const SWEEPS: usize = 24;
@@ -48,7 +52,44 @@ impl<T: Real, const M: usize> Spectrum<T, M> {
 
     /// The largest |λ|.
     pub fn largest(&self) -> T {
-        self.values.iter().fold(T::zero(), |max, x| crate::space::larger(max, x.abs()))
+        self.values.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
+    }
+
+    /// The size of an eigenvalue of the wrong sign once it is turned over.
+    pub fn turned_over(&self, value: T) -> T {
+        larger(value.abs(), T::from_f64(MIRRORED) * self.largest())
+    }
+}
+
+/// S A S = V Λ Vᵀ with S = diag |A|^(−1/2): the choice of units of the rows changes neither V nor Λ.
+pub(crate) struct Equilibrated<T, const M: usize> {
+    pub spectrum: Spectrum<T, M>,
+    /// The diagonal of S; rows that are nothing beside the others count as 0.
+    pub scale: SVector<T, M>,
+}
+
+impl<T: Real, const M: usize> Equilibrated<T, M> {
+    #[cold]
+    pub fn of(a: &SMatrix<T, M, M>) -> Self {
+        let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)].abs()));
+        let nothing = T::EPSILON * T::EPSILON.sqrt() * largest;
+        let scale = SVector::<T, M>::from_fn(|i, _| {
+            let entry = a[(i, i)].abs();
+            if entry <= nothing { T::zero() } else { entry.sqrt().recip() }
+        });
+        Self { spectrum: Spectrum::of(&SMatrix::from_fn(|i, j| scale[i] * a[(i, j)] * scale[j])), scale }
+    }
+
+    /// S V f(Λ) Vᵀ S, which is A⁻¹ where f is the reciprocal.
+    pub fn map(&self, f: impl Fn(T) -> T) -> SMatrix<T, M, M> {
+        let inner = self.spectrum.map(f);
+        SMatrix::from_fn(|i, j| self.scale[i] * inner[(i, j)] * self.scale[j])
+    }
+
+    /// The number of eigenvalues above this part of the largest.
+    pub fn count_above(&self, part: T) -> usize {
+        let least = part * self.spectrum.largest();
+        self.spectrum.values.iter().filter(|&&value| value > least).count()
     }
 }
 
@@ -82,32 +123,4 @@ fn annihilate<T: Real, const M: usize>(
     }
     (a[(p, q)], a[(q, p)]) = (T::zero(), T::zero());
     true
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Spectrum;
-    use nalgebra::{Matrix3, Matrix4, SMatrix};
-    use proptest::prelude::*;
-
-    #[test]
-    fn a_diagonal_matrix_is_left_alone() {
-        let spectrum = Spectrum::of(&SMatrix::<f64, 3, 3>::from_diagonal(&[3.0, -1.0, 0.0].into()));
-        assert_eq!(spectrum.values.as_slice(), [3.0, -1.0, 0.0]);
-        assert_eq!(spectrum.vectors, Matrix3::identity());
-        assert_eq!(spectrum.largest(), 3.0);
-    }
-
-    proptest! {
-        #[test]
-        fn a_symmetric_matrix_is_composed_of_its_spectrum(a in prop::array::uniform4(prop::array::uniform4(-1.0_f64..1.0))) {
-            let a = Matrix4::from(a);
-            let a = a + a.transpose();
-            let spectrum = Spectrum::of(&a);
-            let v = spectrum.vectors;
-            prop_assert!((v.transpose() * v - Matrix4::identity()).amax() < 1e-14);
-            prop_assert!((spectrum.map(|x| x) - a).amax() < 1e-14);
-            prop_assert!((spectrum.map(|x| x * x) - a * a).amax() < 1e-13);
-        }
-    }
 }
