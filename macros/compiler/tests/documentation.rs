@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clebsch_compiler::derive::{Formula, Formulas};
+use clebsch_compiler::derive::{Formula, Formulas, Id};
 use clebsch_compiler::lower::Program;
 use clebsch_compiler::{Graph, compile, emit};
 use quote::ToTokens;
@@ -56,7 +56,7 @@ fn of_trait(item: &ItemImpl) -> Option<(usize, Option<usize>)> {
 /// Whether it is the move of a step that takes the coordinates, and not the increment.
 fn moves_by_coordinates(program: &Program<'_>, item: &ItemImpl, method: &str) -> bool {
     let of = item.trait_.as_ref().and_then(|(path, _)| path.segments.last());
-    method == "advance" && of.is_some_and(|of| of.ident == "Parts") && program.steps[0].displace.is_some()
+    method == "advance" && of.is_some_and(|of| of.ident == "Parts") && program.find(Id::Displacement).is_some()
 }
 
 /// The place of the type of a momentum equation, `EquationFirst1`.

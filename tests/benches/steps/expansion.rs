@@ -1,6 +1,6 @@
 //! What the expansion of each fixture costs: time of the compiler, size of its output, operations of a step.
 
-use clebsch_compiler::lower::{Cost, StepKernels};
+use clebsch_compiler::lower::Cost;
 use clebsch_compiler::{Graph, compile, emit, expand};
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
@@ -60,7 +60,7 @@ fn expansion(item: syn::ItemStruct) -> Expansion {
     };
     let mut costs = (Cost::default(), Cost::default());
     // where a step moves by the chart coordinates alone, increments are made for others
-    let steps = program.steps.iter().all(StepKernels::makes_increments);
+    let steps = (0..program.steps.len()).all(|index| program.makes_increments(index));
     for (kernel, cost) in program.kernels().into_iter().map(|(name, kernel)| (name, kernel.cost())) {
         let stem = kernel.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
         // what ends in `_whole` serves the inverse Legendre transform of a composed step alone

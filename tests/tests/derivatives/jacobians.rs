@@ -1,7 +1,7 @@
 //! Residuals and Jacobians of all implicit equations, and the formulas that replace them.
 
 use clebsch_compiler::Graph;
-use clebsch_compiler::derive::{MomentumEquation, Solution};
+use clebsch_compiler::derive::{Id, MomentumEquation, Solution};
 use clebsch_compiler::lower::{Program, Solve};
 use clebsch_symbolic::Expr;
 use clebsch_tests::oracle::random::Random;
@@ -34,14 +34,14 @@ fn jacobians_of_all_implicit_equations() {
                     continue;
                 }
                 let mut values = Values::random(&program, random);
-                let constants: Vec<f64> = values.run(&program.constants, &[], &[]).concat();
-                let terms: Vec<f64> = values.run(&solve.prepare, &constants, &[]).concat();
+                let constants: Vec<f64> = values.run(program.kernel(Id::Constants), &[], &[]).concat();
+                let terms: Vec<f64> = values.run(program.kernel(solve.id(Id::Preparation)), &constants, &[]).concat();
                 if matches!(equation.solution, Solution::Explicit | Solution::ClosedForm) {
                     assert_solved(&program, &mut values, equation, solve);
                     explicit += 1;
                     continue;
                 }
-                let mut code = values.run(&solve.linearize, &constants, &terms);
+                let mut code = values.run(program.linearization(solve), &constants, &terms);
                 implicit += 1;
                 let residual = values.evaluate(equation.residual).entries;
                 let unknowns: Vec<(usize, usize)> =
@@ -105,9 +105,11 @@ fn assert_solved<'g>(program: &Program<'g>, values: &mut Values, equation: &Mome
         let momentum: Vec<f64> = values.evaluate(formulas.momentum_map[k]).entries.iter().map(|m| m / 2.0).collect();
         values.set(*mu, &momentum);
     }
-    let constants: Vec<f64> = values.run(&program.constants, &[], &[]).concat();
-    let terms: Vec<f64> = values.run(&solve.prepare, &constants, &[]).concat();
-    let predict = solve.predict.as_ref().expect("a formula for the solution");
+    let constants: Vec<f64> = values.run(program.kernel(Id::Constants), &[], &[]).concat();
+    let terms: Vec<f64> = values.run(program.kernel(solve.id(Id::Preparation)), &constants, &[]).concat();
+    let is_closed = solve.solution == Solution::ClosedForm;
+    let predict = program.find(solve.id(if is_closed { Id::ClosedForm } else { Id::Explicit }));
+    let predict = predict.expect("a formula for the solution");
     let solution = values.run(predict, &constants, &terms).concat();
     for (&component, value) in equation.components.iter().zip(solution) {
         let (k, i) = place(program, component);

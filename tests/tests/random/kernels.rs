@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
+use clebsch_compiler::derive::Id;
 use clebsch_compiler::lower::{Callee, Code, Kernel, MatrixOperation, Output, Program, Whole};
 use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
 use nalgebra::SMatrix;
@@ -32,7 +33,7 @@ impl Values {
     /// Σ; of κI the kernel gives κ.
     pub fn inertia(&self, program: &Program<'_>) -> Matrix<f64> {
         let shape = program.formulas.inertia.shape();
-        let entries = self.run(&program.inertia, &[], &[]).remove(0);
+        let entries = self.run(program.kernel(Id::Inertia), &[], &[]).remove(0);
         match entries[..] {
             [kappa] => Matrix::from_fn(shape, |(i, j)| if i == j { kappa } else { 0.0 }),
             _ => Matrix::new(shape, entries),

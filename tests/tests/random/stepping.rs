@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
-use clebsch_compiler::derive::Solution;
-use clebsch_compiler::lower::{Kernel, Program, Solve, StepKernels};
+use clebsch_compiler::derive::{Id, Solution};
+use clebsch_compiler::lower::{Kernel, Program, Solve};
 use nalgebra::{SMatrix, SVector};
 
 use crate::kernels::Values;
@@ -49,7 +49,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
             let inverse = values.inertia(program).inverse().0;
             values.0.insert("inertia_inverse".into(), inverse);
         }
-        let constants = values.run(&program.constants, &[], &[]).concat();
+        let constants = values.run(program.kernel(Id::Constants), &[], &[]).concat();
         Stepper { program, values, constants }
     }
 
@@ -71,6 +71,11 @@ impl<'a, 'g> Stepper<'a, 'g> {
         }
     }
 
+    /// The outputs of a kernel, where the program has it.
+    fn found(&self, id: Id) -> Option<Vec<Vec<f64>>> {
+        self.program.find(id).map(|kernel| self.run(kernel))
+    }
+
     fn run(&self, kernel: &Kernel) -> Vec<Vec<f64>> {
         self.values.run(kernel, &self.constants, &[])
     }
@@ -78,39 +83,47 @@ impl<'a, 'g> Stepper<'a, 'g> {
     /// One step from time t, or why there is none.
     pub fn step(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
         let mut state = state.clone();
-        let program = self.program;
-        for step in program.steps.iter().take(program.formulas.stepped) {
-            state = self.substep(t, &state, step)?;
+        for index in 0..self.program.formulas.stepped {
+            state = self.substep(t, &state, index)?;
         }
         Ok(state)
     }
 
-    fn substep(&mut self, t: f64, state: &Seen, step: &StepKernels) -> Result<Seen, String> {
+    fn substep(&mut self, t: f64, state: &Seen, index: usize) -> Result<Seen, String> {
+        let program = self.program;
+        let step = &program.steps[index];
         let mut state = state.clone();
         self.place(t, &state);
-        self.kick(step.start.as_ref(), &mut state.mu);
+        self.kick(Id::StartKick(index), &mut state.mu);
         let mut solved_for = state.mu.clone();
         if self.program.formulas.is_compensated() {
-            self.kick(step.rest.as_ref(), &mut solved_for);
+            self.kick(Id::RestKick(index), &mut solved_for);
         }
         for solve in &step.solves {
             self.solve(solve, &solved_for)?;
         }
         self.impel(&state.mu);
-        let increments = self.run(&step.increment);
+        let increments = self.found(Id::Increment).unwrap_or_default();
         for (symbol, increment) in self.program.formulas.symbols.increments.iter().zip(&increments) {
             self.values.set(*symbol, increment);
         }
-        let updated = step.update.as_ref().map(|update| self.run(update).remove(0));
-        let moved = self.run(step.displace.as_ref().unwrap_or(&step.advance));
+        let updated = self.found(Id::MomentumAfter(index)).map(|mut update| update.remove(0));
+        let moved = self.moved();
         state = match self.program.formulas.is_compensated() {
             true => state.with(&Seen { q: moved, mu: updated.unwrap_or_else(|| vec![0.0; state.mu.len()]) }),
             false => Seen { q: moved, mu: updated.unwrap_or(state.mu) },
         };
         self.place(t, &state);
-        let end = if step.end_is_start { step.start.as_ref() } else { step.end.as_ref() };
-        self.kick(end.filter(|_| step.end.is_some()), &mut state.mu);
+        let end = if step.end_is_start { Id::StartKick(index) } else { Id::EndKick(index) };
+        if program.find(Id::EndKick(index)).is_some() {
+            self.kick(end, &mut state.mu);
+        }
         Ok(state)
+    }
+
+    /// What moves the configuration: the chart coordinates or the increments.
+    fn moved(&self) -> Vec<Vec<f64>> {
+        self.found(Id::Displacement).or_else(|| self.found(Id::Advance)).unwrap_or_default()
     }
 
     /// What the move of a step without kicks adds to (q, N), where sums are compensated; a step of one part.
@@ -118,29 +131,28 @@ impl<'a, 'g> Stepper<'a, 'g> {
         let (program, step) = (self.program, &self.program.steps[0]);
         self.place(t, state);
         let mut mu = state.mu.clone();
-        self.kick(step.rest.as_ref(), &mut mu);
+        self.kick(Id::RestKick(0), &mut mu);
         for solve in &step.solves {
             self.solve(solve, &mu)?;
         }
         self.impel(&state.mu);
-        let increments = self.run(&step.increment);
+        let increments = self.found(Id::Increment).unwrap_or_default();
         for (symbol, increment) in program.formulas.symbols.increments.iter().zip(&increments) {
             self.values.set(*symbol, increment);
         }
-        let q = self.run(step.displace.as_ref().unwrap_or(&step.advance));
-        let mu = step.update.as_ref().map_or(vec![0.0; mu.len()], |update| self.run(update).remove(0));
+        let q = self.moved();
+        let mu = self.found(Id::MomentumAfter(0)).map_or(vec![0.0; mu.len()], |mut update| update.remove(0));
         Ok(Seen { q, mu })
     }
 
     /// (q′, N′) by Hamilton's equations at a covector of N, and by how much the momentum of that covector misses N.
     pub fn slopes(&mut self, t: f64, state: &Seen) -> Option<(Seen, f64)> {
-        let kernels = self.program.collocation.as_ref()?;
         self.place(t, state);
-        let p = self.run(&kernels.lift);
+        let p = self.found(Id::Covector)?;
         let found = self.momentum_map(&state.q, &p);
         let missed = found.iter().zip(&state.mu).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         self.momentum_map(&state.q, &p);
-        let slopes = self.run(&kernels.slope);
+        let slopes = self.run(self.program.kernel(Id::HamiltonEquations));
         let (q, slope) = slopes.split_at(state.q.len());
         let origin: Vec<Vec<f64>> = state.q.iter().map(|leaf| vec![0.0; leaf.len()]).collect();
         let [along, at_origin, pushed] =
@@ -158,12 +170,12 @@ impl<'a, 'g> Stepper<'a, 'g> {
         for (symbol, entries) in formulas.symbols.covectors.iter().zip(p) {
             self.values.set(*symbol, entries);
         }
-        self.run(&self.program.momentum_map).concat()
+        self.run(self.program.kernel(Id::MomentumMap)).concat()
     }
 
-    fn kick(&mut self, kernel: Option<&Kernel>, mu: &mut [f64]) {
-        let Some(kernel) = kernel else { return };
-        let kick = self.run(kernel).remove(0);
+    fn kick(&mut self, id: Id, mu: &mut [f64]) {
+        let Some(mut kick) = self.found(id) else { return };
+        let kick = kick.remove(0);
         mu.iter_mut().zip(kick).for_each(|(mu, kick)| *mu += kick);
         self.impel(mu);
     }
@@ -171,9 +183,11 @@ impl<'a, 'g> Stepper<'a, 'g> {
     /// Sets the chart coordinates of the factors that an equation is for.
     fn solve(&mut self, solve: &Solve, mu: &[f64]) -> Result<(), String> {
         if matches!(solve.solution, Solution::Explicit | Solution::ClosedForm) {
-            let x = self.run(solve.predict.as_ref().ok_or("no formula for the solution")?).remove(0);
+            let is_closed = solve.solution == Solution::ClosedForm;
+            let solution = self.found(solve.id(if is_closed { Id::ClosedForm } else { Id::Explicit }));
+            let x = solution.ok_or("no formula for the solution")?.remove(0);
             self.turn(solve, &x);
-            let sine_squared = solve.sine_squared.as_ref().map_or(0.0, |sine_squared| self.run(sine_squared)[0][0]);
+            let sine_squared = self.found(solve.id(Id::SineSquared)).map_or(0.0, |sine_squared| sine_squared[0][0]);
             return if sine_squared < 1.0 { Ok(()) } else { Err(format!("sin² = {sine_squared}")) };
         }
         let equation = Interpreted { stepper: RefCell::new(self), solve, mu };
@@ -200,11 +214,11 @@ impl<'a, 'g> Stepper<'a, 'g> {
     pub fn energy(&mut self, t: f64, state: &Seen) -> Option<f64> {
         self.place(t, state);
         let program = self.program;
-        let potential = self.values.run(&program.potential, &[], &[])[0][0];
-        if let Some(kernel) = &program.velocity {
+        let potential = self.values.run(program.kernel(Id::PotentialEnergy), &[], &[])[0][0];
+        if let Some(kernel) = program.find(Id::Lagrangian) {
             return Some(self.fenchel(kernel, &state.mu)? + potential);
         }
-        let slope = program.gyroscopic.as_ref().map(|kernel| self.values.run(kernel, &[], &[]).remove(0));
+        let slope = program.find(Id::Gyroscopic).map(|kernel| self.values.run(kernel, &[], &[]).remove(0));
         let mut mu = state.mu.clone();
         mu.iter_mut().zip(slope.unwrap_or_default()).for_each(|(mu, slope)| *mu -= slope);
         let inertia = self.values.inertia(program).entries;
@@ -236,7 +250,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     /// The momenta that the program calls conserved.
     pub fn conserved(&mut self, t: f64, state: &Seen) -> Vec<f64> {
         self.place(t, state);
-        let values = self.program.conserved.as_ref().map(|kernel| self.values.run(kernel, &[], &[]).concat());
+        let values = self.program.find(Id::ConservedMomenta).map(|kernel| self.values.run(kernel, &[], &[]).concat());
         values.unwrap_or_default()
     }
 }
@@ -270,27 +284,25 @@ impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     type Jacobian = SMatrix<f64, M, M>;
 
     fn prepare(&self, target: &SVector<f64, MOMENTA>) -> Vec<f64> {
-        self.aimed(target, |stepper| stepper.run(&self.solve.prepare).concat())
+        self.aimed(target, |stepper| stepper.run(stepper.program.kernel(self.solve.id(Id::Preparation))).concat())
     }
 
     fn predict(&self, target: &SVector<f64, MOMENTA>) -> SVector<f64, M> {
-        match &self.solve.predict {
-            Some(predict) => self.aimed(target, |stepper| SVector::from_column_slice(&stepper.run(predict)[0])),
-            None => SVector::zeros(),
-        }
+        let found = self.aimed(target, |stepper| stepper.found(self.solve.id(Id::Predictor)));
+        found.map_or(SVector::zeros(), |predicted| SVector::from_column_slice(&predicted[0]))
     }
 
     fn linearize(&self, terms: &Vec<f64>, x: &SVector<f64, M>) -> (SVector<f64, M>, SMatrix<f64, M, M>) {
         let mut stepper = self.stepper.borrow_mut();
         stepper.turn(self.solve, x.as_slice());
-        let outputs = stepper.values.run(&self.solve.linearize, &stepper.constants, terms);
+        let outputs = stepper.values.run(stepper.program.linearization(self.solve), &stepper.constants, terms);
         (SVector::from_column_slice(&outputs[0]), SMatrix::from_row_slice(&outputs[1]))
     }
 }
 
 impl<const M: usize> LinearEquation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     fn system(&self, target: &SVector<f64, MOMENTA>) -> (SMatrix<f64, M, M>, SVector<f64, M>) {
-        let outputs = self.aimed(target, |stepper| stepper.run(&self.solve.linearize));
+        let outputs = self.aimed(target, |stepper| stepper.run(stepper.program.linearization(self.solve)));
         (SMatrix::from_row_slice(&outputs[1]), SVector::from_column_slice(&outputs[0]))
     }
 }

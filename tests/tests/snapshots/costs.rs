@@ -1,6 +1,6 @@
 //! The operation counts of every fixture in one table: a change of cost is a line in the diff.
 
-use clebsch_compiler::lower::{self, Cost, Program};
+use clebsch_compiler::lower::{Cost, Program};
 use insta::assert_snapshot;
 
 use crate::fixture::{Fixture, root};
@@ -61,7 +61,7 @@ fn operations_of_all_fixtures() {
 
 fn cost(program: &Program<'_>, wanted: Wanted) -> Cost {
     // where a step moves by the chart coordinates alone, increments are made for others
-    let steps = program.steps.iter().all(lower::StepKernels::makes_increments);
+    let steps = (0..program.steps.len()).all(|index| program.makes_increments(index));
     let stands_for =
         |name: &str| if name.starts_with("increment") && !steps { "act".to_string() } else { name.to_string() };
     let kernels = program.kernels().into_iter().filter(|(name, _)| wanted(&stands_for(name)));

@@ -124,14 +124,69 @@ pub enum Id {
     HamiltonEquations,
     /// What its sweeps start from.
     Guess,
+    // what follows has kernels, and is no row of the table
+    /// What a stepper computes once.
+    Constants,
+    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy.
+    EnergyCoefficients,
+    /// The matrix of ξ ↦ ξ_Q(q), or the projection of μ to the momenta of motions, where motions that fix q are not free.
+    Isotropy,
+    /// J(q, p) as a step computes it that maps covectors.
+    MomentumOfStep,
+    /// A covector p at q with J(q, p) = μ.
+    Covector,
+    /// The gradient of a term at all places that it reads.
+    TermGradients(usize),
+    /// What the gradient of a site has at every site.
+    SiteGradient,
+    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ: matrices, or what they make of one motion.
+    Edge(usize),
+    /// ℓd, F⁻ℓd, F⁺ℓd.
+    EdgeMomenta(usize),
+    /// F⁺ℓd; Ad, ∂F⁻ℓd and ∂F⁺ℓd for motions that leave F as it is; ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
+    Carried(usize),
+    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
+    EdgeSlopes(usize),
+    /// J(q, q⁺ − q).
+    Approach,
+    /// A, B, ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives of ℓ + λ·η′.
+    StepExpanded,
+    /// ∂F⁻ℓd/∂u and ∂F⁺ℓd/∂u.
+    ByInput,
+    /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions that leave F as it is, those of q⁺ alone, and the inputs.
+    Bend,
+    /// ± ½ μ·[E_i, E_j].
+    Bracket,
+    /// Where forces take the inputs: ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives.
+    PriceExpanded,
+    /// What price and step gain with h and with t.
+    PriceOfTime,
+    /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
+    BoundsExpanded,
+    /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
+    PriceOfEndExpanded,
+    /// |a|² of a closed form, which has to be below one.
+    SineSquared(usize, usize),
+    /// x(μ) by the rotation in a plane.
+    ClosedForm(usize, usize),
+    /// x(μ), coordinate after coordinate.
+    Explicit(usize, usize),
+    /// −ρ(0) and Dρ of a linear equation.
+    System(usize, usize),
+    /// What an iteration computes once.
+    Preparation(usize, usize),
+    /// ρ(x) alone, where x ← x − s·h·Σ⁻¹ρ(x) is tried before Newton's method.
+    Residual(usize, usize),
+    /// ρ(x) and Dρ(x).
+    Linearization(usize, usize),
 }
 
-/// How often a formula is computed.
+/// How often a formula is computed, which decides how its code is written.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Heat {
-    /// In every step.
+    /// In steps, or again and again by solvers: what costs least.
     Hot,
-    /// When someone asks for it.
+    /// When someone asks for it: matrix code that a person can read.
     Cold,
 }
 
@@ -236,22 +291,22 @@ impl Id {
         let unlisted = |title, source, heat| Entry { title, source, heat, is_listed: false };
         match self {
             Id::Action => listed("action", Some(ClebschOptimalControl), Cold),
-            Id::Generator => listed("generator", Some(MechanicsAndSymmetry), Cold),
+            Id::Generator => listed("generator", Some(MechanicsAndSymmetry), Hot),
             Id::MomentumMap => listed("momentum map", Some(MechanicsAndSymmetry), Cold),
             Id::Coadjoint => listed("coadjoint action", Some(MechanicsAndSymmetry), Cold),
             Id::CotangentLift => listed("cotangent lift", Some(ClebschOptimalControl), Cold),
             Id::MomentumMatrix | Id::MomentumComponents => unlisted("momentum matrix", None, Cold),
             Id::Membership => unlisted("group", None, Cold),
-            Id::Retraction => unlisted("retraction", Some(LieGroupMethods), Cold),
-            Id::Composition => unlisted("composition", None, Cold),
+            Id::Retraction => unlisted("retraction", Some(LieGroupMethods), Hot),
+            Id::Composition => unlisted("composition", None, Hot),
             Id::OrbitMetric => unlisted("metric of the orbit", None, Cold),
-            Id::Inertia => listed("inertia", Some(MechanicsAndSymmetry), Cold),
+            Id::Inertia => listed("inertia", Some(MechanicsAndSymmetry), Hot),
             Id::KineticEnergy => listed("kinetic energy", None, Cold),
             Id::Lagrangian => listed("Lagrangian", None, Cold),
             Id::LagrangianGradient => unlisted("momentum", None, Cold),
             Id::LagrangianHessian => unlisted("Hessian of the Lagrangian", None, Cold),
-            Id::Gyroscopic => unlisted("slope of the kinetic energy", None, Cold),
-            Id::PotentialEnergy => listed("potential energy", None, Cold),
+            Id::Gyroscopic => unlisted("slope of the kinetic energy", None, Hot),
+            Id::PotentialEnergy => listed("potential energy", None, Hot),
             Id::Hamiltonian => listed("Hamiltonian", Some(MechanicsAndSymmetry), Cold),
             Id::KineticEnergyOfMomentum => unlisted("kinetic energy", Some(MechanicsAndSymmetry), Cold),
             Id::Force => listed("force", None, Hot),
@@ -259,18 +314,18 @@ impl Id {
             Id::StartPotential | Id::EndPotential => listed("", None, Cold),
             Id::Legendre => listed("Legendre transform", Some(DiscreteMechanics), Cold),
             Id::LegendreNext => listed("next Legendre transform", Some(DiscreteMechanics), Cold),
-            Id::Term(_) => listed("term", None, Cold),
+            Id::Term(_) => listed("term", None, Hot),
             Id::TermGradient(..) => listed("gradient of a term", None, Hot),
             Id::Controls => listed("controls", None, Hot),
-            Id::Price => listed("price", None, Cold),
-            Id::Bounds => listed("bounds", None, Cold),
-            Id::PriceOfEnd => listed("price of the end", None, Cold),
+            Id::Price => listed("price", None, Hot),
+            Id::Bounds => listed("bounds", None, Hot),
+            Id::PriceOfEnd => listed("price of the end", None, Hot),
             Id::ConservedMomenta => unlisted("conserved", None, Cold),
             Id::Conserved(_) => listed("conserved", None, Cold),
             Id::StartKick(_) | Id::EndKick(_) | Id::SplittingKick => listed("kick", Some(ClebschOptimalControl), Hot),
             Id::RestKick(_) => unlisted("kick", Some(ClebschOptimalControl), Hot),
             Id::StartGradient(_) | Id::EndGradient(_) | Id::CoupledGradient(_) | Id::SplittingGradient => {
-                unlisted("kick of the covector", Some(ClebschOptimalControl), Cold)
+                unlisted("kick of the covector", Some(ClebschOptimalControl), Hot)
             }
             Id::StartForce(_) | Id::MovingForce(_) | Id::EndForce(_) => unlisted("impulse of the force", None, Hot),
             Id::Equation(..) => listed("equation", Some(LieGroupMethods), Hot),
@@ -283,8 +338,10 @@ impl Id {
             Id::Increment => unlisted("increment", Some(LieGroupMethods), Hot),
             Id::Advance | Id::Displacement => unlisted("action", Some(ClebschOptimalControl), Hot),
             Id::Lift => unlisted("cotangent lift", Some(ClebschOptimalControl), Cold),
-            Id::SynchronizedMomentum => listed("synchronized momentum", None, Cold),
+            Id::SynchronizedMomentum => listed("synchronized momentum", None, Hot),
             Id::HamiltonEquations => listed("Hamilton's equations", Some(MechanicsAndSymmetry), Hot),
+            // no formulas
+            _ => unlisted("", None, Hot),
         }
     }
 }

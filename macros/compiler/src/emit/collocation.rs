@@ -6,14 +6,13 @@ use quote::{format_ident, quote};
 use super::code::{self, Nesting};
 use super::{Emitter, docs};
 use crate::derive::Id;
-use crate::lower::CollocationKernels;
 
 impl Emitter<'_, '_> {
     /// The implementation of `HamiltonEquations`: the slope of (q, p), the covector of a momentum, and a guess.
-    pub(super) fn hamilton_equations(&self, kernels: &CollocationKernels) -> TokenStream {
+    pub(super) fn hamilton_equations(&self) -> TokenStream {
         let numbers = self.numbers_of_pair();
         let (dials, size) = (self.dials_of_sweeps(), self.size_of_step());
-        let (slope, covector, guess) = (self.slope(kernels), self.covector(kernels), self.guess(kernels));
+        let (slope, covector, guess) = (self.slope(), self.covector(), self.guess());
         let momentum = self.momentum_of_step();
         let pair = self.pair();
         self.implementation(
@@ -43,18 +42,19 @@ impl Emitter<'_, '_> {
     }
 
     /// (q′, p′), in the order of their entries.
-    fn slope(&self, kernels: &CollocationKernels) -> TokenStream {
+    fn slope(&self) -> TokenStream {
         let (scalar, numbers, constants) = (&self.paths.scalar, self.pair_type(), self.constants_of_step());
         let formulas = self.program.formulas.titled(Id::HamiltonEquations);
+        let kernel = self.program.kernel(Id::HamiltonEquations);
         let documentation = docs::formulas(
             "Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.",
             formulas,
-            Some(&kernels.slope),
+            Some(kernel),
         );
         let equations = self.trait_of_parts("HamiltonEquations", &[&self.numbers_of_pair()]);
         let scope = self.scope_of_step();
-        let locals = code::locals(&scope, &kernels.slope);
-        let entries = kernels.slope.outputs.iter().flat_map(|(_, entries)| entries);
+        let locals = code::locals(&scope, kernel);
+        let entries = kernel.outputs.iter().flat_map(|(_, entries)| entries);
         let entries = entries.map(|entry| scope.code(entry, false));
         quote! {
             #documentation
@@ -67,7 +67,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn covector(&self, kernels: &CollocationKernels) -> TokenStream {
+    fn covector(&self) -> TokenStream {
         let constants = self.constants_of_step();
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let signature = quote!(covector(&self, c: &#constants, q: &#configuration, mu: &#momentum) -> #configuration);
@@ -75,7 +75,7 @@ impl Emitter<'_, '_> {
             "A covector p at q with the momentum J(q, p) = μ.",
             &[],
             signature,
-            &kernels.lift,
+            self.program.kernel(Id::Covector),
             Some(Nesting::Configuration),
         )
     }
@@ -83,12 +83,12 @@ impl Emitter<'_, '_> {
     fn momentum_of_step(&self) -> Option<TokenStream> {
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let signature = quote!(momentum(&self, q: &#configuration, p: &#configuration) -> #momentum);
-        let kernel = self.program.momentum_of_step.as_ref()?;
+        let kernel = self.program.find(Id::MomentumOfStep)?;
         Some(self.part("J(q, p), entry by entry.", &[], signature, kernel, None))
     }
 
     /// Where the motion with the velocity of the start leads.
-    fn guess(&self, kernels: &CollocationKernels) -> TokenStream {
+    fn guess(&self) -> TokenStream {
         let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let coordinates = self.coordinates_type();
@@ -96,7 +96,7 @@ impl Emitter<'_, '_> {
             "The chart coordinates x of the motion by the velocity ξ = Σ⁻¹(μ − A) for the time h, to first order in h.",
             &[],
             quote!(guess(&self, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #momentum),
-            &kernels.guess,
+            self.program.kernel(Id::Guess),
             None,
         );
         let x = match self.program.formulas.weighted().len() {

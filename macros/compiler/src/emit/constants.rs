@@ -5,7 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::{Emitter, code, docs, matrices};
-use crate::derive::Solution;
+use crate::derive::{Id, Solution};
 use crate::lower::Solve;
 use crate::model::{Promise, Side};
 
@@ -49,7 +49,7 @@ impl Emitter<'_, '_> {
 
     /// Σ as an expression, or κ of κI.
     pub(super) fn inertia(&self, scope: &code::Scope<'_, '_>) -> TokenStream {
-        let kernel = &self.program.inertia;
+        let kernel = self.program.kernel(Id::Inertia);
         if !self.program.form.keeps_matrices() || self.has_uniform_inertia() {
             let (locals, (shape, entries)) = (code::locals(scope, kernel), &kernel.outputs[0]);
             return match self.has_uniform_inertia() {
@@ -69,7 +69,8 @@ impl Emitter<'_, '_> {
 
     /// Whether the size of a step is a constant by itself.
     fn needs_step_size(&self) -> bool {
-        self.program.splitting.is_some() || self.program.collocation.is_some() || self.program.form.keeps_matrices()
+        let formulas = &self.program.formulas;
+        formulas.splitting.is_some() || formulas.collocation.is_some() || self.program.form.keeps_matrices()
     }
 
     /// Whether the orientation of an equation is a constant, made of Σ.
@@ -171,12 +172,13 @@ impl Emitter<'_, '_> {
             }
         });
         let inverse = (!moves).then(|| quote!(inertia_inverse,));
-        let locals = code::locals(&scope, &self.program.constants);
-        let fields =
-            self.program.constant_names.iter().zip(&self.program.constants.outputs).map(|(name, (_, entries))| {
+        let locals = code::locals(&scope, self.program.kernel(Id::Constants));
+        let fields = self.program.constant_names.iter().zip(&self.program.kernel(Id::Constants).outputs).map(
+            |(name, (_, entries))| {
                 let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
                 quote!(#name: #value,)
-            });
+            },
+        );
         let orientations = self.implicit_solves().map(|(name, solve)| {
             let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
             // det Σ is the product of those of what was put in and of what that leaves
@@ -199,7 +201,7 @@ impl Emitter<'_, '_> {
         let documentation = docs::formulas(
             "Checks the parameters and computes what no step changes.",
             &[],
-            Some(&self.program.constants),
+            Some(self.program.kernel(Id::Constants)),
         );
         let receiver = self.receiver_parameter();
         let body = quote! {

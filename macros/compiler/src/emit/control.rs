@@ -6,27 +6,21 @@ use quote::quote;
 use super::code::Nesting;
 use super::{Emitter, Generics, code, docs};
 use crate::derive::Id;
-use crate::lower::{BendKernels, ControlKernels, Kernel, StepOfInputs};
+use crate::lower::Kernel;
 
 impl Emitter<'_, '_> {
     /// The impl block, where something is chosen.
     pub(super) fn controlled(&self) -> TokenStream {
-        let (Some(kernels), Some(control)) = (&self.program.control, &self.model.control) else {
-            return TokenStream::new();
-        };
+        let Some(control) = &self.model.control else { return TokenStream::new() };
         let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
         let [d, u, c, motions] = [self.place_dimension(), self.inputs(), control.bounds.len(), self.dimension()]
             .map(Literal::usize_unsuffixed);
         let texts = control.bounds.iter().map(|bound| bound.text.as_str());
-        let motion = match (&kernels.step, &kernels.bend) {
-            (Some(step), _) => self.steered(kernels, step),
-            (None, Some(bend)) => self.forced(kernels, bend),
-            // by construction: inputs move the configuration or are those of forces
-            (None, None) => TokenStream::new(),
-        };
-        let prices = self.prices(kernels);
+        // inputs move the configuration, or are those of forces
+        let motion = if self.model.is_steered() { self.steered() } else { self.forced() };
+        let prices = self.prices();
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Controlled<#d, #u, #c> for #ident<#arguments> #predicates {
@@ -66,14 +60,16 @@ impl Emitter<'_, '_> {
     }
 
     /// The only output of a kernel, a scalar.
-    fn scalar(&self, kernel: &Kernel) -> TokenStream {
+    fn scalar(&self, id: Id) -> TokenStream {
+        let kernel = self.program.kernel(id);
         let scope = self.scope_of_system();
         let (locals, value) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
         quote!({ #locals #value })
     }
 
     /// The only output of a kernel, a matrix even where it has one entry.
-    fn matrix(&self, kernel: &Kernel) -> TokenStream {
+    fn matrix(&self, id: Id) -> TokenStream {
+        let kernel = self.program.kernel(id);
         let scope = self.scope_of_system();
         let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
         let value = code::grid(&scope, *shape, entries, false);
@@ -93,26 +89,24 @@ impl Emitter<'_, '_> {
     }
 
     /// What inputs move by themselves.
-    fn steered(&self, kernels: &ControlKernels, step: &StepOfInputs) -> TokenStream {
+    fn steered(&self) -> TokenStream {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let (configuration, checks, defect) = (self.configuration_type(), self.checks(), self.orbit_defect());
         let (m, u) = (Literal::usize_unsuffixed(self.dimension()), Literal::usize_unsuffixed(self.inputs()));
         let scope = self.scope_of_system();
-        let increment = code::body(&scope, &step.increment, Some(Nesting::Element));
-        let advance = code::body(&scope, &step.advance, Some(Nesting::Configuration));
+        let of_step = self.program.kernel(Id::Increment);
+        let increment = code::body(&scope, of_step, Some(Nesting::Element));
+        let advance = code::body(&scope, self.program.kernel(Id::Advance), Some(Nesting::Configuration));
         let moved = quote! {
             let (h, q) = (*constants, x);
             let d = { #increment };
             let next = { #advance };
         };
-        let expand = self.tuple(&step.expand, &[2]);
-        let of_time = self.matrix(&kernels.price_of_time);
-        let (metric, approach) = (self.matrix(&kernels.orbit_metric), self.matrix(&kernels.approach));
-        let documentation = docs::formulas(
-            "The step that an input makes.",
-            self.program.formulas.titled(Id::Controls),
-            Some(&step.increment),
-        );
+        let expand = self.tuple(self.program.kernel(Id::StepExpanded), &[2]);
+        let of_time = self.matrix(Id::PriceOfTime);
+        let (metric, approach) = (self.matrix(Id::OrbitMetric), self.matrix(Id::Approach));
+        let documentation =
+            docs::formulas("The step that an input makes.", self.program.formulas.titled(Id::Controls), Some(of_step));
         let costate = quote!(#private::SVector<#scalar, #m>);
         let input = quote!(#private::SVector<#scalar, #u>);
         quote! {
@@ -184,7 +178,7 @@ impl Emitter<'_, '_> {
     }
 
     /// What the inputs of forces move.
-    fn forced(&self, kernels: &ControlKernels, bend: &BendKernels) -> TokenStream {
+    fn forced(&self) -> TokenStream {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let configuration = self.configuration_type();
         let [m, u, d, w] =
@@ -194,7 +188,7 @@ impl Emitter<'_, '_> {
         let place = quote!((#configuration, #private::SVector<#scalar, #m>));
         let constants = quote!((#constants_name #constants_arguments, #scalar));
         let (costate, input) = (quote!(#private::SVector<#scalar, #d>), quote!(#private::SVector<#scalar, #u>));
-        let by_input = self.tuple(&bend.by_input, &[]);
+        let by_input = self.tuple(self.program.kernel(Id::ByInput), &[]);
         let passed = quote! {
             let (constants, h) = (&constants.0, constants.1);
             let (q, n) = x;
@@ -205,9 +199,9 @@ impl Emitter<'_, '_> {
             let link = #private::Link::new(&edge, &before, &after, costate).ok_or(#krate::Error::SingularTangent { step_size: #private::Scalar::to_f64(h) })?;
             let (mu, kappa) = (&link.costate, &link.multiplier);
         };
-        let (curvature, bracket) = (self.matrix(&bend.curvature), self.matrix(&bend.bracket));
-        let of_time = self.matrix(&kernels.price_of_time);
-        let price = kernels.price_expanded.as_ref().map(|kernel| self.tuple(kernel, &[0]));
+        let (curvature, bracket) = (self.matrix(Id::Bend), self.matrix(Id::Bracket));
+        let of_time = self.matrix(Id::PriceOfTime);
+        let price = self.tuple(self.program.kernel(Id::PriceExpanded), &[0]);
         quote! {
             type Place = #place;
             type Constants = #constants;
@@ -273,7 +267,7 @@ impl Emitter<'_, '_> {
     /// φ with its derivatives, at `q` and `t`.
     pub(super) fn endpoint_expanded(&self) -> Option<TokenStream> {
         let private = &self.paths.private;
-        let tuple = self.tuple(&self.program.endpoint.as_ref()?.expanded, &[0, 1]);
+        let tuple = self.tuple(self.program.find(Id::PriceOfEndExpanded)?, &[0, 1]);
         Some(quote! {
             let (price, by_time, slope, curvature) = #tuple;
             #private::endpoint(price, by_time, &slope, &curvature)
@@ -281,7 +275,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Price, bounds and the price of the end.
-    fn prices(&self, kernels: &ControlKernels) -> TokenStream {
+    fn prices(&self) -> TokenStream {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let [d, u, c] = [
             self.place_dimension(),
@@ -293,17 +287,18 @@ impl Emitter<'_, '_> {
             true => (quote!(*constants), quote!(x)),
             false => (quote!(constants.1), quote!(&x.0)),
         };
-        let price = self.scalar(&kernels.price);
-        let (bounds, expanded) = (self.matrix(&kernels.bounds), self.tuple(&kernels.bounds_expanded, &[]));
-        let endpoint = match &self.program.endpoint {
-            Some(kernels) => self.scalar(&kernels.price),
+        let price = self.scalar(Id::Price);
+        let (bounds, expanded) = (self.matrix(Id::Bounds), self.tuple(self.program.kernel(Id::BoundsExpanded), &[]));
+        let endpoint = match self.program.find(Id::PriceOfEnd) {
+            Some(_) => self.scalar(Id::PriceOfEnd),
             None => quote!(<#scalar as #private::Zero>::zero()),
         };
         let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
         let formulas = &self.program.formulas;
-        let documentation = docs::formulas("The price of a step.", formulas.titled(Id::Price), Some(&kernels.price));
+        let documentation =
+            docs::formulas("The price of a step.", formulas.titled(Id::Price), self.program.find(Id::Price));
         let of_end = docs::formulas("The price of the end.", formulas.titled(Id::PriceOfEnd), None);
-        let of_bounds = docs::formulas("The bounds.", formulas.titled(Id::Bounds), Some(&kernels.bounds));
+        let of_bounds = docs::formulas("The bounds.", formulas.titled(Id::Bounds), self.program.find(Id::Bounds));
         quote! {
             #documentation
             #[inline]

@@ -88,15 +88,17 @@ impl<'g> Emitter<'_, 'g> {
         let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
         let (solution, predictor) = (Id::Solution(index, number), Id::Predictor(index, number));
         let solved = self.program.formulas.titled_all(|id| id == solution || id == predictor);
-        let body = solve.predict.as_ref().map(|kernel| code::body(&scope, kernel, None));
-        let method = match &solve.sine_squared {
-            Some(kernel) => {
+        let is_closed = solve.solution == Solution::ClosedForm;
+        let kernel = self.program.find(solve.id(if is_closed { Id::ClosedForm } else { Id::Explicit }));
+        let body = kernel.map(|kernel| code::body(&scope, kernel, None));
+        let method = match self.program.find(solve.id(Id::SineSquared)) {
+            Some(sine) => {
                 let by_reference = self.program.form.keeps_matrices().then(|| quote!(let x = &x;));
-                let (locals, sine) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
+                let (locals, sine) = (code::locals(&scope, sine), scope.code(&sine.outputs[0].1[0], false));
                 let documentation = docs::formulas(
                     "The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.",
                     solved,
-                    solve.predict.as_ref(),
+                    kernel,
                 );
                 let body = self.body_of_equation(
                     solve,
@@ -120,7 +122,7 @@ impl<'g> Emitter<'_, 'g> {
                     (false, true) => "The solution, coordinate after coordinate.",
                     (false, false) => "The solution where the coordinates of equations before this one are x.",
                 };
-                let documentation = docs::formulas(title, solved, solve.predict.as_ref());
+                let documentation = docs::formulas(title, solved, kernel);
                 let given = (!solve.given.is_empty()).then(|| {
                     let given = self.vector_type(solve.given.len());
                     quote!(, x: &#given)
@@ -176,18 +178,19 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The terms, the vector and the matrix that a kernel gives.
     fn linearized(&self, scope: &code::Scope<'_, '_>, solve: &Solve) -> (TokenStream, TokenStream, TokenStream) {
-        let [vector, matrix] = [0, 1].map(|k| &solve.linearize.outputs[k]);
+        let kernel = self.program.linearization(solve);
+        let [vector, matrix] = [0, 1].map(|k| &kernel.outputs[k]);
         let value = code::grid(scope, vector.0, &vector.1, false);
         if let Structure::Sylvester(_) = solve.structure {
             let (private, factor) = (&self.paths.private, code::grid(scope, matrix.0, &matrix.1, false));
-            return (code::locals(scope, &solve.linearize), value, quote!(#private::Sylvester::new(#factor)));
+            return (code::locals(scope, kernel), value, quote!(#private::Sylvester::new(#factor)));
         }
         if self.program.form.keeps_matrices() {
-            let (locals, jacobian) = matrices::matrix_of(scope, &solve.linearize, 1, "delta", is_direction);
+            let (locals, jacobian) = matrices::matrix_of(scope, kernel, 1, "delta", is_direction);
             return (locals, value, jacobian);
         }
         let square = Shape::square(solve.dimension);
-        (code::locals(scope, &solve.linearize), value, code::grid(scope, square, &matrix.1, false))
+        (code::locals(scope, kernel), value, code::grid(scope, square, &matrix.1, false))
     }
 
     fn linear_equation(&self, index: usize, number: usize, solve: &Solve) -> TokenStream {
@@ -199,7 +202,7 @@ impl<'g> Emitter<'_, 'g> {
         let matrix = self.paths.matrix(solve.dimension, solve.dimension);
         let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
         let jacobian = self.program.formulas.titled(Id::Jacobian(index, number));
-        let documentation = docs::formulas("Dρ and −ρ(0).", jacobian, Some(&solve.linearize));
+        let documentation = docs::formulas("Dρ and −ρ(0).", jacobian, Some(self.program.linearization(solve)));
         let (locals, right, left) = self.linearized(&scope, solve);
         let body = self.body_of_equation(solve, quote!(#locals (#left, #right)));
         let (dimensions, correct, orientation) =
@@ -228,12 +231,13 @@ impl<'g> Emitter<'_, 'g> {
         let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
         let jacobian_type = self.jacobian_type(solve);
         let keeps = self.program.form.keeps_matrices();
-        let terms = Literal::usize_unsuffixed(solve.prepare.outputs.len());
-        let prepares = keeps || !solve.prepare.outputs.is_empty();
+        let prepare = self.program.kernel(solve.id(Id::Preparation));
+        let terms = Literal::usize_unsuffixed(prepare.outputs.len());
+        let prepares = keeps || !prepare.outputs.is_empty();
         let (terms, target_again) = match keeps {
             _ if !prepares => (target.clone(), quote!()),
             true => {
-                let types = solve.prepare.outputs.iter().map(|(shape, _)| match shape.is_scalar() {
+                let types = prepare.outputs.iter().map(|(shape, _)| match shape.is_scalar() {
                     true => quote!(#scalar),
                     false => self.paths.matrix(shape.rows, shape.columns),
                 });
@@ -241,8 +245,8 @@ impl<'g> Emitter<'_, 'g> {
             }
             false => (quote!([#scalar; #terms]), quote!()),
         };
-        let prepared = solve.prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
-        let prepare_locals = code::locals(&scope, &solve.prepare);
+        let prepared = prepare.outputs.iter().map(|(_, entries)| scope.code(&entries[0], false));
+        let prepare_locals = code::locals(&scope, prepare);
         let prepared = if !prepares {
             quote!(*mu)
         } else if keeps {
@@ -251,7 +255,7 @@ impl<'g> Emitter<'_, 'g> {
             quote!([#(#prepared),*])
         };
         let given = if prepares { quote!(terms: &Self::Terms) } else { quote!(mu: &#target) };
-        let predict = solve.predict.as_ref().map(|kernel| {
+        let predict = self.program.find(solve.id(Id::Predictor)).map(|kernel| {
             let body = self.body_of_equation(solve, code::body(&scope, kernel, None));
             let predictor = self.program.formulas.titled(Id::Predictor(index, number));
             let documentation = docs::formulas("The solution to first order in h.", predictor, None);
@@ -275,8 +279,9 @@ impl<'g> Emitter<'_, 'g> {
         };
         let formulas = self.program.formulas.titled_all(is_shown);
         let structure = self.equation_structure(&name, equation, solve);
-        let linearized = docs::formulas("The residual and its Jacobian.", formulas, Some(&solve.linearize));
-        let alone = solve.residual.as_ref().map(|kernel| {
+        let linearized =
+            docs::formulas("The residual and its Jacobian.", formulas, Some(self.program.linearization(solve)));
+        let alone = self.program.find(solve.id(Id::Residual)).map(|kernel| {
             let documentation = docs::formulas("The residual alone.", &formulas[..1], Some(kernel));
             let body = code::body(&scope, kernel, None);
             let body = self.body_of_equation(solve, quote!(#target_again #body));

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::Emitter;
 use super::code::Nesting;
 use crate::derive::{Id, Solution};
-use crate::lower::{Solve, SplittingKernels};
+use crate::lower::Solve;
 
 impl Emitter<'_, '_> {
     /// The coordinates of a factor that moves freely with the momentum `target`; `kept` are the motions of many steps.
@@ -122,7 +122,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The implementation of `SplitKicks`.
-    pub(super) fn split_kicks(&self, splitting: &SplittingKernels) -> TokenStream {
+    pub(super) fn split_kicks(&self) -> TokenStream {
         let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
         let (configuration, momentum) = (self.configuration_type(), self.momentum_type());
         let arguments =
@@ -130,12 +130,13 @@ impl Emitter<'_, '_> {
         let formulas = &self.program.formulas;
         let formula = formulas.titled(Id::SplittingKick);
         let size = self.size_of_step();
-        let kick = self.part("A kick.", formula, quote!(kick(#arguments) -> #momentum), &splitting.kick, None);
+        let kernel = self.program.kernel(Id::SplittingKick);
+        let kick = self.part("A kick.", formula, quote!(kick(#arguments) -> #momentum), kernel, None);
         let kick_gradient = self.part(
             "The same for the covector.",
             formulas.titled(Id::SplittingGradient),
             quote!(kick_gradient(#arguments) -> #configuration),
-            &splitting.gradient,
+            self.program.kernel(Id::SplittingGradient),
             Some(Nesting::Configuration),
         );
         self.implementation("SplitKicks", &[], quote!(#size #kick #kick_gradient))

@@ -55,7 +55,7 @@ impl Emitter<'_, '_> {
                 quote!([#(#entries),*])
             });
             let right = block.iter().map(|&i| {
-                let terms = known.iter().filter(|&&j| !solve.is_zero(i, j)).map(|&j| {
+                let terms = known.iter().filter(|&&j| !self.program.is_zero(solve, i, j)).map(|&j| {
                     let (a, x) = (entry(i, j), format_ident!("x{j}"));
                     quote!(- #a * #x)
                 });

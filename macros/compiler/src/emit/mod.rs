@@ -26,6 +26,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::MethodProgram;
+use crate::derive::Id;
 use crate::lower::Program;
 use crate::model::{Item, Model};
 use code::{Scope, Spelled, nested_type};
@@ -321,16 +322,13 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether the end kick of a step serves as the start kick of the next.
     fn shares_impulse(&self) -> bool {
-        let (first, last) = (&self.program.steps[0], &self.program.steps[self.program.formulas.stepped - 1]);
-        let (start, end) = (
-            &self.program.formulas.substeps[0].start,
-            &self.program.formulas.substeps[self.program.formulas.stepped - 1].end,
-        );
-        start == end
-            && first.start.is_some()
-            && last.end.is_some()
-            && self.program.splitting.is_none()
-            && self.program.collocation.is_none()
+        let formulas = &self.program.formulas;
+        let last = formulas.stepped - 1;
+        formulas.substeps[0].start == formulas.substeps[last].end
+            && self.program.find(Id::StartKick(0)).is_some()
+            && self.program.find(Id::EndKick(last)).is_some()
+            && formulas.splitting.is_none()
+            && formulas.collocation.is_none()
     }
 
     /// Whether steps are made in (q, w).
@@ -345,8 +343,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// Whether steps are made in (q, w) and nothing pushes.
     fn is_free_on_great_circles(&self) -> bool {
-        let step = &self.program.steps[0];
-        self.follows_great_circles() && step.start_gradient.is_none() && step.end_gradient.is_none()
+        let is_free = |id: Id| self.program.find(id).is_none();
+        self.follows_great_circles() && is_free(Id::StartGradient(0)) && is_free(Id::EndGradient(0))
     }
 
     fn constants_generics(&self) -> (TokenStream, TokenStream) {

@@ -7,7 +7,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::code::Nesting;
 use super::{Emitter, code, docs};
 use crate::derive::{Formula, Id, Solution};
-use crate::lower::{Kernel, Solve, StepKernels};
+use crate::lower::{Kernel, Solve, Step};
 use crate::model::{Layout, LeafSpace};
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
@@ -95,9 +95,9 @@ impl Emitter<'_, '_> {
     }
 
     fn motion(&self) -> Motion {
-        let steps = &self.program.steps;
-        let updates = steps.iter().take(self.program.formulas.stepped).any(|step| step.update.is_some());
-        match (&steps[0].displace, updates) {
+        let program = self.program;
+        let updates = (0..program.formulas.stepped).any(|index| program.find(Id::MomentumAfter(index)).is_some());
+        match (program.find(Id::Displacement), updates) {
             (None, _) => Motion::Increment,
             (Some(_), false) => Motion::Coordinates,
             (Some(_), true) => Motion::Both,
@@ -132,8 +132,8 @@ impl Emitter<'_, '_> {
     fn is_short(&self) -> bool {
         let is_single = self.program.formulas.stepped == 1
             && self.program.formulas.stages().is_none()
-            && self.program.collocation.is_none();
-        is_single && self.program.steps.first().is_some_and(|step| step.cost_of_moves().total() <= SHORT_STEP)
+            && self.program.formulas.collocation.is_none();
+        is_single && self.program.cost_of_moves(0).total() <= SHORT_STEP
     }
 
     /// Increment, advance and lift, which all substeps share.
@@ -196,7 +196,7 @@ impl Emitter<'_, '_> {
             "D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.",
             self.program.formulas.titled(Id::Increment),
             quote!(increment(&self, #pattern: &#coordinates) -> #element),
-            &self.program.steps[0].increment,
+            self.program.kernel(Id::Increment),
             Some(Nesting::Element),
         )
     }
@@ -222,27 +222,25 @@ impl Emitter<'_, '_> {
 
     fn advance(&self) -> TokenStream {
         let (configuration, motion) = (self.configuration_type(), self.motion_type());
-        let step = &self.program.steps[0];
-        let id = if step.displace.is_some() { Id::Displacement } else { Id::Advance };
-        let formulas = self.program.formulas.titled(id);
-        let (title, pattern, kernel) = match (&step.displace, self.motion()) {
-            (Some(displace), kind) => (
+        let motion_kind = self.motion();
+        let id = if motion_kind == Motion::Increment { Id::Advance } else { Id::Displacement };
+        let (formulas, kernel) = (self.program.formulas.titled(id), self.program.kernel(id));
+        let (title, pattern) = match motion_kind {
+            kind @ (Motion::Coordinates | Motion::Both) => (
                 if self.is_compensated() {
                     "q⁺ − q = α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix."
                 } else {
                     "q⁺ = q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix."
                 },
                 if kind == Motion::Both { quote!((x, _)) } else { quote!(x) },
-                displace,
             ),
-            (None, _) => (
+            Motion::Increment => (
                 if self.is_compensated() {
                     "Φ_F(q) − q of F = I + D, in which q has cancelled."
                 } else {
                     "The configuration that F = I + D moves q to."
                 },
                 quote!(d),
-                &step.advance,
             ),
         };
         let signature = quote!(advance(&self, q: &#configuration, #pattern: &#motion) -> #configuration);
@@ -255,7 +253,7 @@ impl Emitter<'_, '_> {
             "The covector p carried along by F = I + D, at q⁺.",
             self.program.formulas.titled(Id::Lift),
             quote!(lift(&self, q: &#configuration, p: &#configuration, d: &#element) -> #configuration),
-            &self.program.cotangent_lift,
+            self.program.kernel(Id::Lift),
             Some(Nesting::Configuration),
         )
     }
@@ -309,12 +307,12 @@ impl Emitter<'_, '_> {
     }
 
     /// The parts of one substep: kicks, forces, solve, update.
-    fn substep(&self, index: usize, step: &StepKernels) -> TokenStream {
+    fn substep(&self, index: usize, step: &Step) -> TokenStream {
         let number = Literal::usize_unsuffixed(index);
         let kicks = self.kicks(index, step);
-        let forces = self.forces_of_step(step);
+        let forces = self.forces_of_step(index);
         let gradients = self.model.has_covectors().then(|| self.gradients(index, step));
-        let (solve, update) = (self.solve(index, step), self.update(index, step));
+        let (solve, update) = (self.solve(index, step), self.update(index));
         let ends_as_it_starts = self.ends_as_it_starts(index, step).then(|| {
             quote!(
                 const ENDS_AS_IT_STARTS: ::core::primitive::bool = true;
@@ -325,36 +323,36 @@ impl Emitter<'_, '_> {
 
     /// Whether a step ends with a kick of its own.
     fn ends_with_kick(&self) -> bool {
-        self.program.splitting.is_none() && self.program.collocation.is_none() && !self.follows_great_circles()
+        let formulas = &self.program.formulas;
+        formulas.splitting.is_none() && formulas.collocation.is_none() && !self.follows_great_circles()
     }
 
-    fn kicks(&self, index: usize, step: &StepKernels) -> TokenStream {
+    fn kicks(&self, index: usize, step: &Step) -> TokenStream {
         let formulas = &self.program.formulas;
         let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
         let at = || quote!(t: #scalar, q: &#configuration);
-        let kick = |name: &str, title: &str, kernel: &Kernel, id: Id| {
-            self.optional(title, formulas.titled(id), (name, at()), kernel, None)
+        let kick = |name: &str, title: &str, id: Id| {
+            let kernel = self.program.find(id)?;
+            Some(self.optional(title, formulas.titled(id), (name, at()), kernel, None))
         };
-        let start = step.start.as_ref();
-        let start =
-            start.map(|kernel| kick("start_kick", "The kick at the start of a step.", kernel, Id::StartKick(index)));
-        let end =
-            step.end.as_ref().filter(|_| self.ends_with_kick()).and_then(|kernel| match self.same_kick(index, step) {
-                Some(first) if first == index && self.ends_as_it_starts(index, step) => None,
-                Some(first) => Some(self.kick_of_start(index, first)),
-                None => Some(kick("end_kick", "The kick at the end of a step.", kernel, Id::EndKick(index))),
-            });
-        let rest = step.rest.as_ref().filter(|_| self.model.has_covectors() || self.is_compensated()).map(|kernel| {
-            kick("rest", "What the cost gives at F = I, with the other sign.", kernel, Id::RestKick(index))
-        });
+        let start = kick("start_kick", "The kick at the start of a step.", Id::StartKick(index));
+        let end = match self.same_kick(index, step).filter(|_| self.ends_with_kick()) {
+            Some(first) if first == index && self.ends_as_it_starts(index, step) => None,
+            Some(first) => Some(self.kick_of_start(index, first)),
+            None if !self.ends_with_kick() => None,
+            None => kick("end_kick", "The kick at the end of a step.", Id::EndKick(index)),
+        };
+        let has_rest = self.model.has_covectors() || self.is_compensated();
+        let title = "What the cost gives at F = I, with the other sign.";
+        let rest = has_rest.then(|| kick("rest", title, Id::RestKick(index)));
         quote!(#start #end #rest)
     }
 
     /// The substep whose kick at the start is that at the end.
-    fn same_kick(&self, index: usize, step: &StepKernels) -> Option<usize> {
+    fn same_kick(&self, index: usize, step: &Step) -> Option<usize> {
         let is_last = index + 1 == self.program.formulas.stepped;
         // where time matters, the kick at the end of a step is the one that knows its time
-        match step.end {
+        match self.program.find(Id::EndKick(index)) {
             Some(_) if step.end_is_start => Some(index),
             Some(_) if is_last && self.shares_impulse() && !self.is_timed() => Some(0),
             _ => None,
@@ -362,9 +360,10 @@ impl Emitter<'_, '_> {
     }
 
     /// Whether all that acts at the end of a substep is what acts at its start.
-    fn ends_as_it_starts(&self, index: usize, step: &StepKernels) -> bool {
+    fn ends_as_it_starts(&self, index: usize, step: &Step) -> bool {
+        let has = |id: Id| self.program.find(id).is_some();
         let has_gradients =
-            self.model.has_covectors() && (step.start_gradient.is_some() || step.end_gradient.is_some());
+            self.model.has_covectors() && (has(Id::StartGradient(index)) || has(Id::EndGradient(index)));
         self.ends_with_kick() && self.same_kick(index, step) == Some(index) && (step.end_is_start || !has_gradients)
     }
 
@@ -385,52 +384,49 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn forces_of_step(&self, step: &StepKernels) -> TokenStream {
+    fn forces_of_step(&self, index: usize) -> TokenStream {
         let (scalar, configuration, input) = (&self.paths.scalar, self.configuration_type(), self.input_type());
         let coordinates = self.coordinates_type();
-        let force = |name: &str, title: &str, kernel: &Option<Kernel>, at: TokenStream| {
+        let force = |name: &str, title: &str, id: Id, at: TokenStream| {
             let formulas = self.program.formulas.titled(Id::Force);
             let arguments = quote!(t: #scalar, q: &#configuration, #at u: &#input);
-            kernel.as_ref().map(|kernel| self.optional(title, formulas, (name, arguments), kernel, None))
+            self.program.find(id).map(|kernel| self.optional(title, formulas, (name, arguments), kernel, None))
         };
         let along = || quote!(x: &#coordinates,);
-        let start =
-            force("start_force", "The impulse of the force at the start of a step.", &step.start_force, quote!());
+        let title = "The impulse of the force at the start of a step.";
+        let start = force("start_force", title, Id::StartForce(index), quote!());
         let title = "The part of the impulse at the start of a step that depends on the velocity.";
-        let moving = force("moving_force", title, &step.start_moving, along());
-        let end = force("end_force", "The impulse of the force at the end of a step.", &step.end_force, along());
+        let moving = force("moving_force", title, Id::MovingForce(index), along());
+        let title = "The impulse of the force at the end of a step.";
+        let end = force("end_force", title, Id::EndForce(index), along());
         quote!(#start #moving #end)
     }
 
-    fn gradients(&self, index: usize, step: &StepKernels) -> TokenStream {
-        if self.program.splitting.is_some() || self.program.collocation.is_some() {
+    fn gradients(&self, index: usize, step: &Step) -> TokenStream {
+        if self.program.formulas.splitting.is_some() || self.program.formulas.collocation.is_some() {
             return TokenStream::new();
         }
         let scalar = &self.paths.scalar;
         let (configuration, element) = (self.configuration_type(), self.element_type());
-        let gradient = |name: &str, title: &str, (kernel, id): (&Kernel, Id), at: TokenStream| {
+        let gradient = |name: &str, title: &str, id: Id, at: TokenStream| {
+            let kernel = self.program.find(id)?;
             let arguments = quote!(t: #scalar, q: &#configuration, #at);
             let formulas = self.program.formulas.titled(id);
-            self.optional(title, formulas, (name, arguments), kernel, Some(Nesting::Configuration))
+            Some(self.optional(title, formulas, (name, arguments), kernel, Some(Nesting::Configuration)))
         };
-        let start = step.start_gradient.as_ref().map(|kernel| {
-            let title = "∂U₀(q), the kick of the covector at the start of a step.";
-            gradient("start_gradient", title, (kernel, Id::StartGradient(index)), quote!())
-        });
-        let end = step.end_gradient.as_ref().filter(|_| !self.ends_as_it_starts(index, step)).map(|kernel| {
-            let title = "∂U₁(q), the kick of the covector at the end of a step.";
-            gradient("end_gradient", title, (kernel, Id::EndGradient(index)), quote!())
-        });
-        let coupled = step.coupled_gradient.as_ref().map(|kernel| {
-            let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
-            gradient("coupled_gradient", title, (kernel, Id::CoupledGradient(index)), quote!(d: &#element))
-        });
+        let title = "∂U₀(q), the kick of the covector at the start of a step.";
+        let start = gradient("start_gradient", title, Id::StartGradient(index), quote!());
+        let title = "∂U₁(q), the kick of the covector at the end of a step.";
+        let end = (!self.ends_as_it_starts(index, step))
+            .then(|| gradient("end_gradient", title, Id::EndGradient(index), quote!()));
+        let title = "∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.";
+        let coupled = gradient("coupled_gradient", title, Id::CoupledGradient(index), quote!(d: &#element));
         quote!(#start #end #coupled)
     }
 
     /// The momentum after the move.
-    fn update(&self, index: usize, step: &StepKernels) -> Option<TokenStream> {
-        let kernel = step.update.as_ref()?;
+    fn update(&self, index: usize) -> Option<TokenStream> {
+        let kernel = self.program.find(Id::MomentumAfter(index))?;
         let (scalar, configuration) = (&self.paths.scalar, self.configuration_type());
         let (momentum, motion) = (self.momentum_type(), self.motion_type());
         let d = if self.motion() == Motion::Both { quote!((_, d)) } else { quote!(d) };
@@ -445,7 +441,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The chart coordinates of the group element whose momentum is μ.
-    fn solve(&self, index: usize, step: &StepKernels) -> TokenStream {
+    fn solve(&self, index: usize, step: &Step) -> TokenStream {
         let (private, scalar, constants) = (&self.paths.private, &self.paths.scalar, self.constants_of_step());
         let (configuration, momentum, input) = (self.configuration_type(), self.momentum_type(), self.input_type());
         let coordinates = self.coordinates_type();
@@ -467,7 +463,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The coordinates that the equations of a step give, or the error of one of them.
-    fn coordinates_of(&self, index: usize, step: &StepKernels) -> TokenStream {
+    fn coordinates_of(&self, index: usize, step: &Step) -> TokenStream {
         let private = &self.paths.private;
         if let [solve] = &step.solves[..]
             && !matches!(solve.solution, Solution::FreeRotation | Solution::Explicit)
@@ -490,14 +486,16 @@ impl Emitter<'_, '_> {
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
             Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
             Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)),
-            Solution::Newton if solve.residual.is_some() => quote!(#private::solve_fixed_point(&#equation, #target)),
+            Solution::Newton if self.program.find(solve.id(Id::Residual)).is_some() => {
+                quote!(#private::solve_fixed_point(&#equation, #target))
+            }
             // by construction: free rotations are no equations of a type
             Solution::Newton | Solution::FreeRotation => quote!(#private::solve(&#equation, #target)),
         }
     }
 
     /// The solutions of a step, equation by equation, and the coordinates that they make; with `kept` those of motions that are known.
-    pub(super) fn solved(&self, index: usize, step: &StepKernels, kept: bool) -> (TokenStream, TokenStream) {
+    pub(super) fn solved(&self, index: usize, step: &Step, kept: bool) -> (TokenStream, TokenStream) {
         let private = &self.paths.private;
         let entry = |component: &usize| {
             let position = |solve: &Solve| solve.components.iter().position(|other| other == component);

@@ -74,7 +74,7 @@ impl<'g> Emitter<'_, 'g> {
             LeafSpace::Vectors => false,
         });
         let gradient = match &self.program.gathered {
-            Some(gathered) => self.gathered_gradient(power, gathered, &point),
+            Some(stencil) => self.gathered_gradient(power, stencil, &point),
             None => self.added_gradient(power, &point),
         };
         let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Term(_)));
@@ -161,7 +161,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The implementation of `Conserves` for all sites: sums of what each has, along motions that move all of them alike.
     fn conserves_of_power(&self, power: &Power<'g>, generics: &Generics) -> TokenStream {
-        let Some(kernel) = &self.program.conserved else { return TokenStream::new() };
+        let Some(kernel) = self.program.find(Id::ConservedMomenta) else { return TokenStream::new() };
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = generics;
         let ident = &power.item.ident;

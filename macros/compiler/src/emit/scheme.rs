@@ -29,7 +29,7 @@ impl Emitter<'_, '_> {
             let count = Literal::usize_unsuffixed(count);
             return quote!(#private::Split<#private::#kicks, #count>);
         }
-        if self.program.collocation.is_some() {
+        if self.program.formulas.collocation.is_some() {
             let numbers = self.numbers_of_pair();
             return quote!(#private::Collocated<#numbers>);
         }
@@ -53,11 +53,11 @@ impl Emitter<'_, '_> {
 
     /// What the scheme calls beside the parts of a step.
     pub(super) fn parts_of_scheme(&self) -> TokenStream {
-        if let Some(splitting) = &self.program.splitting {
-            return self.split_kicks(splitting);
+        if self.program.formulas.splitting.is_some() {
+            return self.split_kicks();
         }
-        if let Some(collocation) = &self.program.collocation {
-            return self.hamilton_equations(collocation);
+        if self.program.formulas.collocation.is_some() {
+            return self.hamilton_equations();
         }
         if self.follows_great_circles() {
             let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());

@@ -64,7 +64,7 @@ impl Emitter<'_, '_> {
     pub(super) fn conserves(&self) -> TokenStream {
         let [configuration, _, momentum] = self.names_of_types();
         // what is conserved of a power is a sum over its sites
-        let conserved = self.program.conserved.as_ref().filter(|_| self.model.power.is_none());
+        let conserved = self.program.find(Id::ConservedMomenta).filter(|_| self.model.power.is_none());
         let Some(kernel) = conserved else { return TokenStream::new() };
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let Generics { parameters, arguments, predicates } = &self.generics;
@@ -106,7 +106,7 @@ impl Emitter<'_, '_> {
         let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
         solves().next()?;
         let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
-        let inertia = code::body(&scope, &self.program.inertia, None);
+        let inertia = code::body(&scope, self.program.kernel(Id::Inertia), None);
         let dimension = Literal::usize_unsuffixed(self.dimension());
         let momentum = |solve: &Solve| {
             let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
@@ -182,7 +182,7 @@ impl Emitter<'_, '_> {
             self.method(
                 ("The action.", formulas.titled(Id::Action)),
                 quote!(act(&self, f: &#element, q: &#configuration) -> #configuration),
-                &program.act,
+                program.kernel(Id::Action),
                 Some(Nesting::Configuration),
             ),
             self.method(
@@ -191,13 +191,13 @@ impl Emitter<'_, '_> {
                     formulas.titled(Id::MomentumMap),
                 ),
                 quote!(momentum_map(&self, q: &#configuration, p: &#configuration) -> #momentum),
-                &program.momentum_map,
+                program.kernel(Id::MomentumMap),
                 None,
             ),
             self.method(
                 ("The coadjoint action.", formulas.titled(Id::Coadjoint)),
                 quote!(coadjoint(&self, f: &#element, mu: &#momentum) -> #momentum),
-                &program.coadjoint,
+                program.kernel(Id::Coadjoint),
                 None,
             ),
         ];
@@ -205,13 +205,13 @@ impl Emitter<'_, '_> {
             self.method(
                 ("The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.", &[]),
                 quote!(momentum_matrix(mu: &#momentum) -> #element),
-                &program.momentum_matrix,
+                program.kernel(Id::MomentumMatrix),
                 Some(Nesting::Element),
             ),
             self.method(
                 ("The components μ_i = tr(MᵀE_i) of a momentum.", &[]),
                 quote!(momentum_components(m: &#element) -> #momentum),
-                &program.momentum_components,
+                program.kernel(Id::MomentumComponents),
                 None,
             ),
         ];
@@ -233,7 +233,7 @@ impl Emitter<'_, '_> {
                 formulas.titled(Id::Legendre),
             ),
             quote!(legendre(#arguments) -> #momentum),
-            &program.legendre,
+            program.kernel(Id::Legendre),
             None,
         );
         let legendre_next = self.method_after(
@@ -243,7 +243,7 @@ impl Emitter<'_, '_> {
                 formulas.titled(Id::LegendreNext),
             ),
             quote!(legendre_next(#arguments) -> #momentum),
-            &program.legendre_next,
+            program.kernel(Id::LegendreNext),
             None,
         );
         quote!(#legendre #legendre_next)
@@ -254,7 +254,7 @@ impl Emitter<'_, '_> {
         if self.program.formulas.potential_energy.is_zero() {
             return None;
         }
-        let (scalar, kernel) = (&self.paths.scalar, &self.program.potential);
+        let (scalar, kernel) = (&self.paths.scalar, self.program.kernel(Id::PotentialEnergy));
         let [configuration, ..] = self.names_of_types();
         let formulas = self.program.formulas.titled(Id::PotentialEnergy);
         let signature = quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar);
@@ -288,12 +288,12 @@ impl Emitter<'_, '_> {
     /// ½ (μ − A)·Σ⁻¹(μ − A), with Σ⁻¹ from the constants where it does not change.
     fn kinetic_energy(&self) -> TokenStream {
         let private = &self.paths.private;
-        if self.program.velocity.is_some() {
+        if self.program.find(Id::Lagrangian).is_some() {
             let (velocity, system) = (&self.names.velocity, self.receiver());
             return quote!(#private::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
         }
         let scope = self.scope_of_system();
-        let (shift, mu) = match &self.program.gyroscopic {
+        let (shift, mu) = match self.program.find(Id::Gyroscopic) {
             Some(kernel) => {
                 let slope = code::body(&scope, kernel, None);
                 (quote!(let mu = *mu - { #slope };), quote!(&mu))
@@ -316,7 +316,7 @@ impl Emitter<'_, '_> {
 
     /// The equation of the velocity that has a momentum, of a Lagrangian that is not quadratic.
     pub(super) fn velocity(&self) -> TokenStream {
-        let Some(kernel) = &self.program.velocity else { return TokenStream::new() };
+        let Some(kernel) = self.program.find(Id::Lagrangian) else { return TokenStream::new() };
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (private, scalar, ident) = (&self.paths.private, &self.paths.scalar, &self.model.item.ident);
         let Names { lifetime, velocity: name, .. } = &self.names;
@@ -356,7 +356,7 @@ impl Emitter<'_, '_> {
     /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
     pub(super) fn stagger(&self) -> Option<TokenStream> {
         let (receiver, [configuration, _, momentum]) = (self.receiver_parameter(), self.names_of_types());
-        let (kernel, scalar) = (self.program.stagger.as_ref()?, &self.paths.scalar);
+        let (kernel, scalar) = (self.program.find(Id::SynchronizedMomentum)?, &self.paths.scalar);
         let formulas = self.program.formulas.titled(Id::SynchronizedMomentum);
         Some(self.method(
             ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", formulas),
@@ -385,7 +385,7 @@ impl Emitter<'_, '_> {
         });
         let mut defects: Vec<_> = defects.collect();
         let scope = self.scope_of_system();
-        let membership = self.program.membership.as_ref().map(|kernel| {
+        let membership = self.program.find(Id::Membership).map(|kernel| {
             let (locals, (_, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
             defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
             locals
@@ -417,7 +417,7 @@ impl Emitter<'_, '_> {
     fn checks_of_isotropy(&self) -> Option<TokenStream> {
         let [configuration, _, momentum] = self.names_of_types();
         let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
-        let kernel = self.program.generator.as_ref()?;
+        let kernel = self.program.find(Id::Isotropy)?;
         let (defect, projection) = if self.program.form.keeps_matrices() {
             let projection = code::body(&scope, kernel, None);
             (

@@ -7,17 +7,19 @@ use quote::{format_ident, quote};
 use super::code::Nesting;
 use super::{Emitter, Generics, code, docs, matrices};
 use crate::derive::Id;
-use crate::lower::{EdgeKernels, Kernel, VariationKernels};
+use crate::lower::Kernel;
 
 impl Emitter<'_, '_> {
     /// The implementations of `Variational` and of `VariedSubstep` for each edge, where they are asked for.
     pub(super) fn variational(&self) -> TokenStream {
-        let Some(variations) = &self.program.variations else { return TokenStream::new() };
+        if !self.model.has_variations() {
+            return TokenStream::new();
+        }
         let krate = &self.paths.krate;
         let Generics { parameters, arguments, predicates } = &self.generics;
         let (ident, scalar) = (&self.model.item.ident, &self.paths.scalar);
         let dimension = Literal::usize_unsuffixed(self.dimension());
-        let motions = self.motions(variations);
+        let motions = self.motions();
         let end = self.endpoint_expanded().map(|body| {
             quote! {
                 /// The price of the end with its derivatives.
@@ -33,7 +35,7 @@ impl Emitter<'_, '_> {
             quote!(())
         };
         let varied = self.implementation("Varied", &[&dimension], quote!(type Slopes = #slopes;));
-        let edges = variations.edges.iter().enumerate().map(|(index, edge)| self.edge(index, edge));
+        let edges = (0..self.program.formulas.stepped).map(|index| self.edge(index));
         quote! {
             #[automatically_derived]
             impl<#parameters> #krate::Variational<#dimension> for #ident<#arguments> #predicates {
@@ -47,14 +49,14 @@ impl Emitter<'_, '_> {
 
     /// Whether derivatives with respect to what is fixed during a step are asked for.
     fn is_sensitive(&self) -> bool {
-        let mut asked = self.program.variations.iter().flat_map(|variations| &variations.edges);
-        asked.any(|edge| edge.slopes.is_some())
+        (0..self.program.formulas.stepped).any(|index| self.program.find(Id::EdgeSlopes(index)).is_some())
     }
 
     /// Retraction, composition, advance, and the geometry of the orbit.
-    fn motions(&self, variations: &VariationKernels) -> TokenStream {
+    fn motions(&self) -> TokenStream {
         let formulas = &self.program.formulas;
-        let method = |(documentation, id): (&str, Id), signature: TokenStream, kernel: &Kernel, nesting| {
+        let method = |(documentation, id): (&str, Id), signature: TokenStream, nesting| {
+            let kernel = self.program.kernel(id);
             let documentation = docs::formulas(documentation, formulas.titled(id), Some(kernel));
             let body = code::body(&self.scope_of_system(), kernel, nesting);
             quote! {
@@ -68,18 +70,16 @@ impl Emitter<'_, '_> {
         let compose = method(
             ("The increment of the motion by I + d and after it by I + second.", Id::Composition),
             quote!(compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element),
-            &variations.compose,
             Some(Nesting::Element),
         );
         let advance = self.advance_of_motions();
         let motion = method(
             ("The infinitesimal motion ξ_Q(q).", Id::Generator),
             quote!(infinitesimal_motion(&self, q: &Self::Configuration, x: &Self::Momentum) -> Self::Configuration),
-            &variations.generator,
             Some(Nesting::Configuration),
         );
-        let retractions = self.retractions(variations);
-        let (matrix, orbit_metric) = (self.block_type(), &variations.orbit_metric);
+        let retractions = self.retractions();
+        let (matrix, orbit_metric) = (self.block_type(), self.program.kernel(Id::OrbitMetric));
         let title = "GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).";
         let signature = quote!(orbit_metric(&self, q: &Self::Configuration) -> #matrix);
         let metric = match self.program.form.keeps_matrices() {
@@ -96,7 +96,7 @@ impl Emitter<'_, '_> {
                     }
                 }
             }
-            false => method((title, Id::OrbitMetric), signature, orbit_metric, None),
+            false => method((title, Id::OrbitMetric), signature, None),
         };
         let difference = code::combined(self.model, &quote!(target), quote!(-), &quote!(q), &self.paths);
         let krate = &self.paths.krate;
@@ -116,10 +116,10 @@ impl Emitter<'_, '_> {
 
     /// The move by an increment. Where sums keep their rests, the kernel has what is added.
     fn advance_of_motions(&self) -> TokenStream {
-        let kernel = &self.program.steps[0].advance;
+        let kernel = self.program.kernel(Id::Advance);
         let formulas = self.program.formulas.titled(Id::Advance);
         let documentation = docs::formulas("The configuration that F = I + D moves q to.", formulas, Some(kernel));
-        let moves_by_increments = self.program.steps[0].displace.is_none();
+        let moves_by_increments = self.program.find(Id::Displacement).is_none();
         let moved = if self.is_compensated() {
             let added = code::body(&self.scope_of_system(), kernel, Some(Nesting::Configuration));
             let sum = code::combined(self.model, &quote!(q), quote!(+), &quote!(added), &self.paths);
@@ -142,9 +142,10 @@ impl Emitter<'_, '_> {
     }
 
     /// τ(η) and τ(−η), side by side.
-    fn retractions(&self, variations: &VariationKernels) -> TokenStream {
-        let (kernel, scope) = (&variations.retractions, self.scope_of_system());
-        let (coordinates, locals) = (self.chart_coordinates(&variations.slopes), code::locals(&scope, kernel));
+    fn retractions(&self) -> TokenStream {
+        let (kernel, scope) = (self.program.kernel(Id::Retraction), self.scope_of_system());
+        let (coordinates, locals) =
+            (self.chart_coordinates(&self.program.formulas.slopes_of_retraction()), code::locals(&scope, kernel));
         let [ahead, back] = [0, kernel.outputs.len() / 2].map(|first| {
             code::nested(&self.model.element, &mut |leaf| {
                 let (shape, entries) = &kernel.outputs[first + leaf];
@@ -230,10 +231,10 @@ impl Emitter<'_, '_> {
     }
 
     /// The implementation of `VariedSubstep` for one edge.
-    fn edge(&self, index: usize, kernels: &EdgeKernels) -> TokenStream {
+    fn edge(&self, index: usize) -> TokenStream {
         let (number, dimension) = (Literal::usize_unsuffixed(index), Literal::usize_unsuffixed(self.dimension()));
-        let (momenta, edge) = (self.momenta_of(kernels), self.edge_of(kernels));
-        let (carried, slopes) = (self.carried_of(kernels), self.slopes_of(kernels));
+        let (momenta, edge) = (self.momenta_of(index), self.edge_of(index));
+        let (carried, slopes) = (self.carried_of(index), self.slopes_of(index));
         self.implementation("VariedSubstep", &[&number, &dimension], quote!(#momenta #edge #carried #slopes))
     }
 
@@ -272,8 +273,9 @@ impl Emitter<'_, '_> {
         quote!(#krate::#name<#scalar, #dimension>)
     }
 
-    fn momenta_of(&self, kernels: &EdgeKernels) -> TokenStream {
-        let (krate, kernel, scope) = (&self.paths.krate, &kernels.momenta, self.scope_of_step());
+    fn momenta_of(&self, index: usize) -> TokenStream {
+        let (krate, kernel, scope) =
+            (&self.paths.krate, self.program.kernel(Id::EdgeMomenta(index)), self.scope_of_step());
         let (locals, lagrangian) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
         let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
         let (before, after) = (vector(1), vector(2));
@@ -302,8 +304,8 @@ impl Emitter<'_, '_> {
         code::locals_where(&scope, kernel, |k| !depends[k])
     }
 
-    fn edge_of(&self, kernels: &EdgeKernels) -> TokenStream {
-        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), &kernels.edge);
+    fn edge_of(&self, index: usize) -> TokenStream {
+        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), self.program.kernel(Id::Edge(index)));
         let (terms, lagrangian) = (self.locals_of_edge(kernel), scope.code(&kernel.outputs[0].1[0], false));
         let vector = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
         let (before, after) = (vector(1), vector(2));
@@ -329,8 +331,8 @@ impl Emitter<'_, '_> {
         self.at_edge(title, ("edge", self.of_edge("Edge")), Some(kernel), body)
     }
 
-    fn carried_of(&self, kernels: &EdgeKernels) -> TokenStream {
-        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), &kernels.carried);
+    fn carried_of(&self, index: usize) -> TokenStream {
+        let (krate, scope, kernel) = (&self.paths.krate, self.scope_of_step(), self.program.kernel(Id::Carried(index)));
         let locals = self.locals_of_edge(kernel);
         let momentum = code::grid(&scope, kernel.outputs[0].0, &kernel.outputs[0].1, false);
         let [adjoint, before, after, before_by_end, after_by_end] =
@@ -350,9 +352,9 @@ impl Emitter<'_, '_> {
         self.at_edge(title, ("carried", self.of_edge("Carried")), Some(kernel), body)
     }
 
-    fn slopes_of(&self, kernels: &EdgeKernels) -> TokenStream {
+    fn slopes_of(&self, index: usize) -> TokenStream {
         let scope = self.scope_of_step();
-        let Some(kernel) = &kernels.slopes else {
+        let Some(kernel) = self.program.find(Id::EdgeSlopes(index)) else {
             return self.at_edge("", ("slopes", quote!(())), None, quote!());
         };
         let matrix = |index: usize| code::matrix(&scope, kernel.outputs[index].0, &kernel.outputs[index].1);

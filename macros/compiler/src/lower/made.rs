@@ -2,20 +2,107 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
+use super::form::has_quaternions;
 use super::kernel::kernel;
-use super::{Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
-use crate::derive::{Formulas, Id, MatrixForm};
+use super::{Hoisted, Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
+use crate::derive::{Formulas, Heat, Id, MatrixForm};
 
-/// The kernel of a formula, one output for each of its expressions, nothing taken out.
-pub(super) fn of_row(formulas: &Formulas<'_>, id: Id, scalars: &mut Scalars) -> Kernel {
-    plain(scalars, formulas.value(id).unwrap_or_default())
+/// Makes the kernels of formulas. Their order counts: it is that in which scalars are numbered.
+pub(super) struct Maker<'a, 'g> {
+    pub(super) formulas: &'a Formulas<'g>,
+    pub(super) scalars: Scalars,
+    /// What steppers compute once.
+    pub(super) hoisted: Hoisted,
+    pub(super) table: Vec<(Id, Kernel)>,
+}
+
+impl<'g> Maker<'_, 'g> {
+    /// Takes in a kernel.
+    pub(super) fn add(&mut self, id: Id, kernel: Kernel) {
+        self.table.push((id, kernel));
+    }
+
+    pub(super) fn has(&self, id: Id) -> bool {
+        self.table.iter().any(|(other, _)| *other == id)
+    }
+
+    /// Makes the kernels of formulas, one after the other; one without outputs where a system does not have the formula.
+    pub(super) fn rows(&mut self, ids: impl IntoIterator<Item = Id>) {
+        for id in ids {
+            let kernel = self.of_row(id);
+            self.add(id, kernel);
+        }
+    }
+
+    /// The same of those formulas that a system has.
+    pub(super) fn known_rows(&mut self, ids: impl IntoIterator<Item = Id>) {
+        let formulas = self.formulas;
+        self.rows(ids.into_iter().filter(|id| formulas.value(*id).is_some()));
+    }
+
+    /// The kernel of a formula: numbers in one list, momenta in one vector, anything else in an output for each expression.
+    fn of_row(&mut self, id: Id) -> Kernel {
+        let value = self.formulas.value(id).unwrap_or_default();
+        if self.is_for_people(id) {
+            return match id {
+                Id::ConservedMomenta => matrices::short_list(value),
+                _ if is_stacked(id) => matrices::short_stack(value),
+                _ => matrices::short_kernel(value),
+            };
+        }
+        // what a method of the constants computes
+        let is_of_step = match id {
+            Id::MomentumAfter(index) => self.formulas.substeps[index].other.is_some(),
+            Id::SplittingKick | Id::SplittingGradient | Id::Guess => true,
+            _ => id.substep().is_some(),
+        };
+        let hoisting = if is_of_step { Hoisting::Constants(&mut self.hoisted) } else { Hoisting::Nothing };
+        if is_stacked(id) {
+            stack(&mut self.scalars, value, hoisting)
+        } else {
+            separate(&mut self.scalars, value, hoisting)
+        }
+    }
+
+    /// Whether the kernel of a formula is matrix code in one expression or a few, which a person can read.
+    fn is_for_people(&self, id: Id) -> bool {
+        let is_asked_for = match id {
+            // steps of order 16 carry covectors along, and those of sites map them
+            Id::Lift => self.formulas.collocation.is_none(),
+            Id::MomentumMap => self.formulas.model.power.is_none(),
+            _ => id.entry().heat == Heat::Cold,
+        };
+        is_asked_for && !has_quaternions(self.formulas)
+    }
+
+    /// The kernel of momenta of a step.
+    pub(super) fn stack(&mut self, vectors: &[Expr<'g>]) -> Kernel {
+        stack(&mut self.scalars, vectors, Hoisting::Constants(&mut self.hoisted))
+    }
+
+    /// The kernel of matrices without anything taken out.
+    pub(super) fn matrices(&mut self, id: Id, forms: &[MatrixForm<'g>]) {
+        let kernel = of_matrices(&mut self.scalars, forms, Hoisting::Nothing);
+        self.add(id, kernel);
+    }
+}
+
+/// Whether the expressions of a formula are momenta or lists of numbers, which stand one below the other.
+fn is_stacked(id: Id) -> bool {
+    use Id::*;
+    let is_of_step = matches!(
+        id,
+        StartKick(_) | EndKick(_) | RestKick(_) | StartForce(_) | MovingForce(_) | EndForce(_) | MomentumAfter(_)
+    );
+    let is_momentum = matches!(id, MomentumMap | Coadjoint | Legendre | LegendreNext | MomentumComponents | Inertia);
+    let is_of_scheme = matches!(id, SynchronizedMomentum | Gyroscopic | SplittingKick | Guess);
+    is_of_step || is_momentum || is_of_scheme || matches!(id, ConservedMomenta | Bounds)
 }
 
 /// Several expressions, one output each, nothing taken out.
 pub(super) fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
     separate(scalars, expressions, Hoisting::Nothing)
 }
-
 /// Several expressions, one output each.
 pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
     if scalars.keeps_matrices {

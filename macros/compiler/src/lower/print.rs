@@ -4,9 +4,8 @@ use std::fmt;
 
 use clebsch_symbolic::{Analytic, integer};
 
-use crate::derive::Solution;
-
-use super::{Callee, Code, Cost, Input, Kernel, MatrixOperation, Program, VariationKernels, Whole};
+use super::{Callee, Code, Cost, Input, Kernel, MatrixOperation, Program, Whole};
+use crate::derive::Id;
 
 impl Cost {
     /// The sum of two costs.
@@ -36,168 +35,6 @@ impl fmt::Display for Cost {
     }
 }
 
-impl Program<'_> {
-    /// All kernels with their names, in the order of the generated code.
-    pub fn kernels(&self) -> Vec<(String, &Kernel)> {
-        if self.formulas.model.is_steered() {
-            return self.kernels_of_control();
-        }
-        let mut kernels: Vec<(String, &Kernel)> = vec![
-            ("constants".into(), &self.constants),
-            ("act".into(), &self.act),
-            ("momentum_map".into(), &self.momentum_map),
-            ("coadjoint".into(), &self.coadjoint),
-            ("legendre".into(), &self.legendre),
-            ("legendre_next".into(), &self.legendre_next),
-            ("potential".into(), &self.potential),
-            ("inertia".into(), &self.inertia),
-            ("momentum_matrix".into(), &self.momentum_matrix),
-            ("momentum_components".into(), &self.momentum_components),
-        ];
-        let turns_in_plane = self.turns_in_plane();
-        kernels.extend((!turns_in_plane).then(|| ("cotangent_lift".to_string(), &self.cotangent_lift)));
-        kernels.extend(self.velocity.iter().map(|kernel| ("velocity".to_string(), kernel)));
-        kernels.extend(self.gyroscopic.iter().map(|kernel| ("gyroscopic".to_string(), kernel)));
-        kernels.extend(self.conserved.iter().map(|kernel| ("conserved".to_string(), kernel)));
-        kernels.extend(self.stagger.iter().map(|kernel| ("stagger".to_string(), kernel)));
-        kernels.extend(self.membership.iter().map(|kernel| ("membership".to_string(), kernel)));
-        kernels.extend(self.generator.iter().map(|kernel| ("generator".to_string(), kernel)));
-        kernels.extend(self.splitting.iter().flat_map(|splitting| {
-            [("kick".to_string(), &splitting.kick), ("kick_gradient".to_string(), &splitting.gradient)]
-        }));
-        kernels.extend(self.collocation.iter().flat_map(|collocation| {
-            [
-                ("slope".to_string(), &collocation.slope),
-                ("covector".to_string(), &collocation.lift),
-                ("whole_guess".to_string(), &collocation.guess),
-            ]
-        }));
-        kernels.extend(self.momentum_of_step.iter().map(|kernel| ("momentum_of_step".to_string(), kernel)));
-        for (number, link) in self.links.iter().enumerate() {
-            kernels.push((format!("term_{}", number + 1), &link.value));
-            if self.gathered.is_none() {
-                kernels.push((format!("gradient_of_term_{}", number + 1), &link.gradient));
-            }
-        }
-        if let Some(gathered) = &self.gathered {
-            kernels.push(("gradient_of_site".to_string(), &gathered.common));
-            kernels.extend(
-                gathered
-                    .stencil
-                    .others
-                    .iter()
-                    .zip(&gathered.others)
-                    .map(|((term, place), kernel)| (format!("gradient_of_term_{}_{}", term + 1, place + 1), kernel)),
-            );
-        }
-        kernels.extend(self.variations.iter().flat_map(|variations| self.kernels_of(variations)));
-        kernels.extend(self.kernels_of_control());
-        for (index, step) in self.steps.iter().enumerate() {
-            let suffix = self.suffix(index);
-            let named = |name: &str| format!("{name}{suffix}");
-            kernels.extend(step.start.iter().map(|kernel| (named("start_kick"), kernel)));
-            for (number, solve) in step.solves.iter().enumerate() {
-                let of = |name: &str| {
-                    if step.solves.len() == 1 { named(name) } else { format!("{}_{}", named(name), number + 1) }
-                };
-                if let Some(sine_squared) = &solve.sine_squared {
-                    kernels.push((of("sine_squared"), sine_squared));
-                    kernels.extend(solve.predict.iter().map(|kernel| (of("closed_form"), kernel)));
-                    continue;
-                }
-                if solve.solution == Solution::Explicit {
-                    kernels.extend(solve.predict.iter().map(|kernel| (of("explicit"), kernel)));
-                    continue;
-                }
-                if solve.solution == Solution::FreeRotation {
-                    continue;
-                }
-                if solve.solution == Solution::Linear {
-                    kernels.push((of("system"), &solve.linearize));
-                    continue;
-                }
-                kernels.push((of("prepare"), &solve.prepare));
-                kernels.extend(solve.predict.iter().map(|kernel| (of("predict"), kernel)));
-                kernels.extend(solve.residual.iter().map(|kernel| (of("residual"), kernel)));
-                kernels.push((of("linearize"), &solve.linearize));
-            }
-            kernels.extend(step.start_force.iter().map(|kernel| (named("start_force"), kernel)));
-            if !self.formulas.turns_whole() {
-                kernels.push((named("increment"), &step.increment));
-            }
-            match &step.displace {
-                _ if turns_in_plane => {
-                    kernels.extend(step.start_gradient.iter().map(|kernel| (named("start_gradient"), kernel)));
-                }
-                Some(displace) => kernels.push((named("displace"), displace)),
-                None => kernels.push((named("advance"), &step.advance)),
-            }
-            kernels.extend(step.rest.iter().map(|kernel| (named("rest_kick"), kernel)));
-            kernels.extend(step.coupled_gradient.iter().map(|kernel| (named("coupled_gradient"), kernel)));
-            kernels.extend(step.update.iter().map(|kernel| (named("update"), kernel)));
-            kernels.extend(step.start_moving.iter().map(|kernel| (named("moving_force"), kernel)));
-            kernels.extend(step.end_force.iter().map(|kernel| (named("end_force"), kernel)));
-            if !step.end_is_start {
-                kernels.extend(step.end.iter().map(|kernel| (named("end_kick"), kernel)));
-            }
-        }
-        kernels
-    }
-
-    /// The kernels of a choice of inputs.
-    fn kernels_of_control(&self) -> Vec<(String, &Kernel)> {
-        let of_end = self
-            .endpoint
-            .iter()
-            .flat_map(|end| [("endpoint".to_string(), &end.price), ("endpoint_expanded".to_string(), &end.expanded)]);
-        let Some(control) = &self.control else { return of_end.collect() };
-        let (step, bend) = (control.step.as_ref(), control.bend.as_ref());
-        let named = [
-            ("orbit_metric", bend.is_none().then_some(&control.orbit_metric)),
-            ("approach", Some(&control.approach)),
-            ("increment", step.map(|step| &step.increment)),
-            ("advance", step.map(|step| &step.advance)),
-            ("expand", step.map(|step| &step.expand)),
-            ("by_input", bend.map(|bend| &bend.by_input)),
-            ("bend", bend.map(|bend| &bend.curvature)),
-            ("bracket", bend.map(|bend| &bend.bracket)),
-            ("price", Some(&control.price)),
-            ("price_expanded", control.price_expanded.as_ref()),
-            ("price_of_time", Some(&control.price_of_time)),
-            ("bounds", Some(&control.bounds)),
-            ("bounds_expanded", Some(&control.bounds_expanded)),
-        ];
-        named.into_iter().filter_map(|(name, kernel)| Some((name.to_string(), kernel?))).chain(of_end).collect()
-    }
-
-    fn kernels_of<'a>(&self, variations: &'a VariationKernels) -> Vec<(String, &'a Kernel)> {
-        let mut kernels = vec![
-            ("retractions".to_string(), &variations.retractions),
-            ("compose".to_string(), &variations.compose),
-            ("infinitesimal_motion".to_string(), &variations.generator),
-            ("orbit_metric".to_string(), &variations.orbit_metric),
-        ];
-        for (index, edge) in variations.edges.iter().enumerate() {
-            let suffix = self.suffix(index);
-            kernels.push((format!("edge{suffix}"), &edge.edge));
-            kernels.push((format!("momenta{suffix}"), &edge.momenta));
-            kernels.push((format!("carried{suffix}"), &edge.carried));
-            kernels.extend(edge.slopes.iter().map(|slopes| (format!("edge_slopes{suffix}"), slopes)));
-        }
-        kernels
-    }
-
-    /// The suffix of the functions of a substep.
-    pub fn suffix(&self, substep: usize) -> &'static str {
-        match (self.formulas.stepped, substep) {
-            (1, 0) => "",
-            (2, 0) => "_first",
-            (2, 1) => "_adjoint",
-            _ => "_whole",
-        }
-    }
-}
-
 impl fmt::Display for Program<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, kernel) in self.kernels() {
@@ -218,7 +55,7 @@ impl fmt::Display for Program<'_> {
 impl Program<'_> {
     /// The coefficient of ξ_i ξ_j in the kinetic energy as text; `None` where it is zero.
     pub fn energy_coefficient(&self, i: usize, j: usize) -> Option<String> {
-        let kernel = self.energy_coefficients.as_ref()?;
+        let kernel = self.find(Id::EnergyCoefficients)?;
         let (shape, entries) = &kernel.outputs[0];
         let code = inlined(kernel, &entries[i * shape.columns + j]);
         (code != Code::Number(integer(0))).then(|| self.text(&code, 0))

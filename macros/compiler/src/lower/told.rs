@@ -1,7 +1,7 @@
 //! What the derivation tells of the program: how it is written and iterated, and what it costs.
 
 use super::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS, Program};
-use crate::derive::{Iteration, Lowered};
+use crate::derive::{Id, Iteration, Lowered};
 use crate::model::CodeForm;
 
 impl Program<'_> {
@@ -28,14 +28,11 @@ impl Program<'_> {
     }
 
     fn iterations(&self) -> Vec<Vec<Iteration>> {
-        let of_step = |step: &super::StepKernels| {
-            let iteration = |solve: &super::Solve| Iteration {
-                structure: solve.structure.clone(),
-                tries_fixed_point: solve.residual.is_some(),
-            };
-            step.solves.iter().map(iteration).collect()
+        let iteration = |solve: &super::Solve| Iteration {
+            structure: solve.structure.clone(),
+            tries_fixed_point: self.find(solve.id(Id::Residual)).is_some(),
         };
-        self.steps.iter().map(of_step).collect()
+        self.steps.iter().map(|step| step.solves.iter().map(iteration).collect()).collect()
     }
 
     /// The operations of each kernel, one line each.

@@ -4,10 +4,10 @@ use clebsch_symbolic::{Expr, Role, Shape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::derive::{Home, SiteTerm};
+use crate::derive::{Home, Id, SiteTerm, Stencil};
 use crate::emit::Emitter;
 use crate::emit::code::{Scope, accessor, grid, locals};
-use crate::lower::{Code, Gathered, Kernel, LinkKernels};
+use crate::lower::{Code, Kernel};
 use crate::model::{Configuration, Leaf, Linear, Parameter, Power, SiteIndex};
 
 /// How the term is found that has a site at a place.
@@ -24,10 +24,11 @@ impl<'g> Emitter<'_, 'g> {
     /// The statements that sum up the terms of the potential.
     pub(super) fn potential_of_power(&self, power: &Power<'g>) -> TokenStream {
         let scope = self.scope_of_system();
-        let terms = self.program.links.iter().zip(&self.program.formulas.links).map(|(kernels, link)| {
-            let (locals, value) = (locals(&scope, &kernels.value), scope.code(&kernels.value.outputs[0].1[0], false));
+        let terms = self.program.formulas.links.iter().enumerate().map(|(number, link)| {
+            let kernel = self.program.kernel(Id::Term(number));
+            let (locals, value) = (locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
-            self.loops(power, &link.term.ranges, &places, &kernels.value, quote!(#locals sum += #value;))
+            self.loops(power, &link.term.ranges, &places, kernel, quote!(#locals sum += #value;))
         });
         quote!(#(#terms)*)
     }
@@ -35,7 +36,8 @@ impl<'g> Emitter<'_, 'g> {
     /// The method that goes through the terms and adds what each has for its sites.
     pub(super) fn added_gradient(&self, power: &Power<'g>, point: &TokenStream) -> TokenStream {
         let (scalar, length, scope) = (&self.paths.scalar, &power.length, self.scope_of_system());
-        let term = |(LinkKernels { gradient, .. }, link): (&LinkKernels, &SiteTerm<'g>)| {
+        let term = |(number, link): (usize, &SiteTerm<'g>)| {
+            let gradient = self.program.kernel(Id::TermGradients(number));
             let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
             let (locals, leaves) = (locals(&scope, gradient), self.model.configurations.len());
             let sites = link.gradient.iter().zip(gradient.outputs.chunks(leaves));
@@ -53,7 +55,7 @@ impl<'g> Emitter<'_, 'g> {
             let added = added.flatten();
             self.loops(power, &link.term.ranges, &places, gradient, quote!(#locals #(#added)*))
         };
-        let terms = self.program.links.iter().zip(&self.program.formulas.links).map(term);
+        let terms = self.program.formulas.links.iter().enumerate().map(term);
         quote! {
             /// Adds the gradient of the potential, a covector for each site.
             fn add_gradient(&self, t: #scalar, q: &[#point; #length], gradient: &mut [#point; #length]) {
@@ -67,11 +69,11 @@ impl<'g> Emitter<'_, 'g> {
     pub(super) fn gathered_gradient(
         &self,
         power: &Power<'g>,
-        gathered: &Gathered<'g>,
+        stencil: &Stencil<'g>,
         point: &TokenStream,
     ) -> TokenStream {
         let (private, scalar, length) = (&self.paths.private, &self.paths.scalar, &power.length);
-        let (scope, Gathered { stencil, common, others }) = (self.scope_of_system(), gathered);
+        let (scope, common) = (self.scope_of_system(), self.program.kernel(Id::SiteGradient));
         let places = [power.places.as_slice(), &stencil.places].concat();
         let of_all = {
             let (locals, added) = (
@@ -81,9 +83,10 @@ impl<'g> Emitter<'_, 'g> {
             let head = Head { own: None, index: quote!(let i0 = site as ::core::primitive::isize;), guard: None };
             (!added.is_empty()).then(|| self.at_site(power, &places, head, common, quote!(#locals #(#added)*)))
         };
-        let others = stencil.others.iter().zip(others).filter_map(|(&(term, number), kernel)| {
+        let others = stencil.others.iter().filter_map(|&(term, number)| {
             let link = &self.program.formulas.links[term];
             let (place, slopes) = &link.gradient[number];
+            let kernel = self.program.kernel(Id::TermGradient(term, *place));
             let (locals, added) =
                 (locals(&scope, kernel), self.added(&scope, slopes, &kernel.outputs, quote!(gradient), quote!(+=)));
             let home = link.homes(power)?.into_iter().nth(number).filter(|_| !added.is_empty())?;

@@ -1,0 +1,223 @@
+//! The value of this stage: a table of kernels, each with the id of what it computes.
+
+use super::{Cost, Form, Kernel, Solve};
+use crate::MethodProgram;
+use crate::derive::{Formulas, Id, Solution, Stencil};
+
+/// All kernels of a system.
+pub struct Program<'g> {
+    /// The formulas that it computes.
+    pub formulas: Formulas<'g>,
+    /// Whether kernels are written out or keep whole matrices, and why.
+    pub form: Form,
+    /// The kernels, in the order in which they were made.
+    pub(super) table: Vec<(Id, Kernel)>,
+    /// What is known of each substep beside its kernels.
+    pub steps: Vec<Step>,
+    /// How the gradient of one site of a power is gathered from the terms that read it, where it is.
+    pub gathered: Option<Stencil<'g>>,
+    /// A short name for each constant.
+    pub constant_names: Vec<String>,
+    /// Further ways to step the system, none behind this stage alone.
+    pub methods: Vec<MethodProgram<'g>>,
+}
+
+/// A substep beside its kernels.
+pub struct Step {
+    /// Whether the end kick of a step is the start kick of the next.
+    pub end_is_start: bool,
+    /// The momentum equations.
+    pub solves: Vec<Solve>,
+}
+
+/// Names of kernels with their ids, in the order of prints and of tables of costs.
+type Names<Of> = &'static [(&'static str, Of)];
+
+const OF_SYSTEM: Names<Id> = &[
+    ("constants", Id::Constants),
+    ("act", Id::Action),
+    ("momentum_map", Id::MomentumMap),
+    ("coadjoint", Id::Coadjoint),
+    ("legendre", Id::Legendre),
+    ("legendre_next", Id::LegendreNext),
+    ("potential", Id::PotentialEnergy),
+    ("inertia", Id::Inertia),
+    ("momentum_matrix", Id::MomentumMatrix),
+    ("momentum_components", Id::MomentumComponents),
+    ("cotangent_lift", Id::Lift),
+    ("velocity", Id::Lagrangian),
+    ("gyroscopic", Id::Gyroscopic),
+    ("conserved", Id::ConservedMomenta),
+    ("stagger", Id::SynchronizedMomentum),
+    ("membership", Id::Membership),
+    ("generator", Id::Isotropy),
+    ("kick", Id::SplittingKick),
+    ("kick_gradient", Id::SplittingGradient),
+    ("slope", Id::HamiltonEquations),
+    ("covector", Id::Covector),
+    ("whole_guess", Id::Guess),
+    ("momentum_of_step", Id::MomentumOfStep),
+];
+
+const OF_MOTIONS: Names<Id> = &[
+    ("retractions", Id::Retraction),
+    ("compose", Id::Composition),
+    ("infinitesimal_motion", Id::Generator),
+    ("orbit_metric", Id::OrbitMetric),
+];
+
+const OF_EDGE: Names<fn(usize) -> Id> =
+    &[("edge", Id::Edge), ("momenta", Id::EdgeMomenta), ("carried", Id::Carried), ("edge_slopes", Id::EdgeSlopes)];
+
+const OF_CHOICE: Names<Id> = &[
+    ("approach", Id::Approach),
+    ("increment", Id::Increment),
+    ("advance", Id::Advance),
+    ("expand", Id::StepExpanded),
+    ("by_input", Id::ByInput),
+    ("bend", Id::Bend),
+    ("bracket", Id::Bracket),
+    ("price", Id::Price),
+    ("price_expanded", Id::PriceExpanded),
+    ("price_of_time", Id::PriceOfTime),
+    ("bounds", Id::Bounds),
+    ("bounds_expanded", Id::BoundsExpanded),
+    ("endpoint", Id::PriceOfEnd),
+    ("endpoint_expanded", Id::PriceOfEndExpanded),
+];
+
+const OF_EQUATION: Names<fn(usize, usize) -> Id> = &[
+    ("sine_squared", Id::SineSquared),
+    ("closed_form", Id::ClosedForm),
+    ("explicit", Id::Explicit),
+    ("system", Id::System),
+    ("prepare", Id::Preparation),
+    ("predict", Id::Predictor),
+    ("residual", Id::Residual),
+    ("linearize", Id::Linearization),
+];
+
+const OF_SUBSTEP: Names<fn(usize) -> Id> = &[
+    ("start_force", Id::StartForce),
+    ("increment", |_| Id::Increment),
+    ("start_gradient", Id::StartGradient),
+    ("displace", |_| Id::Displacement),
+    ("advance", |_| Id::Advance),
+    ("rest_kick", Id::RestKick),
+    ("coupled_gradient", Id::CoupledGradient),
+    ("update", Id::MomentumAfter),
+    ("moving_force", Id::MovingForce),
+    ("end_force", Id::EndForce),
+    ("end_kick", Id::EndKick),
+];
+
+impl Program<'_> {
+    /// The kernel with an id; one without outputs where a system does not have it.
+    pub fn kernel(&self, id: Id) -> &Kernel {
+        const NONE: &Kernel = &Kernel { locals: Vec::new(), outputs: Vec::new() };
+        self.find(id).unwrap_or(NONE)
+    }
+
+    /// The kernel with an id, where a system has it.
+    pub fn find(&self, id: Id) -> Option<&Kernel> {
+        self.table.iter().find(|(other, _)| *other == id).map(|(_, kernel)| kernel)
+    }
+
+    /// The kernels with their names, in the order of prints and of tables of costs.
+    pub fn kernels(&self) -> Vec<(String, &Kernel)> {
+        let named = |&(name, id): &(&str, Id)| (name.to_string(), id);
+        let is_steered = self.formulas.model.is_steered();
+        let mut ids: Vec<(String, Id)> = OF_SYSTEM.iter().map(named).collect();
+        ids.extend(self.ids_of_terms());
+        ids.extend(OF_MOTIONS.iter().map(named));
+        for index in 0..self.steps.len() {
+            ids.extend(OF_EDGE.iter().map(|(name, id)| (format!("{name}{}", self.suffix(index)), id(index))));
+        }
+        // a substep has moves of its own
+        let is_move = |id: &Id| matches!(id, Id::Increment | Id::Advance);
+        ids.extend(OF_CHOICE.iter().filter(|(_, id)| is_steered || !is_move(id)).map(named));
+        for (index, step) in self.steps.iter().enumerate() {
+            let suffix = self.suffix(index);
+            ids.push((format!("start_kick{suffix}"), Id::StartKick(index)));
+            for solve in &step.solves {
+                let number = if step.solves.len() == 1 { String::new() } else { format!("_{}", solve.number + 1) };
+                ids.extend(OF_EQUATION.iter().map(|(name, id)| (format!("{name}{suffix}{number}"), solve.id(*id))));
+            }
+            ids.extend(OF_SUBSTEP.iter().map(|(name, id)| (format!("{name}{suffix}"), id(index))));
+        }
+        let listed = ids.into_iter().filter(|(_, id)| self.is_listed(*id));
+        listed.filter_map(|(name, id)| Some((name, self.find(id)?))).collect()
+    }
+
+    /// The terms of a power with their gradients.
+    fn ids_of_terms(&self) -> Vec<(String, Id)> {
+        let links = &self.formulas.links;
+        let of_term = |term: usize| {
+            let (value, gradient) = (format!("term_{}", term + 1), format!("gradient_of_term_{}", term + 1));
+            [(value, Id::Term(term)), (gradient, Id::TermGradients(term))]
+        };
+        let of_place = |&(term, number): &(usize, usize)| {
+            let place = links[term].gradient[number].0;
+            (format!("gradient_of_term_{}_{}", term + 1, number + 1), Id::TermGradient(term, place))
+        };
+        let others = self.gathered.iter().flat_map(|stencil| &stencil.others).map(of_place);
+        let of_site = [("gradient_of_site".to_string(), Id::SiteGradient)];
+        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).collect()
+    }
+
+    /// Whether a kernel is what a step or a method calls.
+    fn is_listed(&self, id: Id) -> bool {
+        let (turns_in_plane, is_displaced) = (self.turns_in_plane(), self.find(Id::Displacement).is_some());
+        match id {
+            Id::Membership => !self.formulas.model.is_steered(),
+            Id::Lift => !turns_in_plane,
+            Id::StartGradient(_) => turns_in_plane,
+            Id::Displacement => !turns_in_plane,
+            Id::Advance => !turns_in_plane && !is_displaced,
+            Id::EndKick(index) => !self.steps[index].end_is_start,
+            _ => true,
+        }
+    }
+
+    /// The suffix of the functions of a substep.
+    pub fn suffix(&self, substep: usize) -> &'static str {
+        match (self.formulas.stepped, substep) {
+            (1, 0) => "",
+            (2, 0) => "_first",
+            (2, 1) => "_adjoint",
+            _ => "_whole",
+        }
+    }
+
+    /// The operations of all kernels together.
+    pub fn cost(&self) -> Cost {
+        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).fold(Cost::default(), Cost::plus)
+    }
+
+    /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
+    pub fn turns_in_plane(&self) -> bool {
+        self.form.keeps_matrices() && self.formulas.follows_great_circles()
+    }
+
+    /// Whether a step makes the increments F − I, and does not move by the chart coordinates alone.
+    pub fn makes_increments(&self, substep: usize) -> bool {
+        self.find(Id::Displacement).is_none() || self.find(Id::MomentumAfter(substep)).is_some()
+    }
+
+    /// The operations of a step apart from those of iterations.
+    pub fn cost_of_moves(&self, substep: usize) -> Cost {
+        let kicks = [Id::StartKick, Id::EndKick, Id::StartForce, Id::EndForce, Id::MomentumAfter].map(|id| id(substep));
+        let solved = [Id::Predictor, Id::ClosedForm, Id::Explicit, Id::SineSquared];
+        let solves = self.steps[substep].solves.iter().flat_map(|solve| solved.map(|id| solve.id(id)));
+        let increment = self.makes_increments(substep).then_some(Id::Increment);
+        let moves = if self.find(Id::Displacement).is_some() { Id::Displacement } else { Id::Advance };
+        let ids = solves.chain(kicks).chain(increment).chain([moves]);
+        ids.map(|id| self.kernel(id).cost()).fold(Cost::default(), Cost::plus)
+    }
+
+    /// ρ(x) and Dρ(x) of an equation; of a linear one −ρ(0) and Dρ.
+    pub fn linearization(&self, solve: &Solve) -> &Kernel {
+        let id = if solve.solution == Solution::Linear { Id::System } else { Id::Linearization };
+        self.kernel(solve.id(id))
+    }
+}
