@@ -6,7 +6,7 @@ pub type Property = (&'static str, &'static [&'static str]);
 /// The properties of each file.
 #[rustfmt::skip]
 pub const PROPERTIES: &[(&str, &[Property])] = &[
-    ("runtime/src/scheme/composed.rs", &[
+    ("runtime/src/scheme/composed/tests.rs", &[
         ("slopes_are_those_along_the_whole_step",  &["SizedStep::slopes"]),
     ]),
     ("tests/laws/tests/properties/schemes.rs", &[
