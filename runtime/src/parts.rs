@@ -6,14 +6,25 @@
 use crate::summation::Sums;
 use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta, Space};
 
+/// The values of a system S, by the letters that formulas have for them: t, q, F, μ and u.
+pub(crate) type T<S> = <S as Clebsch>::Scalar;
+pub(crate) type Q<S> = <S as Clebsch>::Configuration;
+pub(crate) type F<S> = <S as Clebsch>::Element;
+pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
+pub(crate) type U<S> = <S as Clebsch>::Input;
+/// What no step of S changes, and the coordinates that a solve finds.
+type C<S> = <S as Clebsch>::Constants;
+type X<S, M> = <S as Parts<M>>::Coordinates;
+
 /// What all substeps of a step share: how q moves, and what the step is made of.
+#[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
     /// How a step adds to q and N.
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.
     type Coordinates;
     /// What moves q and N.
-    type Moves: Moves<Self::Coordinates, Self::Element>;
+    type Moves: Moves<Self::Coordinates, F<Self>>;
 
     /// Whether a step has so few operations that it is inlined wherever it is called: a call hands states through memory.
     const IS_SHORT: bool = false;
@@ -22,31 +33,30 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
     const HAS_COVECTORS: bool = true;
 
     /// D = F − I of the group element with the coordinates x (for translations F itself), without cancellation.
-    fn increment(&self, x: &Self::Coordinates) -> Self::Element;
+    fn increment(&self, x: &Self::Coordinates) -> F<Self>;
 
     /// F = I + D.
-    fn element(d: &Self::Element) -> Self::Element;
+    fn element(d: &F<Self>) -> F<Self>;
 
     /// What of x and D the move takes; D is made where it is needed.
     #[inline(always)]
-    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> Self::Element) -> MotionOf<Self, M> {
+    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> F<Self>) -> MotionOf<Self, M> {
         Self::Moves::of(x, d)
     }
 
     /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
-    fn advance(&self, q: &Self::Configuration, motion: &MotionOf<Self, M>) -> Self::Configuration;
+    fn advance(&self, q: &Q<Self>, motion: &MotionOf<Self, M>) -> Q<Self>;
 
     /// (TΦ_F)^{-*} p at q⁺, the covector carried along by F = I + D.
     #[inline(always)]
-    fn lift(&self, q: &Self::Configuration, p: &Self::Configuration, d: &Self::Element) -> Self::Configuration {
-        let _ = (q, d);
+    fn lift(&self, q: &Q<Self>, p: &Q<Self>, d: &F<Self>) -> Q<Self> {
         *p
     }
 
     /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. It is the last thing that a step does: nothing waits
     /// for it.
     #[inline(always)]
-    fn on_space(q: Self::Configuration, rest: RestOf<Self, M>) -> (Self::Configuration, RestOf<Self, M>) {
+    fn on_space(q: Q<Self>, rest: RestOf<Self, M>) -> (Q<Self>, RestOf<Self, M>) {
         (q, rest)
     }
 }
@@ -113,104 +123,62 @@ pub type RestOf<S, M = Declared> =
 /// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted, `inverse_legendre`.
 ///
 /// Every time is that at which the whole step starts. A part that a declaration does not have is `None` and costs nothing.
+#[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
     /// Whether what acts at the end of a substep is what acts at its start, so that one kick serves both.
     const ENDS_AS_IT_STARTS: bool = false;
 
     /// J(q, ∂U₀), the kick at the start, with −r(q, I) where sums are not compensated.
     #[inline(always)]
-    fn start_kick(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
-        let _ = (constants, t, q);
+    fn start_kick(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Mu<Self>> {
         None
     }
 
     /// J(q⁺, ∂U₁), the kick at the end.
     #[inline(always)]
-    fn end_kick(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
-        if Self::ENDS_AS_IT_STARTS { self.start_kick(constants, t, q) } else { None }
+    fn end_kick(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Mu<Self>> {
+        if Self::ENDS_AS_IT_STARTS { self.start_kick(c, t, q) } else { None }
     }
 
     /// −r(q, I): what a coupled cost, or one with a term that is linear in the velocity, gives at F = I.
     #[inline(always)]
-    fn rest(&self, constants: &M::Constants, t: Self::Scalar, q: &Self::Configuration) -> Option<Self::Momentum> {
-        let _ = (constants, t, q);
+    fn rest(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Mu<Self>> {
         None
     }
 
     /// The impulse of the force at the start.
     #[inline(always)]
-    fn start_force(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Option<Self::Momentum> {
-        let _ = (constants, t, q, u);
+    fn start_force(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, u: &U<Self>) -> Option<Mu<Self>> {
         None
     }
 
     /// The part of that impulse that depends on the velocity.
     #[inline(always)]
-    fn moving_force(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        x: &Self::Coordinates,
-        u: &Self::Input,
-    ) -> Option<Self::Momentum> {
-        let _ = (constants, t, q, x, u);
+    fn moving_force(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, x: &X<Self, M>, u: &U<Self>) -> Option<Mu<Self>> {
         None
     }
 
     /// The impulse of the force at the end, at q⁺.
     #[inline(always)]
-    fn end_force(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        x: &Self::Coordinates,
-        u: &Self::Input,
-    ) -> Option<Self::Momentum> {
-        let _ = (constants, t, q, x, u);
+    fn end_force(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, x: &X<Self, M>, u: &U<Self>) -> Option<Mu<Self>> {
         None
     }
 
     /// ∂U₀(q), the kick of the covector at the start.
     #[inline(always)]
-    fn start_gradient(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-    ) -> Option<Self::Configuration> {
-        let _ = (constants, t, q);
+    fn start_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Q<Self>> {
         None
     }
 
     /// ∂U₁(q⁺), the kick of the covector at the end.
     #[inline(always)]
-    fn end_gradient(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-    ) -> Option<Self::Configuration> {
-        if Self::ENDS_AS_IT_STARTS { self.start_gradient(constants, t, q) } else { None }
+    fn end_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Q<Self>> {
+        if Self::ENDS_AS_IT_STARTS { self.start_gradient(c, t, q) } else { None }
     }
 
     /// ∂_q K(q, F), F = I + D, of a cost that couples.
     #[inline(always)]
-    fn coupled_gradient(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-    ) -> Option<Self::Configuration> {
-        let _ = (constants, t, q, d);
+    fn coupled_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, d: &F<Self>) -> Option<Q<Self>> {
         None
     }
 
@@ -218,26 +186,18 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::Unsolvable`] or [`Error::NotConverged`].
-    fn solve(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
-        u: &Self::Input,
-    ) -> Result<Self::Coordinates, Error>;
+    fn solve(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>, u: &U<Self>) -> Solved<X<Self, M>>;
 
     /// M⁺ of the momentum M that has moved, from M or from the q before the move; with compensated sums M⁺ − M. `None` where M does not change.
     #[inline(always)]
     fn update(
         &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
+        c: &M::Constants,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
         motion: &MotionOf<Self, M>,
-    ) -> Option<Self::Momentum> {
-        let _ = (constants, t, q, mu, motion);
+    ) -> Option<Mu<Self>> {
         None
     }
 }
@@ -245,47 +205,28 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
 /// Free motions that are exact: a step follows one, and what one keeps is made once for all steps of it.
 pub trait FreeMotion<M: Method<Self> = Declared>: Parts<M> {
     /// What the motion with a momentum keeps.
-    type Kept: Space<Self::Scalar>;
+    type Kept: Space<T<Self>>;
 
     /// What the motion with this momentum keeps.
-    fn kept(&self, constants: &M::Constants, mu: &Self::Momentum) -> Self::Kept;
+    fn kept(&self, c: &M::Constants, mu: &Mu<Self>) -> Self::Kept;
 
     /// The coordinates x of this motion, and M after it where the motion gives both at once.
     ///
     /// # Errors
     /// As [`Substep::solve`].
-    fn follow(
-        &self,
-        constants: &M::Constants,
-        kept: &Self::Kept,
-        mu: &Self::Momentum,
-    ) -> Result<(Self::Coordinates, Self::Momentum), Error>;
+    fn follow(&self, c: &M::Constants, kept: &Self::Kept, mu: &Mu<Self>) -> Solved<(X<Self, M>, Mu<Self>)>;
 }
 
 /// Drifts that are exact, with kicks between them.
 pub trait SplitKicks<M: Method<Self> = Declared>: Parts<M> {
     /// The size h of a step.
-    fn step_size(constants: &M::Constants) -> Self::Scalar;
+    fn step_size(c: &M::Constants) -> T<Self>;
 
     /// J(q, ∂U) of U = −h b V + h³ g G·Σ⁻¹G with the weights b and g.
-    fn kick(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        weight: Self::Scalar,
-        gradient: Self::Scalar,
-    ) -> Self::Momentum;
+    fn kick(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, weight: T<Self>, gradient: T<Self>) -> Mu<Self>;
 
     /// ∂U
-    fn kick_gradient(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        weight: Self::Scalar,
-        gradient: Self::Scalar,
-    ) -> Self::Configuration;
+    fn kick_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, weight: T<Self>, gradient: T<Self>) -> Q<Self>;
 }
 
 /// Hamilton's equations of (q, p), N numbers of which the first half are those of q.
@@ -298,40 +239,34 @@ pub trait HamiltonEquations<const N: usize, M: Method<Self> = Declared>: Parts<M
     const IS_AFFINE: bool = false;
 
     /// The size h of a step.
-    fn step_size(constants: &M::Constants) -> Self::Scalar;
+    fn step_size(c: &M::Constants) -> T<Self>;
 
     /// (q′, p′) at y = (q, p), all entries of q and then those of p.
-    fn slope(&self, constants: &M::Constants, t: Self::Scalar, y: &[Self::Scalar; N]) -> [Self::Scalar; N];
+    fn slope(&self, c: &M::Constants, t: T<Self>, y: &[T<Self>; N]) -> [T<Self>; N];
 
     /// A covector p at q with the momentum J(q, p) = μ.
-    fn covector(&self, constants: &M::Constants, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Configuration;
+    fn covector(&self, c: &M::Constants, q: &Q<Self>, mu: &Mu<Self>) -> Q<Self>;
 
     /// J(q, p), as [`Clebsch::momentum_map`], in the form that is fast.
-    fn momentum(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum;
+    fn momentum(&self, q: &Q<Self>, p: &Q<Self>) -> Mu<Self>;
 
     /// The coordinates x of the motion by the velocity of the start for the time h, to first order in h.
-    fn guess(
-        &self,
-        constants: &M::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
-    ) -> Self::Momentum;
+    fn guess(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Mu<Self>;
 
     /// A part of these coordinates.
-    fn part(x: &Self::Momentum, part: Self::Scalar) -> Self::Coordinates;
+    fn part(x: &Mu<Self>, part: T<Self>) -> Self::Coordinates;
 
     /// The entries of q and then those of p.
-    fn joined(q: &Self::Configuration, p: &Self::Configuration) -> [Self::Scalar; N];
+    fn joined(q: &Q<Self>, p: &Q<Self>) -> [T<Self>; N];
 
     /// q and p of their entries.
-    fn parted(y: &[Self::Scalar; N]) -> (Self::Configuration, Self::Configuration);
+    fn parted(y: &[T<Self>; N]) -> (Q<Self>, Q<Self>);
 }
 
 /// Steps along great circles.
 pub trait GreatCircles<M: Method<Self> = Declared>: Substep<0, M> {
     /// h/κ, κ the inertia.
-    fn turn(constants: &M::Constants) -> Self::Scalar;
+    fn turn(c: &M::Constants) -> T<Self>;
 }
 
 /// A step that has been differentiated.
@@ -345,44 +280,28 @@ pub trait VariedSubstep<const K: usize, const M: usize>: Substep<K> + Varied<M> 
     /// ℓd with both Legendre transforms.
     fn momenta(
         &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Momenta<Self::Scalar, M>;
+        c: &C<Self>,
+        t: T<Self>,
+        q: &Q<Self>,
+        d: &F<Self>,
+        next: &Q<Self>,
+        u: &U<Self>,
+    ) -> Momenta<T<Self>, M>;
 
     /// The same with their derivatives along the motions of both ends.
-    fn edge(
-        &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Edge<Self::Scalar, M>;
+    fn edge(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, d: &F<Self>, next: &Q<Self>, u: &U<Self>) -> Edge<T<Self>, M>;
 
     /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
     fn carried(
         &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Carried<Self::Scalar, M>;
+        c: &C<Self>,
+        t: T<Self>,
+        q: &Q<Self>,
+        d: &F<Self>,
+        next: &Q<Self>,
+        u: &U<Self>,
+    ) -> Carried<T<Self>, M>;
 
     /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
-    fn slopes(
-        &self,
-        constants: &Self::Constants,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Self::Slopes;
+    fn slopes(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, d: &F<Self>, next: &Q<Self>, u: &U<Self>) -> Self::Slopes;
 }

@@ -8,10 +8,12 @@
 
 mod formulas;
 
-use crate::scheme::{self, Scheme};
+use crate::parts::{F, Mu, Q, T};
+use crate::scheme::{self, At, Scheme};
 use crate::space::larger;
-use crate::{Clebsch, Clock, Error, Scalar, Space, Time};
+use crate::{Clebsch, Error, Scalar, Space};
 use core::array::from_fn;
+use num_traits::{One, Zero};
 
 /// The configuration of a site.
 pub type Point<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Configuration;
@@ -20,10 +22,7 @@ pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element
 /// The momentum of a site.
 pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
 /// What no step of a power with these sites changes.
-pub type Constants<P, const N: usize> =
-    PowerConstants<<P as Clebsch>::Scalar, scheme::Constants<<P as Power<N>>::Site>>;
-/// A state of all sites.
-type Arrays<P, const N: usize> = ([Point<P, N>; N], [SiteMomentum<P, N>; N]);
+pub type Constants<P, const N: usize> = PowerConstants<T<P>, scheme::Constants<<P as Power<N>>::Site>>;
 /// How a site is stepped.
 type SiteScheme<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Scheme;
 /// The representing matrix of the momentum of a site.
@@ -32,7 +31,7 @@ type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Mom
 /// What no step of a power changes.
 #[derive(Clone, Copy, Debug)]
 pub struct PowerConstants<T, C> {
-    h: T,
+    pub(crate) h: T,
     site: C,
 }
 
@@ -61,11 +60,6 @@ fn plus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
     a.zip_map(b, |a, b| a + b)
 }
 
-#[inline]
-fn minus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
-    a.zip_map(b, |a, b| a - b)
-}
-
 /// What no step of a site changes.
 ///
 /// # Errors
@@ -77,7 +71,17 @@ fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constant
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
 ///
 /// Only what ties the sites together is generated; everything else is made of [`site`](Self::site).
-pub trait Power<const N: usize>: Clebsch + Sized {
+pub trait Power<const N: usize>:
+    Sized
+    + Clebsch<
+        Configuration = [Point<Self, N>; N],
+        Element = [Motion<Self, N>; N],
+        Momentum = [SiteMomentum<Self, N>; N],
+        MomentumMatrix = [MomentumMatrix<Self, N>; N],
+        Constants = Constants<Self, N>,
+        Input = (),
+    >
+{
     /// One site, a system of its own.
     type Site: Clebsch<Scalar = Self::Scalar, Input = ()>;
 
@@ -101,23 +105,23 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     fn constants_of_sites(constants: &Self::Constants) -> &Constants<Self, N>;
 
     /// The potential V(t, q), a sum over sites.
-    fn potential_of_sites(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> Self::Scalar;
+    fn potential_of_sites(&self, t: T<Self>, q: &Q<Self>) -> T<Self>;
 
     /// ∂V/∂q_i of all terms that read the site i, where it is gathered.
     #[inline]
-    fn gradient_at(&self, _t: Self::Scalar, _q: &[Point<Self, N>; N], _i: usize) -> Point<Self, N> {
+    fn gradient_at(&self, _t: T<Self>, _q: &Q<Self>, _i: usize) -> Point<Self, N> {
         Space::origin()
     }
 
     /// Adds ∂V/∂q, a covector for each site, where it is not gathered.
     #[inline]
-    fn add_gradient(&self, _t: Self::Scalar, _q: &[Point<Self, N>; N], _gradient: &mut [Point<Self, N>; N]) {}
+    fn add_gradient(&self, _t: T<Self>, _q: &Q<Self>, _gradient: &mut Q<Self>) {}
 
     /// The constants of a step of size `h`.
     ///
     /// # Errors
     /// Those of a site.
-    fn power_constants(&self, h: Self::Scalar) -> Result<Constants<Self, N>, Error> {
+    fn power_constants(&self, h: T<Self>) -> Result<Constants<Self, N>, Error> {
         const { assert!(N > 0, "a power has at least one site") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
@@ -127,29 +131,25 @@ pub trait Power<const N: usize>: Clebsch + Sized {
 
     /// Φ_F(q), site by site.
     #[inline]
-    fn act_on_sites(&self, f: &[Motion<Self, N>; N], q: &[Point<Self, N>; N]) -> [Point<Self, N>; N] {
+    fn act_on_sites(&self, f: &F<Self>, q: &Q<Self>) -> Q<Self> {
         from_fn(|i| self.site(i).act(&f[i], &q[i]))
     }
 
     /// J(q, p), site by site.
     #[inline]
-    fn momenta_of(&self, q: &[Point<Self, N>; N], p: &[Point<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+    fn momenta_of(&self, q: &Q<Self>, p: &Q<Self>) -> Mu<Self> {
         from_fn(|i| self.site(i).momentum_map(&q[i], &p[i]))
     }
 
     /// Ad*_F μ, site by site.
     #[inline]
-    fn coadjoint_of_sites(
-        &self,
-        f: &[Motion<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-    ) -> [SiteMomentum<Self, N>; N] {
+    fn coadjoint_of_sites(&self, f: &F<Self>, mu: &Mu<Self>) -> Mu<Self> {
         from_fn(|i| self.site(i).coadjoint(&f[i], &mu[i]))
     }
 
     /// ∂V/∂q.
     #[inline]
-    fn slope(&self, t: Self::Scalar, q: &[Point<Self, N>; N]) -> [Point<Self, N>; N] {
+    fn slope(&self, t: T<Self>, q: &Q<Self>) -> Q<Self> {
         if Self::GATHERS {
             return from_fn(|i| self.gradient_at(t, q, i));
         }
@@ -160,7 +160,7 @@ pub trait Power<const N: usize>: Clebsch + Sized {
 
     /// J(q, weight ∂V).
     #[inline]
-    fn power_kick(&self, t: Self::Scalar, q: &[Point<Self, N>; N], weight: Self::Scalar) -> [SiteMomentum<Self, N>; N] {
+    fn power_kick(&self, t: T<Self>, q: &Q<Self>, weight: T<Self>) -> Mu<Self> {
         if Self::GATHERS {
             return from_fn(|i| self.kick_of_site(i, &q[i], &self.gradient_at(t, q, i), weight));
         }
@@ -170,14 +170,8 @@ pub trait Power<const N: usize>: Clebsch + Sized {
 
     /// J(q, weight ∂V) of one site.
     #[inline(always)]
-    fn kick_of_site(
-        &self,
-        i: usize,
-        q: &Point<Self, N>,
-        gradient: &Point<Self, N>,
-        weight: Self::Scalar,
-    ) -> SiteMomentum<Self, N> {
-        let momentum = self.site(i).momentum_map(q, gradient);
+    fn kick_of_site(&self, i: usize, q: &Point<Self, N>, p: &Point<Self, N>, weight: T<Self>) -> SiteMomentum<Self, N> {
+        let momentum = self.site(i).momentum_map(q, p);
         momentum.zip_map(&momentum, |x, _| weight * x)
     }
 
@@ -186,18 +180,18 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     #[inline]
     fn kick_into(
         &self,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        weight: Self::Scalar,
-        gradient: &mut [Point<Self, N>; N],
-        kick: &mut [SiteMomentum<Self, N>; N],
-        mu: &mut [SiteMomentum<Self, N>; N],
-    ) -> Self::Scalar {
+        t: T<Self>,
+        q: &Q<Self>,
+        weight: T<Self>,
+        gradient: &mut Q<Self>,
+        kick: &mut Mu<Self>,
+        mu: &mut Mu<Self>,
+    ) -> T<Self> {
         if !Self::GATHERS {
             gradient.iter_mut().for_each(|gradient| *gradient = Space::origin());
             self.add_gradient(t, q, gradient);
         }
-        let mut sum = <Self::Scalar as num_traits::Zero>::zero();
+        let mut sum = T::<Self>::zero();
         for i in 0..N {
             let slope = if Self::GATHERS { self.gradient_at(t, q, i) } else { gradient[i] };
             kick[i] = self.kick_of_site(i, &q[i], &slope, weight);
@@ -214,15 +208,12 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     #[inline(always)]
     fn at_site<R>(
         &self,
-        constants: &Constants<Self, N>,
+        c: &Constants<Self, N>,
         i: usize,
         act: impl FnOnce(&Self::Site, &scheme::Constants<Self::Site>) -> Result<R, Error>,
     ) -> Result<R, Error> {
         let site = self.site(i);
-        match Self::IS_UNIFORM {
-            true => act(&site, &constants.site),
-            false => act(&site, &site_constants(&site, constants.h)?),
-        }
+        if Self::IS_UNIFORM { act(&site, &c.site) } else { act(&site, &site_constants(&site, c.h)?) }
     }
 
     /// Moves one site with the momentum n.
@@ -233,16 +224,17 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn moved(
         &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
+        c: &Constants<Self, N>,
+        t: T<Self>,
         i: usize,
         q: &Point<Self, N>,
         n: &SiteMomentum<Self, N>,
     ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
-        self.at_site(constants, i, |site, constants| {
-            let left = SiteScheme::<Self, N>::left(site, constants, t, q, n);
+        self.at_site(c, i, |site, c| {
+            let at = At::new(site, c, t);
+            let left = SiteScheme::<Self, N>::left(at, q, n);
             let held = SiteScheme::<Self, N>::held(q, n);
-            let (q, held, _) = SiteScheme::<Self, N>::step(site, constants, t, (q, &held, &left), &())?;
+            let (q, held, _) = SiteScheme::<Self, N>::step(at, (q, &held, &left), &())?;
             Ok((q, SiteScheme::<Self, N>::momentum(&q, &held)))
         })
     }
@@ -255,166 +247,31 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(
         &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-        kick: Option<&[SiteMomentum<Self, N>; N]>,
-        next: &mut [Point<Self, N>; N],
-        moved: &mut [SiteMomentum<Self, N>; N],
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
+        kick: Option<&Mu<Self>>,
+        next: &mut Q<Self>,
+        moved: &mut Mu<Self>,
     ) -> Result<(), (usize, Error)> {
         for i in 0..N {
-            let n = match kick {
-                Some(kick) => plus(&mu[i], &kick[i]),
-                None => mu[i],
-            };
-            match self.moved(constants, t, i, &q[i], &n) {
-                Ok((q, n)) => (next[i], moved[i]) = (q, n),
-                Err(error) => return Err((i, error)),
-            }
+            let n = kick.map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
+            (next[i], moved[i]) = self.moved(c, t, i, &q[i], &n).map_err(|error| (i, error))?;
         }
         Ok(())
-    }
-
-    /// Moves all sites with their momenta.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
-    #[inline]
-    fn power_drift(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        steps: usize,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-    ) -> Result<Arrays<Self, N>, Error> {
-        let (mut next, mut moved) = (*q, *mu);
-        let mut clock = Clock::at(t);
-        for _ in 0..steps {
-            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, None)?;
-            clock = clock.after_step(constants.h);
-        }
-        Ok((next, moved))
-    }
-
-    /// Moves all sites with their momenta, and with `kick` beside them, where they stand.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
-    #[inline]
-    fn drift_in_place(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        q: &mut [Point<Self, N>; N],
-        mu: &mut [SiteMomentum<Self, N>; N],
-        kick: Option<&[SiteMomentum<Self, N>; N]>,
-    ) -> Result<(), Error> {
-        for i in 0..N {
-            let n = match kick {
-                Some(kick) => plus(&mu[i], &kick[i]),
-                None => mu[i],
-            };
-            (q[i], mu[i]) = self.moved(constants, t, i, &q[i], &n)?;
-        }
-        Ok(())
-    }
-
-    /// As many steps, each half a kick, the move, half a kick.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
-    #[inline]
-    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
-    fn power_steps_of_second_order(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        steps: usize,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-        impulse: &[SiteMomentum<Self, N>; N],
-    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], [SiteMomentum<Self, N>; N]), Error> {
-        let (mut next, mut moved, mut kick) = (*q, *mu, *impulse);
-        let (mut gradient, mut clock) = ([Space::origin(); N], Clock::at(t));
-        for _ in 0..steps {
-            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, Some(&kick))?;
-            clock = clock.after_step(constants.h);
-            self.kick_into(clock.now(), &next, constants.part(-0.5), &mut gradient, &mut kick, &mut moved);
-        }
-        Ok((next, moved, kick))
-    }
-
-    /// A step into the place of another state: the move, with `kick` beside the momenta, and the kick after it, with this part of a step.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
-    #[inline]
-    #[allow(clippy::type_complexity, clippy::too_many_arguments, reason = "two states, and what is between")]
-    fn power_step_into(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        (q, mu, kick): (&[Point<Self, N>; N], &[SiteMomentum<Self, N>; N], Option<&[SiteMomentum<Self, N>; N]>),
-        part: f64,
-        (next, moved): (&mut [Point<Self, N>; N], &mut [SiteMomentum<Self, N>; N]),
-        left: &mut [SiteMomentum<Self, N>; N],
-    ) -> Result<(), Error> {
-        self.drift_into(constants, t, q, mu, kick, next, moved).map_err(|(_, error)| error)?;
-        let mut gradient = [Space::origin(); N];
-        self.kick_into(t + constants.h, next, constants.part(part), &mut gradient, left, moved);
-        Ok(())
-    }
-
-    /// As many steps, each the move, and a whole kick.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
-    #[inline]
-    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
-    fn power_steps_of_first_order(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        steps: usize,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-    ) -> Result<([Point<Self, N>; N], [SiteMomentum<Self, N>; N], ()), Error> {
-        let (mut next, mut moved, mut kick) = (*q, *mu, [Space::origin(); N]);
-        let (mut gradient, mut clock) = ([Space::origin(); N], Clock::at(t));
-        for _ in 0..steps {
-            self.drift_in_place(constants, clock.now(), &mut next, &mut moved, None)?;
-            clock = clock.after_step(constants.h);
-            self.kick_into(clock.now(), &next, constants.part(-1.0), &mut gradient, &mut kick, &mut moved);
-        }
-        Ok((next, moved, ()))
     }
 
     /// F⁻ℓd, where the kick at the start has the weight `part` of a step.
     #[inline]
-    fn power_legendre(
-        &self,
-        h: Self::Scalar,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        f: &[Motion<Self, N>; N],
-        part: f64,
-    ) -> [SiteMomentum<Self, N>; N] {
+    fn power_legendre(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
         let kick = self.power_kick(t, q, h * Scalar::from_f64(part));
-        from_fn(|i| minus(&self.site(i).legendre(h, t, &q[i], &f[i]), &kick[i]))
+        from_fn(|i| self.site(i).legendre(h, t, &q[i], &f[i]).zip_map(&kick[i], |momentum, kick| momentum - kick))
     }
 
     /// F⁺ℓd, where the kick at the end has the weight `part` of a step.
     #[inline]
-    fn power_legendre_next(
-        &self,
-        h: Self::Scalar,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        f: &[Motion<Self, N>; N],
-        part: f64,
-    ) -> [SiteMomentum<Self, N>; N] {
+    fn power_legendre_next(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
         let kick = self.power_kick(t + h, &self.act_on_sites(f, q), h * Scalar::from_f64(part));
         from_fn(|i| plus(&self.site(i).legendre_next(h, t, &q[i], &f[i]), &kick[i]))
     }
@@ -425,120 +282,100 @@ pub trait Power<const N: usize>: Clebsch + Sized {
     /// Those of a site.
     fn power_inverse_legendre(
         &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
         part: f64,
-    ) -> Result<[Motion<Self, N>; N], Error> {
-        let kick = self.power_kick(t, q, constants.part(part));
+    ) -> Result<F<Self>, Error> {
+        let kick = self.power_kick(t, q, c.part(part));
         let mut elements = [Space::origin(); N];
         for (i, element) in elements.iter_mut().enumerate() {
             let n = plus(&mu[i], &kick[i]);
-            *element = self.at_site(constants, i, |site, constants| {
-                SiteScheme::<Self, N>::inverse_legendre(site, constants, t, &q[i], &n)
-            })?;
+            *element =
+                self.at_site(c, i, |site, c| SiteScheme::<Self, N>::inverse_legendre(At::new(site, c, t), &q[i], &n))?;
         }
         Ok(elements)
     }
 
     /// ½ J(q, ∂(U₁ − U₀)) of kicks with these weights of a step.
     #[inline]
-    fn power_stagger(
-        &self,
-        h: Self::Scalar,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        start: f64,
-        end: f64,
-    ) -> [SiteMomentum<Self, N>; N] {
-        match start == end {
-            true => [Space::origin(); N],
-            false => self.power_kick(t, q, h * Scalar::from_f64(0.5 * (end - start))),
+    fn power_stagger(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, start: f64, end: f64) -> Mu<Self> {
+        if start == end {
+            return [Space::origin(); N];
         }
+        self.power_kick(t, q, h * Scalar::from_f64(0.5 * (end - start)))
     }
 
     /// A step of (q, p), whose kicks have these weights of a step.
     ///
     /// # Errors
     /// Those of a step of a site.
-    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn power_step_symmetric(
         &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        p: &[Point<Self, N>; N],
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        q: &Q<Self>,
+        p: &Q<Self>,
         start: f64,
         end: f64,
-    ) -> Result<([Point<Self, N>; N], [Point<Self, N>; N]), Error> {
-        let kicked = |p: &[Point<Self, N>; N], t, q: &[Point<Self, N>; N], part: f64| {
-            let (gradient, weight) = (self.slope(t, q), constants.part(part));
-            from_fn::<_, N, _>(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
+    ) -> Result<(Q<Self>, Q<Self>), Error> {
+        let kicked = |p: &Q<Self>, t, q: &Q<Self>, part: f64| -> Q<Self> {
+            let (gradient, weight) = (self.slope(t, q), c.part(part));
+            from_fn(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
         };
         let (mut next, mut moved) = (*q, kicked(p, t, q, start));
         for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
-            (*q, *p) = self.at_site(constants, i, |site, constants| {
-                SiteScheme::<Self, N>::step_symmetric(site, constants, t, q, p)
-            })?;
+            (*q, *p) =
+                self.at_site(c, i, |site, c| SiteScheme::<Self, N>::step_symmetric(At::new(site, c, t), q, p))?;
         }
-        let p = kicked(&moved, t + constants.h, &next, end);
+        let p = kicked(&moved, t + c.h, &next, end);
         Ok((next, p))
     }
 
     /// The kinetic energy of all sites.
-    fn power_kinetic_energy(
-        &self,
-        constants: &Constants<Self, N>,
-        t: Self::Scalar,
-        q: &[Point<Self, N>; N],
-        mu: &[SiteMomentum<Self, N>; N],
-    ) -> Self::Scalar {
-        let mut sum = <Self::Scalar as num_traits::Zero>::zero();
+    fn power_kinetic_energy(&self, c: &Constants<Self, N>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
+        let mut sum = T::<Self>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
-            let energy = self.at_site(constants, i, |site, constants| {
-                Ok(site.kinetic_energy(SiteScheme::<Self, N>::whole(constants), t, q, mu))
-            });
+            let energy =
+                self.at_site(c, i, |site, c| Ok(site.kinetic_energy(SiteScheme::<Self, N>::whole(c), t, q, mu)));
             // by construction: the constants of all sites have been made once
-            sum += energy.unwrap_or(Self::Scalar::from_f64(f64::INFINITY));
+            sum += energy.unwrap_or(Scalar::from_f64(f64::INFINITY));
         }
         sum
     }
 
     /// The representing matrices, site by site.
     #[inline]
-    fn matrices_of(mu: &[SiteMomentum<Self, N>; N]) -> [MomentumMatrix<Self, N>; N] {
+    fn matrices_of(mu: &Mu<Self>) -> Self::MomentumMatrix {
         from_fn(|i| Self::Site::momentum_matrix(&mu[i]))
     }
 
     /// The components, site by site.
     #[inline]
-    fn components_of(m: &[MomentumMatrix<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+    fn components_of(m: &Self::MomentumMatrix) -> Mu<Self> {
         from_fn(|i| Self::Site::momentum_components(&m[i]))
     }
 
     /// The largest defect of a site.
-    fn power_orbit_defect(&self, q: &[Point<Self, N>]) -> Self::Scalar {
-        let zero = <Self::Scalar as num_traits::Zero>::zero();
-        q.iter().enumerate().fold(zero, |most, (i, q)| larger(most, self.site(i).orbit_defect(q)))
+    fn power_orbit_defect(&self, q: &Q<Self>) -> T<Self> {
+        q.iter().enumerate().fold(Zero::zero(), |most, (i, q)| larger(most, self.site(i).orbit_defect(q)))
     }
 
     /// The size of the defects of all sites together.
-    fn power_isotropy_defect(&self, q: &[Point<Self, N>], mu: &[SiteMomentum<Self, N>]) -> Self::Scalar {
-        let (zero, one) = (<Self::Scalar as num_traits::Zero>::zero(), <Self::Scalar as num_traits::One>::one());
-        let defect =
-            |(i, (q, mu)): (usize, (&Point<Self, N>, &SiteMomentum<Self, N>))| self.site(i).isotropy_defect(q, mu);
-        let defects = || q.iter().zip(mu).enumerate().map(defect);
+    fn power_isotropy_defect(&self, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
+        let zero = T::<Self>::zero();
+        let defects = || q.iter().zip(mu).enumerate().map(|(i, (q, mu))| self.site(i).isotropy_defect(q, mu));
         let most = defects().fold(zero, larger);
         // squares of large ones are no numbers any more
-        let scale = Self::Scalar::select(zero.below(most), most, one);
+        let scale = T::<Self>::select(zero.below(most), most, One::one());
         let squares = defects().fold(zero, |sum, defect| sum + (defect / scale) * (defect / scale));
         scale * Scalar::sqrt(squares)
     }
 
     /// The momenta that motions of q can have, site by site.
     #[inline]
-    fn projected(&self, q: &[Point<Self, N>; N], mu: &[SiteMomentum<Self, N>; N]) -> [SiteMomentum<Self, N>; N] {
+    fn projected(&self, q: &Q<Self>, mu: &Mu<Self>) -> Mu<Self> {
         from_fn(|i| self.site(i).project_momentum(&q[i], &mu[i]))
     }
 }

@@ -12,33 +12,6 @@
 //! ```
 //! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
-/// What most schemes have in common: one set of constants, and states that hold N itself.
-macro_rules! momentum_is_held {
-    ($method:ty) => {
-        type Held = S::Momentum;
-        type Constants = <$method as crate::Method<S>>::Constants;
-
-        fn constants(system: &S, h: S::Scalar) -> Result<<$method as crate::Method<S>>::Constants, Error> {
-            <$method as crate::Method<S>>::constants(system, h)
-        }
-
-        #[inline(always)]
-        fn whole(constants: &Self::Constants) -> &<$method as crate::Method<S>>::Constants {
-            constants
-        }
-
-        #[inline(always)]
-        fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
-            *mu
-        }
-
-        #[inline(always)]
-        fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
-            *held
-        }
-    };
-}
-
 mod adjoint_pair;
 mod collocated;
 mod composed;
@@ -46,24 +19,33 @@ pub(crate) mod edges;
 mod free_motion;
 mod great_circle;
 mod kick_drift_kick;
+mod sequence;
 mod sites;
 mod split;
 mod substep;
 mod unstepped;
 
+use crate::parts::{F, Mu, Q, T, U};
 use crate::{Clebsch, Clock, Declared, Error, Method, Space, Time};
 use core::fmt::Debug;
+use core::marker::PhantomData;
 
-pub use adjoint_pair::AdjointPair;
-pub use collocated::Collocated;
-pub use composed::{Composed, OfOrderEight, OfOrderFour, OfOrderSix, Sizes, Stages, compose};
-pub use free_motion::AlongFreeMotion;
-pub use great_circle::{FreeGreatCircle, GreatCircle};
-pub use kick_drift_kick::KickDriftKick;
-pub use sites::{FreeSites, SitesOfFirstOrder, SitesOfSecondOrder};
-pub use split::{GradientFour, GradientSix, Kicks, PlainFour, PlainSix, Split, split};
-pub use substep::{Apart, Shared};
-pub use unstepped::Unstepped;
+pub use composed::{Sizes, Stages, compose};
+pub use split::{Kicks, split};
+
+/// What a declaration names to say how it is stepped.
+pub mod kinds {
+    pub use super::adjoint_pair::AdjointPair;
+    pub use super::collocated::Collocated;
+    pub use super::composed::{Composed, OfOrderEight, OfOrderFour, OfOrderSix};
+    pub use super::free_motion::AlongFreeMotion;
+    pub use super::great_circle::{FreeGreatCircle, GreatCircle};
+    pub use super::kick_drift_kick::KickDriftKick;
+    pub use super::sequence::{Apart, Shared};
+    pub use super::sites::{FreeSites, SitesOfFirstOrder, SitesOfSecondOrder};
+    pub use super::split::{GradientFour, GradientSix, PlainFour, PlainSix, Split};
+    pub use super::unstepped::Unstepped;
+}
 
 /// What a state of S holds of its momentum.
 pub type Held<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Held;
@@ -72,8 +54,42 @@ pub type Left<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Lef
 /// What no step of S by M changes.
 pub type Constants<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Constants;
 /// The parts of a state: q, what is held of N, and what the last step has left.
-pub type Parted<S, P, M = Declared> =
-    (<S as Clebsch>::Configuration, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
+pub type Parted<S, P, M = Declared> = (Q<S>, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
+/// The parts of the state before a step.
+pub type Before<'a, S, P, M = Declared> = (&'a Q<S>, &'a <P as Scheme<S, M>>::Held, &'a <P as Scheme<S, M>>::Left);
+/// (q, p)
+pub type Pair<S> = (Q<S>, Q<S>);
+/// The place of a step by the scheme P.
+pub type AtOf<'a, S, P, M = Declared> = At<'a, S, M, <P as Scheme<S, M>>::Constants>;
+
+/// What all parts of a step take: the system, what no step changes, and the time at which the step starts.
+pub struct At<'a, S: Clebsch + ?Sized, M: Method<S> = Declared, C = <M as Method<S>>::Constants> {
+    /// The system.
+    pub system: &'a S,
+    /// What no step changes.
+    pub constants: &'a C,
+    /// t
+    pub t: S::Scalar,
+    method: PhantomData<M>,
+}
+
+impl<'a, S: Clebsch + ?Sized, M: Method<S>, C> At<'a, S, M, C> {
+    /// At the time t.
+    #[inline(always)]
+    pub fn new(system: &'a S, constants: &'a C, t: S::Scalar) -> Self {
+        Self { system, constants, t, method: PhantomData }
+    }
+}
+
+// derived ones would ask for systems that are `Copy`
+impl<S: Clebsch + ?Sized, M: Method<S>, C> Copy for At<'_, S, M, C> {}
+
+impl<S: Clebsch + ?Sized, M: Method<S>, C> Clone for At<'_, S, M, C> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 
 /// How a system S is stepped by the method M.
 pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
@@ -96,37 +112,22 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     fn whole(constants: &Self::Constants) -> &M::Constants;
 
     /// What a state at q with the momentum μ holds of it.
-    fn held(q: &S::Configuration, mu: &S::Momentum) -> Self::Held;
+    fn held(q: &Q<S>, mu: &Mu<S>) -> Self::Held;
 
     /// The momentum of a state at q that holds this of it; the inverse of [`held`](Self::held) on 𝔤_q^⊥.
-    fn momentum(q: &S::Configuration, held: &Self::Held) -> S::Momentum;
+    fn momentum(q: &Q<S>, held: &Self::Held) -> Mu<S>;
 
-    /// What the first step from q takes, at the time t of q.
-    fn left(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Self::Left;
+    /// What the first step from q takes, at the time of q.
+    fn left(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left;
 
     /// The same for steps that go on where others, of another size, have ended: what these have left that does not depend on their size stays.
-    fn left_after(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-        left: &Self::Left,
-    ) -> Self::Left {
-        let _ = left;
-        Self::left(system, constants, t, q, mu)
+    fn left_after(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, _left: &Self::Left) -> Self::Left {
+        Self::left(at, q, mu)
     }
 
     /// What a step has left, for a step that is `ratio` times as long.
     #[inline(always)]
-    fn scaled(left: Self::Left, ratio: S::Scalar) -> Self::Left {
-        let _ = ratio;
+    fn scaled(left: Self::Left, _ratio: S::Scalar) -> Self::Left {
         left
     }
 
@@ -134,13 +135,8 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     ///
     /// # Errors
     /// Those of [`Stepper::step`](crate::Stepper::step).
-    fn step(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        state: (&S::Configuration, &Self::Held, &Self::Left),
-        u: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error>;
+    fn step(at: AtOf<'_, S, Self, M>, state: Before<'_, S, Self, M>, u: &S::Input)
+    -> Result<Parted<S, Self, M>, Error>;
 
     /// The same step, into the place of another state. After an error that state is unspecified.
     ///
@@ -148,147 +144,108 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     /// As [`step`](Self::step).
     #[inline]
     fn step_into(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        state: (&S::Configuration, &Self::Held, &Self::Left),
+        at: AtOf<'_, S, Self, M>,
+        state: Before<'_, S, Self, M>,
         u: &S::Input,
-        (next, held, left): (&mut S::Configuration, &mut Self::Held, &mut Self::Left),
+        (next, held, left): (&mut Q<S>, &mut Self::Held, &mut Self::Left),
     ) -> Result<(), Error> {
-        (*next, *held, *left) = Self::step(system, constants, t, state, u)?;
+        (*next, *held, *left) = Self::step(at, state, u)?;
         Ok(())
     }
 
-    /// `steps` steps of the size h from the time t, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts, both
-    /// may be made at once.
+    /// `steps` steps of the size h, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts, both may be made at
+    /// once.
     ///
     /// # Errors
     /// As [`step`](Self::step).
     #[inline]
     fn steps(
-        system: &S,
-        constants: &Self::Constants,
-        (t, h): (S::Scalar, S::Scalar),
+        at: AtOf<'_, S, Self, M>,
+        h: S::Scalar,
         steps: usize,
-        (q, held, left): (&S::Configuration, &Self::Held, &Self::Left),
+        state: Before<'_, S, Self, M>,
         u: &S::Input,
     ) -> Result<Parted<S, Self, M>, Error> {
-        let mut state = (*q, *held, *left);
-        let mut clock = Clock::at(t);
-        for _ in 0..steps {
-            let (q, held, left) = &state;
-            state = Self::step(system, constants, clock.now(), (q, held, left), u)?;
-            clock = clock.after_step(h);
-        }
-        Ok(state)
+        one_by_one::<S, Self, M>(at, h, steps, state, u)
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    fn step_symmetric(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        p: &S::Configuration,
-    ) -> Result<(S::Configuration, S::Configuration), Error>;
+    fn step_symmetric(at: AtOf<'_, S, Self, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error>;
 
     /// The group element F with `legendre(h, t, q, F)` = μ that is connected to the identity.
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    fn inverse_legendre(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Result<S::Element, Error>;
+    fn inverse_legendre(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error>;
 }
 
-/// The methods of a system's scheme as methods of the system.
+/// Steps, one after the other.
+#[inline]
+fn one_by_one<S: Clebsch + ?Sized, P: Scheme<S, M> + ?Sized, M: Method<S>>(
+    at: AtOf<'_, S, P, M>,
+    h: S::Scalar,
+    steps: usize,
+    (q, held, left): Before<'_, S, P, M>,
+    u: &S::Input,
+) -> Result<Parted<S, P, M>, Error> {
+    let mut state = (*q, *held, *left);
+    let mut clock = Clock::at(at.t);
+    for _ in 0..steps {
+        let (q, held, left) = &state;
+        state = P::step(At { t: clock.now(), ..at }, (q, held, left), u)?;
+        clock = clock.after_step(h);
+    }
+    Ok(state)
+}
+
+/// The methods of a system's scheme as methods of the system: for tests.
+#[allow(clippy::missing_errors_doc, clippy::too_many_arguments, reason = "all as those of the scheme")]
 pub trait Stepping: Clebsch {
     /// As [`Scheme::constants`].
-    ///
-    /// # Errors
-    /// Those of [`Clebsch::constants`].
-    #[inline]
     fn step_constants(&self, h: Self::Scalar) -> Result<Constants<Self>, Error> {
         Self::Scheme::constants(self, h)
     }
 
     /// As [`Scheme::held`].
-    #[inline]
-    fn held(q: &Self::Configuration, mu: &Self::Momentum) -> Held<Self> {
+    fn held(q: &Q<Self>, mu: &Mu<Self>) -> Held<Self> {
         Self::Scheme::held(q, mu)
     }
 
     /// As [`Scheme::momentum`].
-    #[inline]
-    fn momentum_held(q: &Self::Configuration, held: &Held<Self>) -> Self::Momentum {
+    fn momentum_held(q: &Q<Self>, held: &Held<Self>) -> Mu<Self> {
         Self::Scheme::momentum(q, held)
     }
 
     /// As [`Scheme::left`].
-    #[inline]
-    fn impulse(
-        &self,
-        constants: &Constants<Self>,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
-    ) -> Left<Self> {
-        Self::Scheme::left(self, constants, t, q, mu)
+    fn impulse(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Left<Self> {
+        Self::Scheme::left(At::new(self, c, t), q, mu)
     }
 
     /// As [`Scheme::step`].
-    ///
-    /// # Errors
-    /// Those of a step.
-    #[inline]
     fn step(
         &self,
-        constants: &Constants<Self>,
-        t: Self::Scalar,
-        q: &Self::Configuration,
+        c: &Constants<Self>,
+        t: T<Self>,
+        q: &Q<Self>,
         held: &Held<Self>,
         left: &Left<Self>,
-        u: &Self::Input,
+        u: &U<Self>,
     ) -> Result<Parted<Self, Self::Scheme>, Error> {
-        Self::Scheme::step(self, constants, t, (q, held, left), u)
+        Self::Scheme::step(At::new(self, c, t), (q, held, left), u)
     }
 
     /// As [`Scheme::step_symmetric`].
-    ///
-    /// # Errors
-    /// Those of a step.
-    #[inline]
-    fn step_symmetric(
-        &self,
-        constants: &Constants<Self>,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        p: &Self::Configuration,
-    ) -> Result<(Self::Configuration, Self::Configuration), Error> {
-        Self::Scheme::step_symmetric(self, constants, t, q, p)
+    fn step_symmetric(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, p: &Q<Self>) -> Result<Pair<Self>, Error> {
+        Self::Scheme::step_symmetric(At::new(self, c, t), q, p)
     }
 
     /// As [`Scheme::inverse_legendre`].
-    ///
-    /// # Errors
-    /// Those of a step.
-    #[inline]
-    fn inverse_legendre(
-        &self,
-        constants: &Constants<Self>,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        mu: &Self::Momentum,
-    ) -> Result<Self::Element, Error> {
-        Self::Scheme::inverse_legendre(self, constants, t, q, mu)
+    fn inverse_legendre(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Result<F<Self>, Error> {
+        Self::Scheme::inverse_legendre(At::new(self, c, t), q, mu)
     }
 }
 
-impl<S: Clebsch> Stepping for S {}
+impl<S: Clebsch + ?Sized> Stepping for S {}

@@ -2,7 +2,7 @@
 
 use crate::linear::{eliminate, rows};
 use crate::newton::shortest;
-use crate::scheme::{Constants, Scheme};
+use crate::scheme::{At, Constants, Scheme};
 use crate::space::{lane_of, set_lane};
 use crate::stepper::{check_configuration, check_momentum, check_on_orbit as on_orbit};
 use crate::tangent::{of_edge, times};
@@ -39,9 +39,10 @@ pub fn forced_step<S: Clebsch>(
 where
     (S::Configuration, S::Momentum): Space<S::Scalar>,
 {
-    let left = S::Scheme::left(system, constants, t, q, mu);
+    let at = At::new(system, constants, t);
+    let left = S::Scheme::left(at, q, mu);
     let held = S::Scheme::held(q, mu);
-    let (q, held, _) = S::Scheme::step(system, constants, t, (q, &held, &left), u)?;
+    let (q, held, _) = S::Scheme::step(at, (q, &held, &left), u)?;
     check_reached((q, S::Scheme::momentum(&q, &held)))
 }
 

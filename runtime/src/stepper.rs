@@ -13,7 +13,7 @@ mod staggered;
 mod step_size;
 mod symmetric;
 
-use crate::scheme::{Constants, Scheme};
+use crate::scheme::{At, Constants, Scheme};
 use crate::space::check_lanes;
 use crate::{Clebsch, Declared, Error, Method, Scalar, Space};
 use core::fmt::{self, Debug, Formatter};
@@ -51,6 +51,12 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         })?;
         let constants = M::Scheme::constants(&system, h)?;
         Ok(Self { system, h, constants })
+    }
+
+    /// At the time t.
+    #[inline(always)]
+    pub(crate) fn at(&self, t: S::Scalar) -> At<'_, S, M, Constants<S, M>> {
+        At::new(&self.system, &self.constants, t)
     }
 
     /// q is finite and on its orbit, up to √ε.

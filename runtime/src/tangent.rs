@@ -216,7 +216,7 @@ where
     fn stepped(&self, state: &State<S>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S>, Error> {
         let time = state.time.after_step(self.step_size());
         // of the same size, but at another configuration: what does not depend on either stays
-        let left = S::Scheme::left_after(self.system(), self.constants(), time.now(), &q, &mu, &state.left);
+        let left = S::Scheme::left_after(self.at(time.now()), &q, &mu, &state.left);
         let held = S::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }

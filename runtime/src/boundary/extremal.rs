@@ -3,7 +3,7 @@
 use super::pivot::Feedback;
 use super::sweep::time_after;
 use crate::fields::{copied, debug, getters};
-use crate::scheme::Scheme;
+use crate::scheme::{At, Scheme};
 use crate::{Clebsch, Real, Space, State, Stepper, Time, Variational};
 use core::iter::FusedIterator;
 use nalgebra::{SMatrix, SVector};
@@ -125,7 +125,7 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
         };
         let Stepper { system, h, constants } = self.stepper;
         let t = time_after::<S>(self.time, *h, steps);
-        let left = S::Scheme::left(system, constants, t, &configuration, &momentum);
+        let left = S::Scheme::left(At::new(system, constants, t), &configuration, &momentum);
         let held = S::Scheme::held(&configuration, &momentum);
         Some(State { time: S::Time::at(t), configuration, held, left, h: *h })
     }

@@ -9,7 +9,8 @@
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
 //! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
 
-use super::{Parted, Scheme};
+use super::{At, AtOf, Before, Pair, Parted, Scheme};
+use crate::parts::{Mu, Q};
 use crate::{Clebsch, Error, Method, Scalar};
 use core::marker::PhantomData;
 use nalgebra::SMatrix;
@@ -80,76 +81,47 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 
     #[inline(always)]
-    fn held(q: &S::Configuration, mu: &S::Momentum) -> Self::Held {
+    fn held(q: &Q<S>, mu: &Mu<S>) -> I::Held {
         I::held(q, mu)
     }
 
     #[inline(always)]
-    fn momentum(q: &S::Configuration, held: &Self::Held) -> S::Momentum {
+    fn momentum(q: &Q<S>, held: &I::Held) -> Mu<S> {
         I::momentum(q, held)
     }
 
     #[inline]
-    fn left(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Self::Left {
-        I::left(system, constants.first(), t, q, mu)
+    fn left(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> I::Left {
+        I::left(At::new(at.system, at.constants.first(), at.t), q, mu)
     }
 
     #[inline]
-    fn left_after(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-        left: &Self::Left,
-    ) -> Self::Left {
-        I::left_after(system, constants.first(), t, q, mu, left)
+    fn left_after(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &I::Left) -> I::Left {
+        I::left_after(At::new(at.system, at.constants.first(), at.t), q, mu, left)
     }
 
     #[inline]
     fn step(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        (q, held, left): (&S::Configuration, &Self::Held, &Self::Left),
+        at: AtOf<'_, S, Self, M>,
+        (q, held, left): Before<'_, S, Self, M>,
         u: &S::Input,
     ) -> Result<Parted<S, Self, M>, Error> {
         let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self, M>| {
-            I::step(system, stage, t, (&q, &held, &left), u)
+            I::step(At::new(at.system, stage, t), (&q, &held, &left), u)
         };
         let scaled = |(q, held, left): Parted<S, Self, M>, ratio| (q, held, I::scaled(left, ratio));
-        compose(constants, t, (*q, *held, *left), step, scaled)
+        compose(at.constants, at.t, (*q, *held, *left), step, scaled)
     }
 
     #[inline]
-    fn step_symmetric(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        p: &S::Configuration,
-    ) -> Result<(S::Configuration, S::Configuration), Error> {
-        let step = |stage: &I::Constants, t, (q, p): (S::Configuration, S::Configuration)| {
-            I::step_symmetric(system, stage, t, &q, &p)
-        };
-        compose(constants, t, (*q, *p), step, |state, _| state)
+    fn step_symmetric(at: AtOf<'_, S, Self, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        let step = |stage: &I::Constants, t, (q, p): Pair<S>| I::step_symmetric(At::new(at.system, stage, t), &q, &p);
+        compose(at.constants, at.t, (*q, *p), step, |state, _| state)
     }
 
     #[inline]
-    fn inverse_legendre(
-        system: &S,
-        constants: &Self::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Result<S::Element, Error> {
-        I::inverse_legendre(system, &constants.whole, t, q, mu)
+    fn inverse_legendre(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error> {
+        I::inverse_legendre(At::new(at.system, &at.constants.whole, at.t), q, mu)
     }
 }
 
@@ -189,6 +161,7 @@ pub struct Stages<T, C, const K: usize> {
     sizes: [T; K],
     h: T,
 }
+
 impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
     /// The constants for the step size `h`, those of each size made by `make`.
     ///
@@ -216,6 +189,15 @@ impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
         let index = if number < K { number } else { (2 * K - 2).checked_sub(number)? };
         Some((self.stages.get(index)?, *self.sizes.get(index)?))
     }
+
+    /// The step number `number` < 2K − 1.
+    #[inline]
+    pub fn stage(&self, number: usize) -> SizedStep<'_, T, C> {
+        let before = (0..number).filter_map(|number| self.at(number));
+        let start = before.fold(T::zero(), |sum, (_, size)| sum + size);
+        let (constants, size) = self.at(number).unwrap_or((&self.whole, self.h));
+        SizedStep { constants, start, size, whole: self.h }
+    }
 }
 
 /// One of the steps of a composed step.
@@ -229,17 +211,6 @@ pub struct SizedStep<'a, T, C> {
     size: T,
     /// h
     whole: T,
-}
-
-impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
-    /// The step number `number` < 2K − 1.
-    #[inline]
-    pub fn stage(&self, number: usize) -> SizedStep<'_, T, C> {
-        let before = (0..number).filter_map(|number| self.at(number));
-        let start = before.fold(T::zero(), |sum, (_, size)| sum + size);
-        let (constants, size) = self.at(number).unwrap_or((&self.whole, self.h));
-        SizedStep { constants, start, size, whole: self.h }
-    }
 }
 
 impl<T: Scalar, C> SizedStep<'_, T, C> {

@@ -1,82 +1,52 @@
 //! One exact motion, step after step.
 
-use super::substep::{Before, LeftOf, Moving, inverse_legendre, symmetric};
-use super::{Parted, Scheme};
-use crate::parts::{FreeMotion, Substep};
-use crate::summation::Sums;
-use crate::{Error, Method, Space};
+use super::At;
+use super::sequence::{Carry, From, InSequence, Sequence, To};
+use super::substep::Moving;
+use crate::parts::{FreeMotion, Mu, Q, Substep};
+use crate::{Error, Method};
 
 /// (q, N) ↦ (q⁺, N⁺) along a free motion. What the motion keeps is made once, and travels along with the state.
+pub type AlongFreeMotion = InSequence<Order>;
+
+/// The order of steps [`AlongFreeMotion`].
 #[derive(Clone, Copy, Debug)]
-pub struct AlongFreeMotion;
+pub struct Order;
 
-impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Scheme<S, M> for AlongFreeMotion {
-    type Left = LeftOf<S, M, S::Kept>;
+/// What the motion keeps.
+#[derive(Clone, Copy, Debug)]
+pub struct Kept;
 
-    momentum_is_held!(M);
+impl<S: FreeMotion<M>, M: Method<S>> Carry<S, M> for Kept {
+    type Impulse = S::Kept;
 
-    fn left(system: &S, constants: &M::Constants, _: S::Scalar, _: &S::Configuration, mu: &S::Momentum) -> Self::Left {
-        S::Sums::joined(system.kept(constants, mu), (Space::origin(), Space::origin()))
+    fn first(at: At<'_, S, M>, _: &Q<S>, mu: &Mu<S>) -> S::Kept {
+        at.system.kept(at.constants, mu)
     }
+}
 
-    fn left_after(
-        system: &S,
-        constants: &M::Constants,
-        _: S::Scalar,
-        _: &S::Configuration,
-        mu: &S::Momentum,
-        left: &Self::Left,
-    ) -> Self::Left {
-        let (_, rests) = S::Sums::parted::<S::Scalar, S::Kept, S::Configuration, S::Momentum>(left);
-        S::Sums::joined(system.kept(constants, mu), rests)
-    }
+impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Sequence<S, M> for Order {
+    type Carry = Kept;
 
     #[inline(always)]
-    fn step(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        state: (&S::Configuration, &S::Momentum, &Self::Left),
-        _: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
-        if S::IS_SHORT { step(system, constants, t, state) } else { called(system, constants, t, state) }
+    fn step(at: At<'_, S, M>, (q, mu, left): From<'_, S, M, Kept>, _: &S::Input) -> To<S, M, Kept> {
+        let (mut state, kept) = Moving::<S, M>::start::<Kept>(q, mu, left);
+        follow(at, kept, &mut state)?;
+        Ok(state.end::<Kept>(*kept))
     }
 
     fn steps(
-        system: &S,
-        constants: &M::Constants,
-        (t, _): (S::Scalar, S::Scalar),
-        count: usize,
-        (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
+        at: At<'_, S, M>,
+        _: S::Scalar,
+        steps: usize,
+        (q, mu, left): From<'_, S, M, Kept>,
         _: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
-        let (mut state, kept) = Moving::<S, M>::start::<S::Kept>(q, mu, left);
-        for _ in 0..count {
-            follow(system, constants, t, kept, &mut state)?;
+    ) -> To<S, M, Kept> {
+        let (mut state, kept) = Moving::<S, M>::start::<Kept>(q, mu, left);
+        for _ in 0..steps {
+            follow(at, kept, &mut state)?;
         }
-        Ok(state.finish(*kept))
-    }
-
-    #[inline]
-    fn step_symmetric(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        p: &S::Configuration,
-    ) -> Result<(S::Configuration, S::Configuration), Error> {
-        if S::HAS_COVECTORS { symmetric::<S, M, 0>(system, constants, t, (*q, *p)) } else { Err(Error::NoCovector) }
-    }
-
-    #[inline]
-    fn inverse_legendre(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
+        Ok(state.end::<Kept>(*kept))
     }
 }
 
@@ -86,43 +56,15 @@ impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Scheme<S, M> for AlongFreeM
 /// Those of [`FreeMotion::follow`].
 #[inline(always)]
 fn follow<S: Substep<0, M> + FreeMotion<M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
+    at: At<'_, S, M>,
     kept: &S::Kept,
     state: &mut Moving<S, M>,
 ) -> Result<(), Error> {
-    // copies: a reference to a part of the state would keep all of it in memory
-    let from = state.q;
+    // a copy: a reference to a part of the state would put all of it in memory
     let mu = state.mu;
-    let (x, mu) = system.follow(constants, kept, &mu)?;
+    let (x, mu) = at.system.follow(at.constants, kept, &mu)?;
     state.mu = mu;
-    let motion = system.motion(&x, || system.increment(&x));
-    state.advance(system, &motion);
-    state.update(system.update(constants, t, &from, &mu, &motion));
+    state.drift(at, &x);
     state.on_space();
     Ok(())
-}
-
-#[inline(always)]
-fn step<S: Substep<0, M> + FreeMotion<M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    (q, mu, left): Before<'_, S, M, S::Kept>,
-) -> Result<Parted<S, AlongFreeMotion, M>, Error> {
-    let (mut state, kept) = Moving::<S, M>::start::<S::Kept>(q, mu, left);
-    follow(system, constants, t, kept, &mut state)?;
-    Ok(state.finish(*kept))
-}
-
-/// A long step, which the compiler may call.
-#[inline]
-fn called<S: Substep<0, M> + FreeMotion<M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    state: Before<'_, S, M, S::Kept>,
-) -> Result<Parted<S, AlongFreeMotion, M>, Error> {
-    step(system, constants, t, state)
 }

@@ -1,172 +1,185 @@
 //! Equal sites, moved one after the other between kicks of all of them.
 
-use super::{Parted, Scheme};
-use crate::power::{Constants, Motion, Point, Power, SiteMomentum};
-use crate::{Clebsch, Declared, Error, Space};
+use super::{At, Before, Pair, Parted, Scheme};
+use crate::parts::{F, Mu, Q};
+use crate::power::Power;
+use crate::{Clock, Error, Space, Time};
+use core::marker::PhantomData;
 
 /// Half a kick, the moves, half a kick.
-#[derive(Clone, Copy, Debug)]
-pub struct SitesOfSecondOrder<const N: usize>;
-
+pub type SitesOfSecondOrder<const N: usize> = SitesInTurn<BothKicks, N>;
 /// The moves, and a whole kick.
-#[derive(Clone, Copy, Debug)]
-pub struct SitesOfFirstOrder<const N: usize>;
-
+pub type SitesOfFirstOrder<const N: usize> = SitesInTurn<EndKick, N>;
 /// The moves alone: nothing ties the sites together.
+pub type FreeSites<const N: usize> = SitesInTurn<NoKick, N>;
+
+/// N sites, kicked as K says.
 #[derive(Clone, Copy, Debug)]
-pub struct FreeSites<const N: usize>;
+pub struct SitesInTurn<K, const N: usize>(PhantomData<K>);
 
-/// What the schemes of sites have in common: constants, and states that hold their momenta.
-macro_rules! of_sites {
-    ($start:expr, $end:expr) => {
-        momentum_is_held!(Declared);
-
-        #[inline]
-        fn step(
-            system: &S,
-            constants: &S::Constants,
-            t: S::Scalar,
-            state: (&S::Configuration, &S::Momentum, &Self::Left),
-            u: &S::Input,
-        ) -> Result<Parted<S, Self>, Error> {
-            Self::steps(system, constants, (t, constants.part(1.0)), 1, state, u)
-        }
-
-        fn step_symmetric(
-            system: &S,
-            constants: &S::Constants,
-            t: S::Scalar,
-            q: &S::Configuration,
-            p: &S::Configuration,
-        ) -> Result<(S::Configuration, S::Configuration), Error> {
-            system.power_step_symmetric(constants, t, q, p, $start, $end)
-        }
-
-        fn inverse_legendre(
-            system: &S,
-            constants: &S::Constants,
-            t: S::Scalar,
-            q: &S::Configuration,
-            mu: &S::Momentum,
-        ) -> Result<S::Element, Error> {
-            system.power_inverse_legendre(constants, t, q, mu, $start)
-        }
-    };
+/// When N sites are kicked.
+pub trait SiteKicks<S: Power<N>, const N: usize> {
+    /// The weight of the kick at the start, as a part of a step.
+    const START: f64;
+    /// That of the kick at the end.
+    const END: f64;
+    /// What one step leaves to the next.
+    type Left: LeftKick<Mu<S>> + Space<S::Scalar>;
 }
 
-impl<S, const N: usize> Scheme<S> for SitesOfSecondOrder<N>
-where
-    S: Power<N>
-        + Clebsch<
-            Configuration = [Point<S, N>; N],
-            Element = [Motion<S, N>; N],
-            Momentum = [SiteMomentum<S, N>; N],
-            Constants = Constants<S, N>,
-            Input = (),
-        >,
-{
-    type Left = [SiteMomentum<S, N>; N];
+/// Half a kick before the moves, and half of one after them.
+#[derive(Clone, Copy, Debug)]
+pub struct BothKicks;
 
-    of_sites!(-0.5, -0.5);
+impl<S: Power<N>, const N: usize> SiteKicks<S, N> for BothKicks {
+    const START: f64 = -0.5;
+    const END: f64 = -0.5;
+    type Left = S::Momentum;
+}
 
-    #[inline]
-    fn left(system: &S, constants: &S::Constants, t: S::Scalar, q: &S::Configuration, _: &S::Momentum) -> Self::Left {
-        system.power_kick(t, q, constants.part(-0.5))
+/// A kick after the moves.
+#[derive(Clone, Copy, Debug)]
+pub struct EndKick;
+
+impl<S: Power<N>, const N: usize> SiteKicks<S, N> for EndKick {
+    const START: f64 = 0.0;
+    const END: f64 = -1.0;
+    type Left = ();
+}
+
+/// No kick.
+#[derive(Clone, Copy, Debug)]
+pub struct NoKick;
+
+impl<S: Power<N>, const N: usize> SiteKicks<S, N> for NoKick {
+    const START: f64 = 0.0;
+    const END: f64 = 0.0;
+    type Left = ();
+}
+
+/// The kick that one step leaves to the next, or nothing.
+pub trait LeftKick<V> {
+    /// Of this kick.
+    fn of(kick: impl FnOnce() -> V) -> Self;
+    /// The kick, if it is left.
+    fn kick(&self) -> Option<&V>;
+    /// Where to put the next one: `room` where it is not left.
+    fn place<'a>(&'a mut self, room: &'a mut V) -> &'a mut V;
+}
+
+impl<M, const N: usize> LeftKick<[M; N]> for [M; N] {
+    #[inline(always)]
+    fn of(kick: impl FnOnce() -> [M; N]) -> Self {
+        kick()
     }
 
-    fn steps(
-        system: &S,
-        constants: &S::Constants,
-        (t, _): (S::Scalar, S::Scalar),
-        steps: usize,
-        (q, mu, kick): (&S::Configuration, &S::Momentum, &Self::Left),
-        (): &(),
-    ) -> Result<Parted<S, Self>, Error> {
-        system.power_steps_of_second_order(constants, t, steps, q, mu, kick)
+    #[inline(always)]
+    fn kick(&self) -> Option<&[M; N]> {
+        Some(self)
+    }
+
+    #[inline(always)]
+    fn place<'a>(&'a mut self, _: &'a mut [M; N]) -> &'a mut [M; N] {
+        self
+    }
+}
+
+impl<M, const N: usize> LeftKick<[M; N]> for () {
+    #[inline(always)]
+    fn of(_: impl FnOnce() -> [M; N]) {}
+
+    #[inline(always)]
+    fn kick(&self) -> Option<&[M; N]> {
+        None
+    }
+
+    #[inline(always)]
+    fn place<'a>(&'a mut self, room: &'a mut [M; N]) -> &'a mut [M; N] {
+        room
+    }
+}
+
+impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<K, N> {
+    type Held = S::Momentum;
+    type Left = K::Left;
+    type Constants = S::Constants;
+
+    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
+        system.constants(h)
+    }
+
+    #[inline(always)]
+    fn whole(constants: &S::Constants) -> &S::Constants {
+        constants
+    }
+
+    #[inline(always)]
+    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
+        *mu
+    }
+
+    #[inline(always)]
+    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
+        *held
+    }
+
+    #[inline]
+    fn left(at: At<'_, S>, q: &Q<S>, _: &Mu<S>) -> K::Left {
+        K::Left::of(|| at.system.power_kick(at.t, q, at.constants.part(K::START)))
+    }
+
+    #[inline]
+    fn step(at: At<'_, S>, state: Before<'_, S, Self>, u: &()) -> Result<Parted<S, Self>, Error> {
+        Self::steps(at, at.constants.h, 1, state, u)
     }
 
     #[inline]
     fn step_into(
-        system: &S,
-        constants: &S::Constants,
-        t: S::Scalar,
-        (q, mu, kick): (&S::Configuration, &S::Momentum, &Self::Left),
+        At { system, constants, t, .. }: At<'_, S>,
+        (q, mu, left): Before<'_, S, Self>,
         (): &(),
-        (next, moved, left): (&mut S::Configuration, &mut S::Momentum, &mut Self::Left),
+        (next, moved, next_left): (&mut Q<S>, &mut Mu<S>, &mut K::Left),
     ) -> Result<(), Error> {
-        system.power_step_into(constants, t, (q, mu, Some(kick)), -0.5, (next, moved), left)
+        system.drift_into(constants, t, q, mu, left.kick(), next, moved).map_err(|(_, error)| error)?;
+        if K::END != 0.0 {
+            let mut gradient = [Space::origin(); N];
+            let mut room = [Space::origin(); N];
+            let kick = next_left.place(&mut room);
+            system.kick_into(t + constants.h, next, constants.part(K::END), &mut gradient, kick, moved);
+        }
+        Ok(())
     }
-}
-
-impl<S, const N: usize> Scheme<S> for SitesOfFirstOrder<N>
-where
-    S: Power<N>
-        + Clebsch<
-            Configuration = [Point<S, N>; N],
-            Element = [Motion<S, N>; N],
-            Momentum = [SiteMomentum<S, N>; N],
-            Constants = Constants<S, N>,
-            Input = (),
-        >,
-{
-    type Left = ();
-
-    of_sites!(0.0, -1.0);
-
-    #[inline(always)]
-    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) {}
 
     fn steps(
-        system: &S,
-        constants: &S::Constants,
-        (t, _): (S::Scalar, S::Scalar),
+        At { system, constants, t, .. }: At<'_, S>,
+        _: S::Scalar,
         steps: usize,
-        (q, mu, ()): (&S::Configuration, &S::Momentum, &()),
+        (q, mu, left): Before<'_, S, Self>,
         (): &(),
     ) -> Result<Parted<S, Self>, Error> {
-        system.power_steps_of_first_order(constants, t, steps, q, mu)
+        let (mut q, mut mu, mut left) = (*q, *mu, *left);
+        let mut gradient = [Space::origin(); N];
+        let mut room = [Space::origin(); N];
+        let mut clock = Clock::at(t);
+        for _ in 0..steps {
+            for i in 0..N {
+                let n = left.kick().map_or(mu[i], |kick| mu[i].zip_map(&kick[i], |mu, kick| mu + kick));
+                (q[i], mu[i]) = system.moved(constants, clock.now(), i, &q[i], &n)?;
+            }
+            clock = clock.after_step(constants.h);
+            if K::END != 0.0 {
+                let kick = left.place(&mut room);
+                system.kick_into(clock.now(), &q, constants.part(K::END), &mut gradient, kick, &mut mu);
+            }
+        }
+        Ok((q, mu, left))
     }
 
-    #[inline]
-    fn step_into(
-        system: &S,
-        constants: &S::Constants,
-        t: S::Scalar,
-        (q, mu, ()): (&S::Configuration, &S::Momentum, &()),
-        (): &(),
-        (next, moved, ()): (&mut S::Configuration, &mut S::Momentum, &mut ()),
-    ) -> Result<(), Error> {
-        let mut kick = [Space::origin(); N];
-        system.power_step_into(constants, t, (q, mu, None), -1.0, (next, moved), &mut kick)
+    fn step_symmetric(at: At<'_, S>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        at.system.power_step_symmetric(at.constants, at.t, q, p, K::START, K::END)
     }
-}
 
-impl<S, const N: usize> Scheme<S> for FreeSites<N>
-where
-    S: Power<N>
-        + Clebsch<
-            Configuration = [Point<S, N>; N],
-            Element = [Motion<S, N>; N],
-            Momentum = [SiteMomentum<S, N>; N],
-            Constants = Constants<S, N>,
-            Input = (),
-        >,
-{
-    type Left = ();
-
-    of_sites!(0.0, 0.0);
-
-    #[inline(always)]
-    fn left(_: &S, _: &S::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) {}
-
-    fn steps(
-        system: &S,
-        constants: &S::Constants,
-        (t, _): (S::Scalar, S::Scalar),
-        steps: usize,
-        (q, mu, ()): (&S::Configuration, &S::Momentum, &()),
-        (): &(),
-    ) -> Result<Parted<S, Self>, Error> {
-        system.power_drift(constants, t, steps, q, mu).map(|(q, mu)| (q, mu, ()))
+    fn inverse_legendre(at: At<'_, S>, q: &Q<S>, mu: &Mu<S>) -> Result<F<S>, Error> {
+        at.system.power_inverse_legendre(at.constants, at.t, q, mu, K::START)
     }
 }

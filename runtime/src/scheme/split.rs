@@ -14,10 +14,10 @@
 //! with four kicks and order 4, the nodes of Gauss and Legendre, and (8, 6, 6) with five and order 6. Without gradients they are those of S. Blanes and
 //! P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142 (2002).
 
-use super::substep::{LeftOf, Moving, inverse_legendre, moved};
-use super::{Parted, Scheme};
-use crate::parts::{SplitKicks, Substep};
-use crate::summation::Sums;
+use super::sequence::{Apart, From, InSequence, Sequence, To};
+use super::substep::{Moving, moved};
+use super::{At, Pair};
+use crate::parts::{Mu, Q, SplitKicks, Substep};
 use crate::{Clock, Error, Method, Scalar, Space, Time};
 use core::marker::PhantomData;
 use num_traits::Zero;
@@ -105,104 +105,59 @@ impl Kicks<10> for PlainSix {
 }
 
 /// Exact drifts with the K kicks Z between them.
+pub type Split<Z, const K: usize> = InSequence<Order<Z, K>>;
+
+/// The order of a [`Split`] step.
 #[derive(Clone, Copy, Debug)]
-pub struct Split<Z, const K: usize>(PhantomData<Z>);
+pub struct Order<Z, const K: usize>(PhantomData<Z>);
 
-impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize> Scheme<S, M> for Split<Z, K> {
-    type Left = LeftOf<S, M, ()>;
-
-    momentum_is_held!(M);
+impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize> Sequence<S, M> for Order<Z, K> {
+    type Carry = Apart;
 
     #[inline]
-    fn left(_: &S, _: &M::Constants, _: S::Scalar, _: &S::Configuration, _: &S::Momentum) -> Self::Left {
-        S::Sums::joined((), (Space::origin(), Space::origin()))
-    }
-
-    #[inline]
-    fn left_after(
-        _: &S,
-        _: &M::Constants,
-        _: S::Scalar,
-        _: &S::Configuration,
-        _: &S::Momentum,
-        left: &Self::Left,
-    ) -> Self::Left {
-        *left
-    }
-
-    #[inline]
-    fn step(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        state: (&S::Configuration, &S::Momentum, &Self::Left),
-        u: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
-        Self::steps(system, constants, (t, S::step_size(constants)), 1, state, u)
+    fn step(at: At<'_, S, M>, state: From<'_, S, M, Apart>, u: &S::Input) -> To<S, M, Apart> {
+        Self::steps(at, S::step_size(at.constants), 1, state, u)
     }
 
     fn steps(
-        system: &S,
-        constants: &M::Constants,
-        (t, _): (S::Scalar, S::Scalar),
+        at: At<'_, S, M>,
+        _: S::Scalar,
         steps: usize,
-        (q, mu, left): (&S::Configuration, &S::Momentum, &Self::Left),
+        (q, mu, left): From<'_, S, M, Apart>,
         _: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
-        let (start, _) = Moving::<S, M>::start::<()>(q, mu, left);
-        let drifted = |part, state| drift(system, constants, part, state);
+    ) -> To<S, M, Apart> {
+        let (start, ()) = Moving::<S, M>::start::<Apart>(q, mu, left);
         let kicked = |t, weight, gradient, mut state: Moving<S, M>| {
-            state.push(Some(system.kick(constants, t, &state.q, weight, gradient)));
+            state.push(Some(at.system.kick(at.constants, t, &state.q, weight, gradient)));
             state
         };
-        let end = split(&Z::KICKS, (t, S::step_size(constants), steps), start, drifted, kicked)?;
-        Ok(end.finish(()))
+        let size = (at.t, S::step_size(at.constants), steps);
+        Ok(split(&Z::KICKS, size, start, |part, state| drift(at, part, state), kicked)?.end::<Apart>(()))
     }
 
-    fn step_symmetric(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        p: &S::Configuration,
-    ) -> Result<(S::Configuration, S::Configuration), Error> {
-        if !S::HAS_COVECTORS {
-            return Err(Error::NoCovector);
-        }
-        let kicked = |t, weight, gradient, (q, p): (S::Configuration, S::Configuration)| {
-            let kick = system.kick_gradient(constants, t, &q, weight, gradient);
+    fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        let kicked = |t, weight, gradient, (q, p): Pair<S>| {
+            let kick = at.system.kick_gradient(at.constants, t, &q, weight, gradient);
             (q, p.zip_map(&kick, |a, b| a + b))
         };
-        let drifted = |part, (q, p)| drift_symmetric(system, constants, part, q, p);
-        split(&Z::KICKS, (t, S::step_size(constants), 1), (*q, *p), drifted, kicked)
-    }
-
-    #[inline]
-    fn inverse_legendre(
-        system: &S,
-        constants: &M::Constants,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-    ) -> Result<S::Element, Error> {
-        inverse_legendre::<S, M, 0>(system, constants, t, q, mu)
+        let size = (at.t, S::step_size(at.constants), 1);
+        split(&Z::KICKS, size, (*q, *p), |part, state| drift_symmetric(at, part, state), kicked)
     }
 }
 
-/// The coordinates of the drift of a part of the step: it is the whole drift with this part of the momentum.
+/// The coordinates of the drift of a part of the step: it is the drift of the step with this part of the momentum, at any time.
 ///
 /// # Errors
 /// Those of the solve.
 #[inline(always)]
 fn solve_part<S: Substep<0, M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
+    at: At<'_, S, M>,
     part: S::Scalar,
-    q: &S::Configuration,
-    mu: &S::Momentum,
+    q: &Q<S>,
+    mu: &Mu<S>,
 ) -> Result<S::Coordinates, Error> {
     let mu = mu.zip_map(mu, |mu, _| mu * part);
-    system.solve(constants, Zero::zero(), q, &mu, &S::Input::origin())
+    at.system.solve(at.constants, Zero::zero(), q, &mu, &S::Input::origin())
 }
 
 /// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
@@ -211,16 +166,12 @@ fn solve_part<S: Substep<0, M>, M: Method<S>>(
 /// Those of the solve.
 #[inline]
 fn drift<S: Substep<0, M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
+    at: At<'_, S, M>,
     part: S::Scalar,
     mut state: Moving<S, M>,
 ) -> Result<Moving<S, M>, Error> {
-    let x = solve_part(system, constants, part, &state.q, &state.mu)?;
-    let motion = system.motion(&x, || system.increment(&x));
-    let from = state.q;
-    state.advance(system, &motion);
-    state.update(system.update(constants, Zero::zero(), &from, &state.mu, &motion));
+    let x = solve_part(at, part, &state.q, &state.mu)?;
+    state.drift(At { t: Zero::zero(), ..at }, &x);
     state.on_space();
     Ok(state)
 }
@@ -231,16 +182,14 @@ fn drift<S: Substep<0, M>, M: Method<S>>(
 /// Those of the solve.
 #[inline]
 fn drift_symmetric<S: Substep<0, M>, M: Method<S>>(
-    system: &S,
-    constants: &M::Constants,
+    at: At<'_, S, M>,
     part: S::Scalar,
-    q: S::Configuration,
-    p: S::Configuration,
-) -> Result<(S::Configuration, S::Configuration), Error> {
-    let x = solve_part(system, constants, part, &q, &system.momentum_map(&q, &p))?;
-    let d = system.increment(&x);
-    let q = moved(system, &q, &x, &d);
-    let p = system.lift(&q, &p, &d);
+    (q, p): Pair<S>,
+) -> Result<Pair<S>, Error> {
+    let x = solve_part(at, part, &q, &at.system.momentum_map(&q, &p))?;
+    let d = at.system.increment(&x);
+    let q = moved(at.system, &q, &x, &d);
+    let p = at.system.lift(&q, &p, &d);
     Ok((q, p))
 }
 

@@ -1,58 +1,36 @@
 //! One substep: kick, solve, move, update, kick.
 
-use crate::parts::{MotionOf, Parts, Substep};
+use super::sequence::{Carry, LeftBy, parted};
+use super::{At, Pair};
+use crate::parts::{Mu, Parts, Q, Substep};
 use crate::summation::{Rests, Sums};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 
 /// What rounding has taken off q and N of a system.
-type RestsOf<S, M> =
-    Rests<<S as Parts<M>>::Sums, <S as Clebsch>::Scalar, <S as Clebsch>::Configuration, <S as Clebsch>::Momentum>;
-
-/// What one step leaves to the next: an impulse I and the rests.
-pub(super) type LeftOf<S, M, I> = <<S as Parts<M>>::Sums as Sums>::Left<
-    <S as Clebsch>::Scalar,
-    I,
-    <S as Clebsch>::Configuration,
-    <S as Clebsch>::Momentum,
->;
-
-/// The state before a step: q, N, and what the last step has left.
-pub(super) type Before<'a, S, M, I> =
-    (&'a <S as Clebsch>::Configuration, &'a <S as Clebsch>::Momentum, &'a LeftOf<S, M, I>);
+pub(super) type RestsOf<S, M> = Rests<<S as Parts<M>>::Sums, <S as Clebsch>::Scalar, Q<S>, Mu<S>>;
 
 /// (q, N) while it moves, with what rounding has taken off.
 pub(super) struct Moving<S: Parts<M>, M: Method<S>> {
-    pub q: S::Configuration,
-    pub mu: S::Momentum,
+    pub q: Q<S>,
+    pub mu: Mu<S>,
     pub rests: RestsOf<S, M>,
 }
 
 impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
     /// From a state, with the impulse that its last step has left.
     #[inline(always)]
-    pub fn start<'a, I: Space<S::Scalar>>(
-        q: &S::Configuration,
-        mu: &S::Momentum,
-        left: &'a LeftOf<S, M, I>,
-    ) -> (Self, &'a I) {
-        let (impulse, rests) = S::Sums::parted(left);
+    pub fn start<'a, C: Carry<S, M>>(q: &Q<S>, mu: &Mu<S>, left: &'a LeftBy<S, M, C>) -> (Self, &'a C::Impulse) {
+        let (impulse, rests) = parted::<S, M, C>(left);
         (Self { q: *q, mu: *mu, rests }, impulse)
     }
 
     /// The state, with an impulse for its next step.
     #[inline(always)]
-    pub fn end<I: Space<S::Scalar>>(mut self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, M, I>) {
-        self.on_space();
-        self.finish(impulse)
-    }
-
-    /// The same of a state that is on its space.
-    #[inline(always)]
-    pub fn finish<I: Space<S::Scalar>>(self, impulse: I) -> (S::Configuration, S::Momentum, LeftOf<S, M, I>) {
+    pub fn end<C: Carry<S, M>>(self, impulse: C::Impulse) -> (Q<S>, Mu<S>, LeftBy<S, M, C>) {
         (self.q, self.mu, S::Sums::joined(impulse, self.rests))
     }
 
-    /// q, kept on its space.
+    /// q, brought back to its space.
     #[inline(always)]
     pub fn on_space(&mut self) {
         (self.q, self.rests.0) = S::on_space(self.q, self.rests.0);
@@ -60,30 +38,25 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
 
     /// N, and a kick.
     #[inline(always)]
-    pub fn push(&mut self, kick: Option<S::Momentum>) {
+    pub fn push(&mut self, kick: Option<Mu<S>>) {
         if let Some(kick) = kick {
             self.mu = S::Sums::sum(&self.mu, &mut self.rests.1, &kick);
         }
     }
 
-    /// q, and what is added to it.
+    /// (q⁺, M⁺), from M or from the q before the move.
     #[inline(always)]
-    pub fn shift(&mut self, added: &S::Configuration) {
-        self.q = S::Sums::sum(&self.q, &mut self.rests.0, added);
-    }
-
-    /// q⁺
-    #[inline(always)]
-    pub fn advance(&mut self, system: &S, motion: &MotionOf<S, M>) {
-        let moved = system.advance(&self.q, motion);
-        self.q = S::Sums::made(&self.q, &mut self.rests.0, moved);
-    }
-
-    /// M⁺, where M changes.
-    #[inline(always)]
-    pub fn update(&mut self, updated: Option<S::Momentum>) {
-        if let Some(updated) = updated {
-            self.mu = S::Sums::made(&self.mu, &mut self.rests.1, updated);
+    pub fn drift<const K: usize>(&mut self, at: At<'_, S, M>, x: &S::Coordinates)
+    where
+        S: Substep<K, M>,
+    {
+        let motion = at.system.motion(x, || at.system.increment(x));
+        // copies: a reference to a part of the state would put all of it in memory
+        let from = self.q;
+        let mu = self.mu;
+        self.q = S::Sums::made(&from, &mut self.rests.0, at.system.advance(&from, &motion));
+        if let Some(updated) = at.system.update(at.constants, at.t, &from, &mu, &motion) {
+            self.mu = S::Sums::made(&mu, &mut self.rests.1, updated);
         }
     }
 }
@@ -96,15 +69,14 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
 /// Those of the solve.
 #[inline(always)]
 pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    (q, mu): (&S::Configuration, &S::Momentum),
+    at: At<'_, S, M>,
+    (q, mu): (&Q<S>, &Mu<S>),
     mut rests: RestsOf<S, M>,
-    kick: Option<S::Momentum>,
+    kick: Option<Mu<S>>,
     u: &S::Input,
 ) -> Result<Moving<S, M>, Error> {
-    let add = |mu: &S::Momentum, kick: &S::Momentum, rest: &mut _| S::Sums::sum(mu, rest, kick);
+    let At { system, constants, t, .. } = at;
+    let add = |mu: &Mu<S>, kick: &Mu<S>, rest: &mut _| S::Sums::sum(mu, rest, kick);
     let mut kicked = None;
     let mut forced = None;
     let mut at_rest = None;
@@ -112,8 +84,7 @@ pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     let mu = with(mu, kick, &mut kicked, |mu, kick| add(mu, kick, &mut rests.1));
     let force = system.start_force(constants, t, q, u);
     let mu = with(mu, force, &mut forced, |mu, kick| add(mu, kick, &mut rests.1));
-    let rest = rest_apart::<S, M, K>(system, constants, t, q);
-    let target = with(mu, rest, &mut at_rest, |mu, rest| plus(*mu, Some(*rest)));
+    let target = with(mu, rest_apart::<S, M, K>(at, q), &mut at_rest, |mu, rest| plus(*mu, Some(*rest)));
     let x = system.solve(constants, t, q, target, u)?;
     let motion = system.motion(&x, || system.increment(&x));
     let force = system.moving_force(constants, t, q, &x, u);
@@ -137,27 +108,10 @@ fn with<'a, V>(number: &'a V, part: Option<V>, place: &'a mut Option<V>, add: im
     }
 }
 
-/// −r(I) where it is not in the first kick.
+/// −r(I) where it is not in the first kick: the solve is for M − r(I), the move carries M, and compensated sums tell them apart.
 #[inline(always)]
-fn rest_apart<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    q: &S::Configuration,
-) -> Option<S::Momentum> {
-    if S::Sums::ARE_COMPENSATED { system.rest(constants, t, q) } else { None }
-}
-
-/// The momentum to solve for. What is solved for is M − r(I), and what the move carries is M; compensated sums keep both apart.
-#[inline(always)]
-fn at_rest<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    q: &S::Configuration,
-    mu: S::Momentum,
-) -> S::Momentum {
-    plus(mu, rest_apart::<S, M, K>(system, constants, t, q))
+fn rest_apart<S: Substep<K, M>, M: Method<S>, const K: usize>(at: At<'_, S, M>, q: &Q<S>) -> Option<Mu<S>> {
+    if S::Sums::ARE_COMPENSATED { at.system.rest(at.constants, at.t, q) } else { None }
 }
 
 /// The sum with a part that may not be there.
@@ -169,23 +123,26 @@ pub(super) fn plus<T: Scalar, V: Space<T>>(sum: V, part: Option<V>) -> V {
     }
 }
 
+/// The momentum to solve for, from N before the kick and without forces.
+#[inline(always)]
+fn kicked<S: Substep<K, M>, M: Method<S>, const K: usize>(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Mu<S> {
+    let mu = plus(*mu, at.system.start_kick(at.constants, at.t, q));
+    plus(mu, rest_apart::<S, M, K>(at, q))
+}
+
 /// The coordinates of the group element with the momentum N before the kick.
 ///
 /// # Errors
 /// Those of the solve.
 #[inline(always)]
 pub(super) fn solve_before_kick<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    q: &S::Configuration,
-    mu: &S::Momentum,
+    at: At<'_, S, M>,
+    q: &Q<S>,
+    mu: &Mu<S>,
     u: &S::Input,
 ) -> Result<S::Coordinates, Error> {
-    let mu = plus(*mu, system.start_kick(constants, t, q));
-    let mu = at_rest::<S, M, K>(system, constants, t, q, mu);
-    let mu = plus(mu, system.start_force(constants, t, q, u));
-    system.solve(constants, t, q, &mu, u)
+    let mu = plus(kicked::<S, M, K>(at, q, mu), at.system.start_force(at.constants, at.t, q, u));
+    at.system.solve(at.constants, at.t, q, &mu, u)
 }
 
 /// F with F⁻ℓd(q, F) = N.
@@ -194,16 +151,12 @@ pub(super) fn solve_before_kick<S: Substep<K, M>, M: Method<S>, const K: usize>(
 /// Those of the solve.
 #[inline]
 pub(super) fn inverse_legendre<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    q: &S::Configuration,
-    mu: &S::Momentum,
+    at: At<'_, S, M>,
+    q: &Q<S>,
+    mu: &Mu<S>,
 ) -> Result<S::Element, Error> {
-    let mu = plus(*mu, system.start_kick(constants, t, q));
-    let mu = at_rest::<S, M, K>(system, constants, t, q, mu);
-    let x = system.solve(constants, t, q, &mu, &S::Input::origin())?;
-    Ok(S::element(&system.increment(&x)))
+    let x = at.system.solve(at.constants, at.t, q, &kicked::<S, M, K>(at, q, mu), &S::Input::origin())?;
+    Ok(S::element(&at.system.increment(&x)))
 }
 
 /// (q, p) ↦ (q⁺, p⁺), with the momentum J(q, p).
@@ -212,11 +165,9 @@ pub(super) fn inverse_legendre<S: Substep<K, M>, M: Method<S>, const K: usize>(
 /// Those of the solve.
 #[inline]
 pub(super) fn symmetric<S: Substep<K, M>, M: Method<S>, const K: usize>(
-    system: &S,
-    constants: &M::Constants,
-    t: S::Scalar,
-    (q, p): (S::Configuration, S::Configuration),
-) -> Result<(S::Configuration, S::Configuration), Error> {
+    At { system, constants, t, .. }: At<'_, S, M>,
+    (q, p): Pair<S>,
+) -> Result<Pair<S>, Error> {
     let p = plus(p, system.start_gradient(constants, t, &q));
     let mu = plus(system.momentum_map(&q, &p), system.rest(constants, t, &q));
     let x = system.solve(constants, t, &q, &mu, &S::Input::origin())?;
@@ -230,72 +181,7 @@ pub(super) fn symmetric<S: Substep<K, M>, M: Method<S>, const K: usize>(
 
 /// q⁺ without a look at rounding: the step on T*Q is symplectic in all directions of T*Rⁿ.
 #[inline(always)]
-pub(super) fn moved<S: Parts<M>, M: Method<S>>(
-    system: &S,
-    q: &S::Configuration,
-    x: &S::Coordinates,
-    d: &S::Element,
-) -> S::Configuration {
+pub(super) fn moved<S: Parts<M>, M: Method<S>>(system: &S, q: &Q<S>, x: &S::Coordinates, d: &S::Element) -> Q<S> {
     let moved = system.advance(q, &system.motion(x, || *d));
     S::Sums::made_plainly(q, moved)
-}
-
-/// What the end of one step and the start of the next have in common.
-pub trait Carry<S: Clebsch> {
-    /// What one step leaves to the next.
-    type Impulse: Space<S::Scalar>;
-
-    /// The impulse of this kick.
-    fn impulse(kick: Option<S::Momentum>) -> Self::Impulse;
-
-    /// The kick at the start of a step, where the last one has left this impulse.
-    fn kick(impulse: &Self::Impulse, anew: impl FnOnce() -> Option<S::Momentum>) -> Option<S::Momentum>;
-
-    /// The impulse of a step that is `ratio` times as long: kicks are linear in the step size.
-    fn scaled(impulse: Self::Impulse, ratio: S::Scalar) -> Self::Impulse;
-}
-
-/// The kick at the end of one step is that at the start of the next.
-#[derive(Clone, Copy, Debug)]
-pub struct Shared;
-
-impl<S: Clebsch> Carry<S> for Shared {
-    type Impulse = S::Momentum;
-
-    #[inline(always)]
-    fn impulse(kick: Option<S::Momentum>) -> S::Momentum {
-        match kick {
-            Some(kick) => kick,
-            None => S::Momentum::origin(),
-        }
-    }
-
-    #[inline(always)]
-    fn kick(impulse: &S::Momentum, _: impl FnOnce() -> Option<S::Momentum>) -> Option<S::Momentum> {
-        Some(*impulse)
-    }
-
-    #[inline(always)]
-    fn scaled(impulse: S::Momentum, ratio: S::Scalar) -> S::Momentum {
-        impulse.zip_map(&impulse, |kick, _| kick * ratio)
-    }
-}
-
-/// Each step makes its own kicks.
-#[derive(Clone, Copy, Debug)]
-pub struct Apart;
-
-impl<S: Clebsch> Carry<S> for Apart {
-    type Impulse = ();
-
-    #[inline(always)]
-    fn impulse(_: Option<S::Momentum>) {}
-
-    #[inline(always)]
-    fn kick((): &(), anew: impl FnOnce() -> Option<S::Momentum>) -> Option<S::Momentum> {
-        anew()
-    }
-
-    #[inline(always)]
-    fn scaled((): (), _: S::Scalar) {}
 }

@@ -1,14 +1,12 @@
 //! What stands where a declaration has an error.
 
-use super::{Parted, Scheme};
+use super::{At, Before, Pair, Parted, Scheme};
+use crate::parts::{Mu, Q};
 use crate::{Clebsch, Error, Method};
 
 /// No scheme: of a declaration with an error, so that nothing else is reported. It is never called.
 #[derive(Clone, Copy, Debug)]
 pub struct Unstepped;
-
-/// What it would say.
-const UNSTEPPED: Error = Error::NoCovector;
 
 impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
     type Held = S::Momentum;
@@ -23,43 +21,25 @@ impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
         constants
     }
 
-    fn held(_: &S::Configuration, mu: &S::Momentum) -> S::Momentum {
+    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
         *mu
     }
 
-    fn momentum(_: &S::Configuration, held: &S::Momentum) -> S::Momentum {
+    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
         *held
     }
 
-    fn left(_: &S, (): &(), _: S::Scalar, _: &S::Configuration, _: &S::Momentum) {}
+    fn left(_: At<'_, S, M>, _: &Q<S>, _: &Mu<S>) {}
 
-    fn step(
-        _: &S,
-        (): &(),
-        _: S::Scalar,
-        _: (&S::Configuration, &S::Momentum, &()),
-        _: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
-        Err(UNSTEPPED)
+    fn step(_: At<'_, S, M>, _: Before<'_, S, Self, M>, _: &S::Input) -> Result<Parted<S, Self, M>, Error> {
+        Err(Error::NoCovector)
     }
 
-    fn step_symmetric(
-        _: &S,
-        (): &(),
-        _: S::Scalar,
-        _: &S::Configuration,
-        _: &S::Configuration,
-    ) -> Result<(S::Configuration, S::Configuration), Error> {
-        Err(UNSTEPPED)
+    fn step_symmetric(_: At<'_, S, M>, _: &Q<S>, _: &Q<S>) -> Result<Pair<S>, Error> {
+        Err(Error::NoCovector)
     }
 
-    fn inverse_legendre(
-        _: &S,
-        (): &(),
-        _: S::Scalar,
-        _: &S::Configuration,
-        _: &S::Momentum,
-    ) -> Result<S::Element, Error> {
-        Err(UNSTEPPED)
+    fn inverse_legendre(_: At<'_, S, M>, _: &Q<S>, _: &Mu<S>) -> Result<S::Element, Error> {
+        Err(Error::NoCovector)
     }
 }

@@ -43,7 +43,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 return Err(Error::NotFinite { name });
             }
         }
-        match M::Scheme::inverse_legendre(&self.system, &self.constants, t, q, mu) {
+        match M::Scheme::inverse_legendre(self.at(t), q, mu) {
             Ok(element) if element.is_finite() => Ok(element),
             Ok(element) => {
                 let finite = element.finite();

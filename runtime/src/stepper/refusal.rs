@@ -1,7 +1,7 @@
 //! What is told of a step that fails: what it is that is not finite, and how long a step would do.
 
 use super::Stepper;
-use crate::scheme::{Constants, Scheme};
+use crate::scheme::{At, Constants, Scheme};
 use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, State, Time};
 
 /// Step sizes that are tried to find the longest one that can be solved, at most.
@@ -24,9 +24,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(crate) fn refusal(&self, state: &State<S, M>, u: &S::Input, lane: usize, error: Error) -> Error {
         let State { time, configuration, held, left, .. } = state;
         self.explained(lane, error, |constants| {
-            let t = time.now();
-            let left = M::Scheme::left_after(&self.system, constants, t, configuration, &state.momentum(), left);
-            let (q, mu, _) = M::Scheme::step(&self.system, constants, t, (configuration, held, &left), u)?;
+            let at = At::new(&self.system, constants, time.now());
+            let left = M::Scheme::left_after(at, configuration, &state.momentum(), left);
+            let (q, mu, _) = M::Scheme::step(at, (configuration, held, &left), u)?;
             Ok((q.finite() & mu.finite()).lane(lane))
         })
     }
@@ -37,7 +37,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(super) fn refusal_of_covector(&self, state: &CotangentState<S>, error: Error) -> Error {
         let CotangentState { time, configuration, covector } = state;
         self.explained(0, error, |constants| {
-            let (q, p) = M::Scheme::step_symmetric(&self.system, constants, time.now(), configuration, covector)?;
+            let at = At::new(&self.system, constants, time.now());
+            let (q, p) = M::Scheme::step_symmetric(at, configuration, covector)?;
             Ok((q.finite() & p.finite()).lane(0))
         })
     }
@@ -53,7 +54,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         error: Error,
     ) -> Error {
         self.explained(0, error, |constants| {
-            Ok(M::Scheme::inverse_legendre(&self.system, constants, t, q, mu)?.finite().lane(0))
+            Ok(M::Scheme::inverse_legendre(At::new(&self.system, constants, t), q, mu)?.finite().lane(0))
         })
     }
 
@@ -101,7 +102,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// Whether the impulse at q, without momentum, is finite: that of the potential.
     pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
-        M::Scheme::left(&self.system, &self.constants, t, q, &S::Momentum::origin()).finite().lane(lane)
+        M::Scheme::left(self.at(t), q, &S::Momentum::origin()).finite().lane(lane)
     }
 }
 

@@ -41,7 +41,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let left = self.left_of(state);
         let start = (configuration, held, &left);
         let none = S::Input::origin();
-        let advanced = M::Scheme::steps(&self.system, &self.constants, (time.now(), self.h), steps, start, &none);
+        let advanced = M::Scheme::steps(self.at(time.now()), self.h, steps, start, &none);
         let (configuration, held, left) = match advanced {
             Ok(next) => next,
             Err(error) => return Err(self.refused_after(state, steps, error)),
@@ -96,12 +96,12 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             return Err(Error::NotFinite { name: "the input" });
         }
         let State { configuration: q, held, left, .. } = state;
-        let t = state.time.now();
+        let at = self.at(state.time.now());
         let into = (&mut next.configuration, &mut next.held, &mut next.left);
         let stepped = if size_of::<Left<S, M>>() == 0 || state.h == self.h {
-            M::Scheme::step_into(&self.system, &self.constants, t, (q, held, left), u, into)
+            M::Scheme::step_into(at, (q, held, left), u, into)
         } else {
-            M::Scheme::step_into(&self.system, &self.constants, t, (q, held, &self.left_of(state)), u, into)
+            M::Scheme::step_into(at, (q, held, &self.left_of(state)), u, into)
         };
         if stepped.is_err() {
             return Err(self.refused(state, u));
@@ -132,7 +132,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The state (q, N) with what its first step takes.
     pub(super) fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
-        let left = M::Scheme::left(&self.system, &self.constants, t, &q, &mu);
+        let left = M::Scheme::left(self.at(t), &q, &mu);
         if !left.is_finite() {
             let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
             let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
@@ -163,7 +163,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         u: &S::Input,
     ) -> Result<State<S, M>, Error> {
         let State { time, configuration, held, .. } = state;
-        match M::Scheme::step(&self.system, &self.constants, time.now(), (configuration, held, left), u) {
+        match M::Scheme::step(self.at(time.now()), (configuration, held, left), u) {
             Ok((configuration, held, left)) => {
                 Ok(State { time: time.after_step(self.h), configuration, held, left, h: self.h })
             }
@@ -178,8 +178,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             return state.left;
         }
         let State { time, configuration, left, .. } = state;
-        let (system, constants) = (&self.system, &self.constants);
-        let anew = M::Scheme::left_after(system, constants, time.now(), configuration, &state.momentum(), left);
+        let anew = M::Scheme::left_after(self.at(time.now()), configuration, &state.momentum(), left);
         if S::Scalar::LANES == 1 { anew } else { kept_in_lanes(anew, left, state.h.equals(self.h)) }
     }
 

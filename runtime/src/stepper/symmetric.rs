@@ -21,12 +21,11 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let CotangentState { time, configuration, covector } = state;
-        let (configuration, covector) =
-            match M::Scheme::step_symmetric(&self.system, &self.constants, time.now(), configuration, covector) {
-                Ok(next) => next,
-                Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
-                Err(error) => return Err(self.refusal_of_covector(state, error)),
-            };
+        let (configuration, covector) = match M::Scheme::step_symmetric(self.at(time.now()), configuration, covector) {
+            Ok(next) => next,
+            Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
+            Err(error) => return Err(self.refusal_of_covector(state, error)),
+        };
         let next = CotangentState { time: time.after_step(self.h), configuration, covector };
         let finite: <S::Scalar as Scalar>::Mask = next.finite();
         match (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)) {

@@ -1,8 +1,9 @@
 //! Powers: each site is a system of its own, tied to the others by kicks alone.
 
 use crate::arbitrary::{cases, unit, vector};
-use clebsch::__private::Stepping;
-use clebsch::__private::{PowerConstants, wrapped};
+use clebsch::__private::{
+    At, FreeSites, PowerConstants, Scheme, SitesOfFirstOrder, SitesOfSecondOrder, Stepping, wrapped,
+};
 use clebsch::{Clebsch, Power, SiteStorage};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -57,7 +58,7 @@ proptest! {
     #[test]
     fn sites_are_systems_alone(ring in rings(), (q, mu) in spins(), p in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0) {
         let constants = ring.power_constants(H)?;
-        let drifted = ring.power_drift(&constants, t, 1, &q, &mu)?;
+        let drifted = FreeSites::<N>::step(At::new(&ring, &constants, t), (&q, &mu, &()), &())?;
         let f = ring.power_inverse_legendre(&constants, t, &q, &mu, 0.0)?;
         let (image, momenta, coadjoint) = (ring.act_on_sites(&f, &q), ring.momenta_of(&q, &p), ring.coadjoint_of_sites(&f, &mu));
         let (matrices, projected) = (<Ring<N> as Power<N>>::matrices_of(&mu), ring.projected(&q, &p));
@@ -132,37 +133,41 @@ proptest! {
         prop_assert_eq!(constants.part(-0.5), -0.5 * H);
         prop_assert_eq!(<Ring<N> as Power<N>>::constants_of_sites(&ring.step_constants(H)?).part(1.0), H);
         let start = ring.power_kick(t, &q, constants.part(-0.5));
-        let (next, momenta, kick) = ring.power_steps_of_second_order(&constants, t, 1, &q, &mu, &start)?;
+        let (at, later) = (At::new(&ring, &constants, t), At::new(&ring, &constants, t + H));
+        let (next, momenta, kick) = SitesOfSecondOrder::<N>::step(at, (&q, &mu, &start), &())?;
         let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);
         let (mut image, mut moved) = ([Vector3::x(); N], [Vector3::x(); N]);
         prop_assert!(ring.drift_into(&constants, t, &q, &mu, Some(&start), &mut image, &mut moved).is_ok());
-        let (mut there, mut pushed) = (q, mu);
-        ring.drift_in_place(&constants, t, &mut there, &mut pushed, Some(&start))?;
-        prop_assert_eq!((there, pushed), (image, moved));
-        prop_assert_eq!((image, moved), ring.power_drift(&constants, t, 1, &q, &kicked)?);
+        prop_assert_eq!((image, moved, ()), FreeSites::<N>::step(at, (&q, &kicked, &()), &())?);
         prop_assert_eq!(next, image);
         prop_assert_eq!(kick, ring.power_kick(t + H, &next, constants.part(-0.5)));
         prop_assert!(apart(&momenta, &std::array::from_fn(|i| moved[i] + kick[i])) < 1e-15);
         let (mut image, mut moved, mut left) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::x(); N]);
-        ring.power_step_into(&constants, t, (&q, &mu, Some(&start)), -0.5, (&mut image, &mut moved), &mut left)?;
+        SitesOfSecondOrder::<N>::step_into(at, (&q, &mu, &start), &(), (&mut image, &mut moved, &mut left))?;
         prop_assert_eq!((image, moved, left), (next, momenta, kick));
         let f = ring.power_inverse_legendre(&constants, t, &q, &mu, -0.5)?;
         prop_assert!(apart(&ring.act_on_sites(&f, &q), &next) < 1e-13);
         prop_assert!(apart(&ring.power_legendre(H, t, &q, &f, -0.5), &mu) < 1e-12);
         prop_assert!(apart(&ring.power_legendre_next(H, t, &q, &f, -0.5), &momenta) < 1e-12);
-        let (first, late, ()) = ring.power_steps_of_first_order(&constants, t, 1, &q, &mu)?;
-        let (image, moved) = ring.power_drift(&constants, t, 1, &q, &mu)?;
+        let (first, late, ()) = SitesOfFirstOrder::<N>::step(at, (&q, &mu, &()), &())?;
+        let (image, moved, ()) = FreeSites::<N>::step(at, (&q, &mu, &()), &())?;
+        let (mut there, mut pushed) = (q, mu);
+        FreeSites::<N>::step_into(at, (&q, &mu, &()), &(), (&mut there, &mut pushed, &mut ()))?;
+        prop_assert_eq!((there, pushed), (image, moved));
+        SitesOfFirstOrder::<N>::step_into(at, (&q, &mu, &()), &(), (&mut there, &mut pushed, &mut ()))?;
+        prop_assert_eq!((there, pushed), (first, late));
         let whole = ring.power_kick(t + H, &image, constants.part(-1.0));
         prop_assert_eq!(first, image);
         // several at once are one after the other, but for the rounding of the time
         let near = |a: (&Spins, &Spins), b: (&Spins, &Spins)| apart(a.0, b.0).max(apart(a.1, b.1)) < 1e-14;
-        let again = ring.power_steps_of_first_order(&constants, t + H, 1, &first, &late)?;
-        let both = ring.power_steps_of_first_order(&constants, t, 2, &q, &mu)?;
+        let again = SitesOfFirstOrder::<N>::step(later, (&first, &late, &()), &())?;
+        let both = SitesOfFirstOrder::<N>::steps(at, H, 2, (&q, &mu, &()), &())?;
         prop_assert!(near((&both.0, &both.1), (&again.0, &again.1)));
-        let again = ring.power_steps_of_second_order(&constants, t + H, 1, &next, &momenta, &kick)?;
-        let both = ring.power_steps_of_second_order(&constants, t, 2, &q, &mu, &start)?;
+        let again = SitesOfSecondOrder::<N>::step(later, (&next, &momenta, &kick), &())?;
+        let both = SitesOfSecondOrder::<N>::steps(at, H, 2, (&q, &mu, &start), &())?;
         prop_assert!(near((&both.0, &both.1), (&again.0, &again.1)) && apart(&both.2, &again.2) < 1e-14);
-        let (again, both) = (ring.power_drift(&constants, t + H, 1, &image, &moved)?, ring.power_drift(&constants, t, 2, &q, &mu)?);
+        let again = FreeSites::<N>::step(later, (&image, &moved, &()), &())?;
+        let both = FreeSites::<N>::steps(at, H, 2, (&q, &mu, &()), &())?;
         prop_assert!(near((&both.0, &both.1), (&again.0, &again.1)));
         prop_assert!(apart(&late, &std::array::from_fn(|i| moved[i] + whole[i])) < 1e-15);
         // p = N × q has J(q, p) = N, as N is across q

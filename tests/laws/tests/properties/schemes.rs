@@ -3,7 +3,7 @@
 use crate::arbitrary::{attitude, cases, definite, matrix, vector};
 use crate::bodies::{H, damped_bodies, tops};
 use clebsch::__private::{
-    FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Stepping, Substep, VariedSubstep,
+    At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Stepping, Substep, VariedSubstep,
 };
 use clebsch::{Clebsch, Error, Variational};
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
@@ -79,21 +79,22 @@ proptest! {
         let held = <SixthOrder as Scheme<SixthOrderTop>>::held(&r, &mu);
         prop_assert_eq!(SixthOrderTop::held(&r, &mu), held);
         prop_assert_eq!(<SixthOrder as Scheme<SixthOrderTop>>::momentum(&r, &held), SixthOrderTop::momentum_held(&r, &held));
-        let left = SixthOrder::left(&top, &constants, 0.0, &r, &mu);
+        let at = At::new(&top, &constants, 0.0);
+        let left = SixthOrder::left(at, &r, &mu);
         prop_assert_eq!(top.impulse(&same, 0.0, &r, &mu), left);
-        prop_assert_eq!(SixthOrder::left_after(&top, &constants, 0.0, &r, &mu, &left), left);
-        let one = SixthOrder::step(&top, &constants, 0.0, (&r, &held, &left), &())?;
+        prop_assert_eq!(SixthOrder::left_after(at, &r, &mu, &left), left);
+        let one = SixthOrder::step(at, (&r, &held, &left), &())?;
         prop_assert_eq!(Stepping::step(&top, &same, 0.0, &r, &held, &left, &())?, one);
         prop_assert_eq!((one.0, one.1), stepper.step(&stepper.state(r, mu)?)?.into_parts());
         let mut place = (r, held, left);
         let into = (&mut place.0, &mut place.1, &mut place.2);
-        SixthOrder::step_into(&top, &constants, 0.0, (&r, &held, &left), &(), into)?;
+        SixthOrder::step_into(at, (&r, &held, &left), &(), into)?;
         prop_assert_eq!(place, one);
-        let two = SixthOrder::step(&top, &constants, H, (&one.0, &one.1, &one.2), &())?;
-        prop_assert_eq!(SixthOrder::steps(&top, &constants, (0.0, H), 2, (&r, &held, &left), &())?, two);
-        let symmetric = SixthOrder::step_symmetric(&top, &constants, 0.0, &r, &p)?;
+        let two = SixthOrder::step(At::new(&top, &constants, H), (&one.0, &one.1, &one.2), &())?;
+        prop_assert_eq!(SixthOrder::steps(at, H, 2, (&r, &held, &left), &())?, two);
+        let symmetric = SixthOrder::step_symmetric(at, &r, &p)?;
         prop_assert_eq!(Stepping::step_symmetric(&top, &same, 0.0, &r, &p)?, symmetric);
-        let f = SixthOrder::inverse_legendre(&top, &constants, 0.0, &r, &mu)?;
+        let f = SixthOrder::inverse_legendre(at, &r, &mu)?;
         assert_near(&top.legendre(H, 0.0, &r, &f), &mu, 1e-10, "F⁻ℓd");
         // kicks are linear in the step size: what is left for a step that is twice as long
         let twice = <<WatchedTop as Clebsch>::Scheme as Scheme<WatchedTop>>::scaled(mu, 2.0);

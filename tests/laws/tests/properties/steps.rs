@@ -2,7 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, matrix, unit, vector};
 use crate::bodies::{H, damped_bodies, generic_top, particles, pendulums, satellites, staggered_tops, tops};
-use clebsch::__private::{Scheme, Stepping};
+use clebsch::__private::{At, Scheme, Stepping};
 use clebsch::{Clebsch, Clock, Conserved, Conserves, Error, F64x8, Mask, Scalar, Space, Time};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::split_top::SplitTop;
@@ -40,13 +40,13 @@ proptest! {
         prop_assert_eq!(stepper.trajectory(start).nth(steps), Some(Ok(state)));
         let constants = top.step_constants(H)?;
         let impulse = top.impulse(&constants, 0.0, &r, &mu);
-        let (q, n, _) = SchemeOf::steps(&top, &constants, (0.0, H), steps, (&r, &mu, &impulse), &())?;
+        let (q, n, _) = SchemeOf::steps(At::new(&top, &constants, 0.0), H, steps, (&r, &mu, &impulse), &())?;
         prop_assert_eq!((q, n), state.into_parts());
         let (q, n, last) = top.step(&constants, 0.0, &r, &mu, &impulse, &())?;
         prop_assert_eq!((q, n), stepper.step(&start)?.into_parts());
         // the kick at the end is that at the start of the next step
         assert_near(&last, &top.impulse(&constants, H, &q, &n), NEAR, "the shared kick");
-        prop_assert_eq!(SchemeOf::left_after(&top, &constants, H, &q, &n, &last), top.impulse(&constants, H, &q, &n));
+        prop_assert_eq!(SchemeOf::left_after(At::new(&top, &constants, H), &q, &n, &last), top.impulse(&constants, H, &q, &n));
         let (state, made) = stepper.step_each(&start);
         prop_assert_eq!((state, made, stepper.failure(&start, 0)), (stepper.step(&start)?, true, None));
         prop_assert_eq!(Space::<f64>::lane(&r, 0), start.lane(0).0);

@@ -3,7 +3,7 @@
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::Stepping;
 use clebsch::__private::{
-    Blocks, InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection,
+    At, Blocks, InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection,
     embedded, hat, invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
     orientation_of_uniform, projection, push, shifted, skew, skew_components, skew_outer, skew_times, tangent,
     turn_freely, turn_great_circle, turned_in_plane,
@@ -250,7 +250,7 @@ proptest! {
         let constants = integrator.stepper().system().step_constants(0.05)?;
         let (mut x, mut held, mut gradient) = (q, w, w);
         let place = (&q, &Neumann::held(&q, &mu), integrator.stepper().system().impulse(&constants, 0.0, &q, &mu));
-        <Neumann as Clebsch>::Scheme::step_into(&point, &constants, 0.0, (place.0, place.1, &place.2), &(), (&mut x, &mut held, &mut gradient))?;
+        <Neumann as Clebsch>::Scheme::step_into(At::new(&point, &constants, 0.0), (place.0, place.1, &place.2), &(), (&mut x, &mut held, &mut gradient))?;
         prop_assert_eq!(&point.step(&constants, 0.0, place.0, place.1, &place.2, &())?, &(x, held, gradient));
         let stepped = stepper.step(&start)?;
         prop_assert_eq!(&x, stepped.configuration());

@@ -1,0 +1,232 @@
+//! What all schemes have in common that are sequences of the parts of a step.
+
+use super::substep::{RestsOf, inverse_legendre, symmetric};
+use super::{At, Before, Pair, Parted, Scheme, one_by_one};
+use crate::parts::{Mu, Parts, Q, Substep};
+use crate::summation::Sums;
+use crate::{Clebsch, Error, Method, Space};
+use core::marker::PhantomData;
+
+/// The order in which a step calls the parts of a system, with one set of constants, and with states that hold N itself.
+pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
+    /// What one step leaves to the next, beside the rests of compensated sums.
+    type Carry: Carry<S, M>;
+
+    /// As [`Scheme::step`].
+    ///
+    /// # Errors
+    /// Those of the solve.
+    fn step(at: At<'_, S, M>, state: From<'_, S, M, Self::Carry>, u: &S::Input) -> To<S, M, Self::Carry>;
+
+    /// As [`Scheme::steps`].
+    ///
+    /// # Errors
+    /// Those of a step.
+    #[inline]
+    fn steps(
+        at: At<'_, S, M>,
+        h: S::Scalar,
+        steps: usize,
+        state: From<'_, S, M, Self::Carry>,
+        u: &S::Input,
+    ) -> To<S, M, Self::Carry> {
+        one_by_one::<S, InSequence<Self>, M>(at, h, steps, state, u)
+    }
+
+    /// As [`Scheme::step_symmetric`].
+    ///
+    /// # Errors
+    /// Those of the solve.
+    #[inline]
+    fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        symmetric::<S, M, 0>(at, (*q, *p))
+    }
+
+    /// As [`Scheme::inverse_legendre`].
+    ///
+    /// # Errors
+    /// Those of the solve.
+    #[inline]
+    fn inverse_legendre(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error> {
+        inverse_legendre::<S, M, 0>(at, q, mu)
+    }
+}
+
+/// The scheme with the sequence P.
+#[derive(Clone, Copy, Debug)]
+pub struct InSequence<P>(PhantomData<P>);
+
+impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSequence<P> {
+    type Held = S::Momentum;
+    type Left = LeftBy<S, M, P::Carry>;
+    type Constants = M::Constants;
+
+    fn constants(system: &S, h: S::Scalar) -> Result<M::Constants, Error> {
+        M::constants(system, h)
+    }
+
+    #[inline(always)]
+    fn whole(constants: &M::Constants) -> &M::Constants {
+        constants
+    }
+
+    #[inline(always)]
+    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
+        *mu
+    }
+
+    #[inline(always)]
+    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
+        *held
+    }
+
+    #[inline]
+    fn left(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left {
+        S::Sums::joined(P::Carry::first(at, q, mu), (Space::origin(), Space::origin()))
+    }
+
+    #[inline]
+    fn left_after(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
+        let (_, rests) = parted::<S, M, P::Carry>(left);
+        S::Sums::joined(P::Carry::first(at, q, mu), rests)
+    }
+
+    #[inline(always)]
+    fn scaled(left: Self::Left, ratio: S::Scalar) -> Self::Left {
+        let (impulse, rests) = parted::<S, M, P::Carry>(&left);
+        S::Sums::joined(P::Carry::scaled(*impulse, ratio), rests)
+    }
+
+    #[inline(always)]
+    fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Result<Parted<S, Self, M>, Error> {
+        if S::IS_SHORT { P::step(at, state, u) } else { called::<S, M, P>(at, state, u) }
+    }
+
+    #[inline]
+    fn steps(
+        at: At<'_, S, M>,
+        h: S::Scalar,
+        steps: usize,
+        state: Before<'_, S, Self, M>,
+        u: &S::Input,
+    ) -> Result<Parted<S, Self, M>, Error> {
+        P::steps(at, h, steps, state, u)
+    }
+
+    #[inline]
+    fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        if S::HAS_COVECTORS { P::step_symmetric(at, q, p) } else { Err(Error::NoCovector) }
+    }
+
+    #[inline]
+    fn inverse_legendre(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error> {
+        P::inverse_legendre(at, q, mu)
+    }
+}
+
+/// A long step, which the compiler may call.
+#[inline]
+fn called<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>>(
+    at: At<'_, S, M>,
+    state: From<'_, S, M, P::Carry>,
+    u: &S::Input,
+) -> To<S, M, P::Carry> {
+    P::step(at, state, u)
+}
+
+/// What one step leaves to the next: an impulse, and the rests of compensated sums.
+pub(super) type LeftBy<S, M, C> =
+    <<S as Parts<M>>::Sums as Sums>::Left<<S as Clebsch>::Scalar, <C as Carry<S, M>>::Impulse, Q<S>, Mu<S>>;
+
+/// The state before a step: q, N, and what the last step has left.
+pub(super) type From<'a, S, M, C> = (&'a Q<S>, &'a Mu<S>, &'a LeftBy<S, M, C>);
+
+/// The state after a step.
+pub(super) type To<S, M, C> = Result<(Q<S>, Mu<S>, LeftBy<S, M, C>), Error>;
+
+/// The impulse and the rests of what a step has left.
+#[inline(always)]
+pub(super) fn parted<S: Parts<M>, M: Method<S>, C: Carry<S, M>>(
+    left: &LeftBy<S, M, C>,
+) -> (&C::Impulse, RestsOf<S, M>) {
+    S::Sums::parted(left)
+}
+
+/// What the end of one step and the start of the next have in common.
+pub trait Carry<S: Parts<M>, M: Method<S>> {
+    /// What one step leaves to the next.
+    type Impulse: Space<S::Scalar>;
+
+    /// The impulse that the first step takes.
+    fn first(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Impulse;
+
+    /// The impulse of a step that is `ratio` times as long.
+    #[inline(always)]
+    fn scaled(impulse: Self::Impulse, _ratio: S::Scalar) -> Self::Impulse {
+        impulse
+    }
+}
+
+/// How the kick at the end of one step and that at the start of the next are made.
+pub trait CarryKick<S: Parts<M>, M: Method<S>>: Carry<S, M> {
+    /// The impulse of this kick.
+    fn impulse(kick: Option<Mu<S>>) -> Self::Impulse;
+
+    /// The kick at the start of a step, where the last one has left this impulse.
+    fn kick(impulse: &Self::Impulse, anew: impl FnOnce() -> Option<Mu<S>>) -> Option<Mu<S>>;
+}
+
+/// The kick at the end of one step is that at the start of the next.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared;
+
+impl<S: Substep<0, M>, M: Method<S>> Carry<S, M> for Shared {
+    type Impulse = S::Momentum;
+
+    #[inline(always)]
+    fn first(at: At<'_, S, M>, q: &Q<S>, _: &Mu<S>) -> Mu<S> {
+        <Self as CarryKick<S, M>>::impulse(at.system.start_kick(at.constants, at.t, q))
+    }
+
+    // kicks are linear in the step size
+    #[inline(always)]
+    fn scaled(impulse: Mu<S>, ratio: S::Scalar) -> Mu<S> {
+        impulse.zip_map(&impulse, |kick, _| kick * ratio)
+    }
+}
+
+impl<S: Substep<0, M>, M: Method<S>> CarryKick<S, M> for Shared {
+    #[inline(always)]
+    fn impulse(kick: Option<Mu<S>>) -> Mu<S> {
+        match kick {
+            Some(kick) => kick,
+            None => Mu::<S>::origin(),
+        }
+    }
+
+    #[inline(always)]
+    fn kick(impulse: &Mu<S>, _: impl FnOnce() -> Option<Mu<S>>) -> Option<Mu<S>> {
+        Some(*impulse)
+    }
+}
+
+/// Each step makes its own kicks.
+#[derive(Clone, Copy, Debug)]
+pub struct Apart;
+
+impl<S: Parts<M>, M: Method<S>> Carry<S, M> for Apart {
+    type Impulse = ();
+
+    #[inline(always)]
+    fn first(_: At<'_, S, M>, _: &Q<S>, _: &Mu<S>) {}
+}
+
+impl<S: Parts<M>, M: Method<S>> CarryKick<S, M> for Apart {
+    #[inline(always)]
+    fn impulse(_: Option<Mu<S>>) {}
+
+    #[inline(always)]
+    fn kick((): &(), anew: impl FnOnce() -> Option<Mu<S>>) -> Option<Mu<S>> {
+        anew()
+    }
+}
