@@ -8,55 +8,45 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `stage` | what the caller keeps for each step |
-//! | `attempt` | approaches the target in one way after another |
+//! | `attempt` | approaches the target in one way after another, and varies inputs where by symmetry no first derivative leads there |
 //! | `newton` | iterates, and goes downhill where iterations do not contract |
 //! | `iterate` | what is known between sweeps, and decided by it |
 //! | `sweep` | linearises and eliminates backward |
-//! | `quadratic` | the model of one step, and its elimination |
-//! | `pivot` | the U×U linear algebra of one input |
+//! | `quadratic` | the model of one step, its elimination, and the U×U linear algebra of one input |
 //! | `gramian` | the D×D linear algebra of the target |
 //! | `end` | the gap to the target and the changes that close it |
 //! | `barrier` | bounds: slacks, multipliers and their sequence of barriers |
-//! | `rollout` | follows corrected inputs forward |
-//! | `search` | how much of a correction is made |
-//! | `escape` | leaves saddles |
-//! | `stir` | varies inputs where by symmetry no first derivative leads to the target |
-//! | `free_time` | the step size of least price |
-//! | `optimum` | what a problem is answered with |
+//! | `search` | follows corrected inputs forward: how much of a correction is made, and how saddles are left |
+//! | `optimum` | what the caller stores for each step, and what a problem is answered with |
 
 mod attempt;
 mod barrier;
 mod end;
-mod escape;
-mod free_time;
 mod gramian;
 mod iterate;
 mod newton;
 mod optimum;
-mod pivot;
 mod quadratic;
-mod rollout;
 mod search;
-mod stage;
-mod stir;
 mod sweep;
 
-pub use optimum::Optimum;
-pub use stage::Stage;
+pub use optimum::{Optimum, Stage};
 
+use crate::fields::getters;
+use crate::newton::{Bracket, Sample, Trial};
 use crate::stepper::check_time;
 use crate::{Controlled, Error, Real, Scalar, Space};
+use core::ops::RangeInclusive;
 use end::Goal;
 use nalgebra::SVector;
 use num_traits::Zero;
-use sweep::Problem;
+use sweep::{Plan, Problem};
 
 /// A system whose inputs are chosen, with its step size. Made by [`Controlled::control`].
 #[derive(Clone, Debug)]
 pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     system: S,
-    h: S::Scalar,
+    step_size: S::Scalar,
     constants: S::Constants,
     time: S::Scalar,
 }
@@ -88,7 +78,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             return Err(Error::StepSize { value: h.to_f64() });
         }
         let constants = system.prepare(h)?;
-        Ok(Self { system, h, constants, time: S::Scalar::zero() })
+        Ok(Self { system, step_size: h, constants, time: S::Scalar::zero() })
     }
 
     /// The same with plans that start at the time `t` instead of 0.
@@ -100,16 +90,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Ok(Self { time: t, ..self })
     }
 
-    /// The system.
-    #[inline]
-    pub fn system(&self) -> &S {
-        &self.system
-    }
+    getters! {
+        /// The system.
+        ref system: S;
 
-    /// The step size h.
-    #[inline]
-    pub fn step_size(&self) -> S::Scalar {
-        self.h
+        /// The step size h.
+        copy step_size: S::Scalar;
     }
 
     /// The step from `x` without input, as storage: a plan of N steps has N of them.
@@ -156,19 +142,54 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let solved = self.problem(start, &target, self.h, &self.constants).attempt(plan)?;
-        Ok(Optimum::new(plan, solved, self.h))
+        let solved = self.plan(start, &target, self.step_size, &self.constants, plan).attempt()?;
+        Ok(Optimum { stages: plan, ..solved })
     }
 
-    /// The problem with the step size `h`, for which there are these constants.
-    fn problem<'a>(
+    /// As [`solve`](Self::solve), with the step size in `steps` at which the least price is least, found from that of this control on:
+    /// [`Optimum::step_size`]. At a limit the price may fall beyond it.
+    ///
+    /// By the envelope theorem the least price V of N steps changes with the step size as the Lagrangian does at the solution,
+    /// ```text
+    /// dV/dh = Σ d/dh (ℓ + p·f + z·a) + N ∂φ/∂t
+    /// ```
+    /// the multipliers kept. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent,
+    /// *Algorithms for Minimization without Derivatives*, 1973, chapter 4); each plan is the guess of the next.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`] for limits that are not positive numbers in order, [`Error::NoExtremal`], and those of [`solve`](Self::solve).
+    pub fn solve_free_time<'p>(
+        &self,
+        start: &S::Place,
+        target: Target<S::Place>,
+        steps: RangeInclusive<S::Scalar>,
+        plan: &'p mut [Stage<S, D, U, C>],
+    ) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        let bracket = Bracket::within(&steps)?;
+        self.check(start, &target, plan)?;
+        let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
+        let trial = |h| {
+            let constants = self.system.prepare(h)?;
+            let mut plan = self.plan(start, &target, h, &constants, plan);
+            let answer = plan.attempt()?;
+            Ok(Trial { sample: plan.slope(&answer.end)?, sweeps: answer.iterations, answer })
+        };
+        let (solved, iterations) = bracket.critical(self.step_size, accuracy, true, trial)?;
+        Ok(Optimum { stages: plan, iterations, ..solved })
+    }
+
+    /// A plan for the step size `h`, for which there are these constants.
+    fn plan<'a>(
         &'a self,
         start: &'a S::Place,
         target: &'a Target<S::Place>,
         h: S::Scalar,
         constants: &'a S::Constants,
-    ) -> Problem<'a, S, D, U, C> {
-        Problem { system: &self.system, constants, h, time: self.time, start, goal: Goal::of(&self.system, target) }
+        stages: &'a mut [Stage<S, D, U, C>],
+    ) -> Plan<'a, S, D, U, C> {
+        let goal = Goal::of(&self.system, target);
+        let problem = Problem { system: &self.system, constants, h, time: self.time, start, goal };
+        Plan { problem, stages, sweeps: 0 }
     }
 
     /// Start, target and guess are finite and where places are.
@@ -185,5 +206,31 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         } else {
             Err(Error::NotFinite { name: "the guessed inputs" })
         }
+    }
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+    /// dV/dh of a solution.
+    fn slope(&self, last: &S::Place) -> Result<Sample<T>, Error> {
+        let Problem { system, constants, h, .. } = self.problem;
+        let steps = self.stages.len();
+        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), last);
+        let mut slope = endpoint.by_time * T::from_f64(steps as f64);
+        let mut size = slope.abs();
+        for (index, stage) in self.stages.iter().enumerate() {
+            let t = self.problem.time_after(index);
+            let k = T::from_f64(index as f64);
+            let mut part = system.price_of_time(constants, t, k, &stage.place, &stage.input, &stage.next_costate)?;
+            if C > 0 && index > 0 {
+                // z·∂a/∂t, by central differences: bounds that depend on the time are rare, and the zero of dV/dh needs few digits
+                let step = T::EPSILON.powf(T::from_ratio(1, 3)) * (t.abs() + h);
+                let after = system.bounds(t + step, &stage.place, &stage.input);
+                let before = system.bounds(t - step, &stage.place, &stage.input);
+                part += k * (stage.multipliers.dot(&(after - before)) / (step + step));
+            }
+            slope += part;
+            size += part.abs();
+        }
+        Ok(Sample { h, slope, size })
     }
 }

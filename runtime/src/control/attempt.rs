@@ -7,85 +7,109 @@
 //! Sources: Wächter and Biegler, *Failure of global convergence for a class of interior point methods for nonlinear programming* (2000);
 //! Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
 
-use super::barrier::Barrier;
-use super::iterate::Iterate;
-use super::newton::CriticalPlan;
-use super::sweep::Problem;
-use super::{Stage, Target};
+use super::sweep::{Plan, PlanSummary, Settings};
+use super::{Optimum, Stage, Target};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::SVector;
-use num_traits::Zero;
-
-/// How the target is approached.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Approach {
-    /// Corrections close the gap.
-    Close,
-    /// The gap is priced, and closed where little of it is left.
-    Price,
-}
 
 /// Variations of the inputs from which the target is approached.
 const VARIATIONS: u32 = 3;
+/// Doublings of the amplitudes of a variation that are tried.
+const SIZES: usize = 6;
 
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// The critical plan near the guess that the stages hold; without their multipliers where those mislead, and from further away where
     /// there is none.
     ///
     /// # Errors
     /// Those of [`newton`](Self::newton), of the attempt that came nearest. The stages hold the inputs of the guess then.
-    pub fn attempt(&self, plan: &mut [Stage<S, D, U, C>]) -> Result<CriticalPlan<S, D, U, C>, Error> {
-        plan.iter_mut().for_each(|stage| stage.guess = stage.input);
-        let is_warm = plan.iter().any(|stage| stage.next_costate.max_abs() > S::Scalar::zero());
-        let mut sweeps = 0;
-        let mut solved = self.newton(plan, Approach::Close, &mut sweeps);
-        if is_warm {
-            solved = self.unless_found(solved, plan, Approach::Close, 0, &mut sweeps);
-        }
-        if !matches!(self.goal.target, Target::Free) {
-            for variation in 0..=VARIATIONS {
-                solved = self.unless_found(solved, plan, Approach::Price, variation, &mut sweeps);
-            }
+    pub fn attempt<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
+        let is_warm = self.stages.iter().any(|stage| stage.next_costate.max_abs() > T::zero());
+        let variations = if matches!(self.problem.goal.target, Target::Free) { 0 } else { 1 + VARIATIONS };
+        let cold = is_warm.then_some((false, 0));
+        let mut solved = self.newton(false);
+        for (is_priced, variation) in cold.into_iter().chain((0..variations).map(|variation| (true, variation))) {
+            let error = match solved {
+                Err(error) if may_be_found(&error) => error,
+                _ => break,
+            };
+            self.stages.iter_mut().for_each(Stage::forget);
+            solved = match self.vary(variation) {
+                Ok(()) => self.newton(is_priced).map_err(|next| nearer(error, next)),
+                Err(error) => Err(error),
+            };
         }
         if solved.is_err() {
-            plan.iter_mut().for_each(Stage::forget);
+            self.stages.iter_mut().for_each(Stage::forget);
         }
         solved
     }
 
-    /// What was found, or else what the next attempt finds from the guess. An error is that of the attempt that came nearer.
-    fn unless_found(
-        &self,
-        found: Result<CriticalPlan<S, D, U, C>, Error>,
-        plan: &mut [Stage<S, D, U, C>],
-        approach: Approach,
-        variation: u32,
-        sweeps: &mut u32,
-    ) -> Result<CriticalPlan<S, D, U, C>, Error> {
-        let error = match found {
-            Err(error) if may_be_found(&error) => error,
-            _ => return found,
-        };
-        plan.iter_mut().for_each(Stage::forget);
-        if variation > 0 {
-            self.vary(plan, variation)?;
-        }
-        self.newton(plan, approach, sweeps).map_err(|next| nearer(error, next))
-    }
-
-    /// Varies the inputs of the guess so that they end nearer to the target.
+    /// Varies the inputs of the guess so that they end nearer to the target; those of variation 0 stay as they are.
     ///
     /// # Errors
     /// Those of a step.
     #[cold]
-    fn vary(&self, plan: &mut [Stage<S, D, U, C>], variation: u32) -> Result<(), Error> {
-        let last = self.follow(plan)?;
-        let end = self.goal.end(self.system, &last);
-        let now = Iterate::new(last, SVector::from_element(S::Scalar::zero()), Some(Barrier::none()), end.distance);
-        let summary = self.eliminate(plan, &now.last, &end, &now.settings)?;
-        self.stir(plan, &summary, end.lack.max_abs(), variation);
+    fn vary(&mut self, variation: u32) -> Result<(), Error> {
+        if variation > 0 {
+            let last = self.follow()?;
+            let end = self.problem.end(&last);
+            let summary = self.eliminate(&last, &end, &Settings::new(Space::origin(), T::zero()))?;
+            self.stir(&summary, end.lack.max_abs(), variation);
+        }
         Ok(())
     }
+
+    /// The way out of symmetry, where no first derivative leads to the target: adds the pattern of inputs, of several sizes and turning either
+    /// way, that ends nearest to the target. Later attempts turn more often.
+    #[cold]
+    pub fn stir(&mut self, summary: &PlanSummary<T, D, U>, far: T, attempt: u32) {
+        let steps = self.stages.len();
+        let part = far * T::from_ratio(1, 4);
+        let turns = T::from_f64(f64::from(attempt));
+        let mut best: Option<(SVector<T, U>, T, T)> = None;
+        for turns in [turns, -turns] {
+            let mut amplitudes = summary.reach.map(|reach| if reach > T::zero() { part / reach } else { T::zero() });
+            for _ in 0..SIZES {
+                if let Some(distance) = self.distance(&amplitudes, turns)
+                    && best.is_none_or(|(.., least)| distance < least)
+                {
+                    best = Some((amplitudes, turns, distance));
+                }
+                amplitudes += amplitudes;
+            }
+        }
+        if let Some((amplitudes, turns, _)) = best {
+            for (index, stage) in self.stages.iter_mut().enumerate() {
+                stage.input += pattern(&amplitudes, turns, index, steps);
+            }
+        }
+    }
+
+    /// The distance to the target where a pattern is added.
+    fn distance(&self, amplitudes: &SVector<T, U>, turns: T) -> Option<T> {
+        let problem = &self.problem;
+        let mut x = *problem.start;
+        for (index, stage) in self.stages.iter().enumerate() {
+            let input = stage.input + pattern(amplitudes, turns, index, self.stages.len());
+            x = problem.follow(index, &x, &input).ok()?;
+        }
+        let distance = problem.end(&x).distance;
+        distance.is_finite().then_some(distance)
+    }
+}
+
+/// The inputs in the middle of a step, that turn so often in the whole plan: one way and, half as far and twice as fast, the other.
+fn pattern<T: Real, const U: usize>(amplitudes: &SVector<T, U>, turns: T, index: usize, steps: usize) -> SVector<T, U> {
+    let half = T::from_ratio(1, 2);
+    let part = (T::from_f64(index as f64) + half) / T::from_f64(steps as f64);
+    let angle = T::from_f64(2.0) * T::PI * part * turns;
+    SVector::from_fn(|j, _| {
+        let phase = T::PI * half * T::from_f64(j as f64);
+        let back = angle + angle - phase + T::from_f64(1.0);
+        amplitudes[j] * ((angle + phase).cos() + half * back.cos())
+    })
 }
 
 /// Whether a search failed that another may end better.

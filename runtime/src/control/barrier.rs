@@ -7,111 +7,115 @@
 //! sequence of μ; Pavlov, Shames and Manzie, *Interior point differential dynamic programming* (2021), for slacks in roll-outs.
 
 use super::Stage;
-use super::sweep::Problem;
+use super::sweep::{Plan, Problem};
 use crate::space::larger;
-use crate::{Controlled, Real, Scalar};
+use crate::{Controlled, Error, Real};
 use nalgebra::SVector;
-use num_traits::{One, Zero};
 
-/// The price μ of e-fold smaller slacks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Barrier<T> {
-    pub weight: T,
-}
-
-/// What μ is first and last, all bounds together, relative to the price.
+/// The part of a slack that one step may take.
+pub(super) const TO_BOUNDARY: f64 = 0.995;
+/// What μ is first, all bounds together, relative to the price.
 const FIRST: f64 = 0.1;
-/// The last is this power of ε.
+/// What μ is last: this power of ε.
 const LAST: (i64, i64) = (3, 4);
 
-impl<T: Real> Barrier<T> {
-    /// Without any.
-    pub fn none() -> Self {
-        Self { weight: T::zero() }
-    }
+/// The first μ, for so many bounds and a price of this size: the larger of what the plan costs and of what it costs to keep the bounds that
+/// it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
+pub(super) fn first<T: Real>(bounds: T, price: T) -> T {
+    T::from_f64(FIRST) * price / bounds
+}
 
-    /// The first of a sequence, for so many bounds and a price of this size: the larger of what the plan costs and of what it costs to keep
-    /// the bounds that it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
-    pub fn first(bounds: T, price: T) -> Self {
-        Self { weight: T::from_f64(FIRST) * price / bounds }
-    }
+/// The last μ.
+pub(super) fn last<T: Real>(bounds: T, price: T) -> T {
+    T::EPSILON.powf(T::from_ratio(LAST.0, LAST.1)) * price / bounds
+}
 
-    /// The last μ.
-    pub fn last(bounds: T, price: T) -> Self {
-        Self { weight: T::EPSILON.powf(T::from_ratio(LAST.0, LAST.1)) * price / bounds }
-    }
+/// The next μ: μ̂ ↦ min(μ̂/5, μ̂^(3/2)) relative to the price.
+pub(super) fn next<T: Real>(barrier: T, bounds: T, price: T) -> T {
+    let relative = barrier * bounds / price;
+    let fifth = relative * T::from_ratio(1, 5);
+    let power = relative * relative.sqrt();
+    larger((if power < fifth { power } else { fifth }) * price / bounds, last(bounds, price))
+}
 
-    /// The next: μ̂ ↦ min(μ̂/5, μ̂^(3/2)) relative to the price.
-    pub fn next(self, bounds: T, price: T) -> Self {
-        let relative = self.weight * bounds / price;
-        let fifth = relative * T::from_ratio(1, 5);
-        let power = relative * relative.sqrt();
-        let next = if power < fifth { power } else { fifth };
-        Self { weight: larger(next * price / bounds, Self::last(bounds, price).weight) }
-    }
-
-    /// ζ = μ/s + Σ(a + s) and Σ = z/s: the force and the stiffness of the bounds of a stage.
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
+    /// ζ = μ/s + Σ(a + s) and Σ = z/s: the force and the stiffness of the bounds.
     #[inline]
-    pub fn condense<S, const D: usize, const U: usize, const C: usize>(
-        &self,
-        stage: &Stage<S, D, U, C>,
-    ) -> (SVector<T, C>, SVector<T, C>)
-    where
-        S: Controlled<D, U, C, Scalar = T>,
-    {
-        let stiffness = SVector::<T, C>::from_fn(|i, _| stage.multipliers[i] / stage.slack[i]);
-        let force = SVector::from_fn(|i, _| self.weight / stage.slack[i] + stiffness[i] * stage.excess[i]);
-        (force, stiffness)
+    pub(super) fn condensed(&self, barrier: T) -> (SVector<T, C>, SVector<T, C>) {
+        let stiffness = SVector::<T, C>::from_fn(|i, _| self.multipliers[i] / self.slack[i]);
+        (SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]), stiffness)
     }
 
-    /// z after a step of this fraction that moved the slack from `slack` to `moved`: kept positive and near μ/s.
-    #[inline]
-    pub fn multiplier(&self, z: T, slack: T, moved: T, fraction: T) -> T {
-        let target = self.weight / slack;
-        let next = z + fraction * (target - z) - z / slack * (moved - slack);
-        let (wide, kept) = (T::EPSILON.sqrt().recip(), T::from_f64(1.0 - super::rollout::TO_BOUNDARY));
-        let central = self.weight / moved;
-        let least = larger(kept * z, central / wide);
-        let most = central * wide;
-        if next < least {
-            least
-        } else if next > most {
-            most
-        } else {
-            next
+    /// Σ a/s of the bounds that are violated, and the weights 1/s of those.
+    pub(super) fn violation(&self) -> (T, SVector<T, C>) {
+        let mut sum = T::zero();
+        let weights = SVector::from_fn(|i, _| {
+            let violation = self.excess[i] - self.slack[i];
+            if violation > T::zero() {
+                sum += violation / self.slack[i];
+                self.slack[i].recip()
+            } else {
+                T::zero()
+            }
+        });
+        (sum, weights)
+    }
+
+    /// Takes the slacks of a roll-out of this fraction. Multipliers stay positive and near μ/s.
+    pub(super) fn accept_slacks(&mut self, fraction: T, barrier: T) {
+        let wide = T::EPSILON.sqrt().recip();
+        for i in 0..C {
+            let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.trial.slack[i]);
+            let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
+            let central = barrier / moved;
+            let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
+            let most = central * wide;
+            self.multipliers[i] = if next < least {
+                least
+            } else if next > most {
+                most
+            } else {
+                next
+            };
+            self.excess[i] *= T::one() - fraction;
+            self.slack[i] = moved;
         }
     }
 }
 
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+    /// The number of bounds of all stages.
+    pub fn bounds(&self) -> T {
+        T::from_f64((self.stages.len() * C) as f64)
+    }
+
     /// Slacks of the plan, and by how much its bounds must be relaxed for them to be positive.
-    pub fn relax(&self, plan: &mut [Stage<S, D, U, C>]) {
-        let zero = S::Scalar::zero();
-        let mut sizes = SVector::<S::Scalar, C>::from_element(zero);
-        for (index, stage) in plan.iter_mut().enumerate() {
-            let values = self.system.bounds(self.time_after(index), &stage.place, &stage.input);
+    pub fn relax(&mut self) {
+        let zero = T::zero();
+        let mut sizes = SVector::<T, C>::from_element(zero);
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            let values = self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
             stage.slack = -values;
-            (0..C).for_each(|i| sizes[i] = larger(sizes[i], values[i].abs()));
+            sizes = sizes.zip_map(&values, |size, value| larger(size, value.abs()));
         }
         let largest = sizes.iter().fold(zero, |max, x| larger(max, *x));
-        let least = SVector::<S::Scalar, C>::from_fn(|i, _| {
-            let size = if sizes[i] > zero { sizes[i] } else { largest };
-            if size > zero { size * S::Scalar::from_ratio(1, 100) } else { S::Scalar::one() }
+        let least = sizes.map(|size| {
+            let size = if size > zero { size } else { largest };
+            if size > zero { size * T::from_ratio(1, 100) } else { T::one() }
         });
-        for stage in plan {
-            for i in 0..C {
-                let slack = larger(stage.slack[i], least[i]);
-                stage.excess[i] = slack - stage.slack[i];
-                stage.slack[i] = slack;
-            }
+        for stage in self.stages.iter_mut() {
+            let slack = stage.slack.zip_map(&least, larger);
+            stage.excess = slack - stage.slack;
+            stage.slack = slack;
         }
     }
 
     /// The barrier of a plan that holds multipliers of its bounds, which it keeps: the mean of z·s. `None` where there are none.
-    pub fn resume(&self, plan: &mut [Stage<S, D, U, C>]) -> Option<Barrier<S::Scalar>> {
-        let (zero, mut sum) = (S::Scalar::zero(), S::Scalar::zero());
-        for (index, stage) in plan.iter_mut().enumerate() {
-            stage.slack = -self.system.bounds(self.time_after(index), &stage.place, &stage.input);
+    pub fn resume(&mut self) -> Option<T> {
+        let zero = T::zero();
+        let mut sum = zero;
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
             stage.excess = SVector::from_element(zero);
             for (z, s) in stage.multipliers.iter().zip(stage.slack.iter()) {
                 if !(*z > zero && *s > zero && z.is_finite()) {
@@ -120,15 +124,61 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
                 sum += *z * *s;
             }
         }
-        Some(Barrier { weight: sum / S::Scalar::from_f64((plan.len() * C) as f64) })
+        Some(sum / self.bounds())
     }
 
     /// Multipliers μ/s for the slacks.
-    pub fn begin(&self, plan: &mut [Stage<S, D, U, C>], barrier: Barrier<S::Scalar>) {
-        for stage in plan {
+    pub fn begin(&mut self, barrier: T) {
+        self.stages.iter_mut().for_each(|stage| stage.multipliers = stage.slack.map(|slack| barrier / slack));
+    }
+
+    /// Multipliers of the bounds from the correction that would come next, for a plan that needs none: slacks of active bounds, of
+    /// which μ/s is made, have few digits.
+    ///
+    /// # Errors
+    /// Those of a step.
+    pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
+        let Problem { system, constants, .. } = self.problem;
+        let mut displacement = SVector::<T, D>::from_element(T::zero());
+        for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
+            let t = self.problem.time_after(index);
+            let step = system.expand(constants, t, &stage.place, &stage.input, &stage.next_costate)?;
+            let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers);
+            let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
+            let moved = bounds.by_place * displacement + bounds.by_input * input;
+            let (force, stiffness) = stage.condensed(barrier);
+            stage.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
+            displacement = step.by_place * displacement + step.by_input * input;
+        }
+        Ok(())
+    }
+
+    /// Whether bounds are relaxed.
+    pub fn is_relaxed(&self) -> bool {
+        self.stages.iter().any(|stage| stage.excess.iter().any(|excess| *excess > T::zero()))
+    }
+
+    /// Whether a bound is violated, where all are still relaxed by this part of the first excess: by more than the round-off of its slack,
+    /// and by more than that of the first excess.
+    pub fn is_violated(&self, relaxation: T) -> bool {
+        let round_off = T::from_f64(16.0) * T::EPSILON;
+        let mut bounds = self.stages.iter().flat_map(|stage| stage.slack.iter().zip(stage.excess.iter()));
+        relaxation > round_off && bounds.any(|(slack, excess)| *excess - *slack > round_off * *excess)
+    }
+
+    /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
+    pub fn worst_bound(&self) -> Option<(usize, usize, T)> {
+        let mut worst = None;
+        let mut least = T::one();
+        for (index, stage) in self.stages.iter().enumerate() {
             for i in 0..C {
-                stage.multipliers[i] = barrier.weight / stage.slack[i];
+                let room = stage.slack[i] / stage.excess[i];
+                if room < least {
+                    least = room;
+                    worst = Some((index, i, stage.excess[i] - stage.slack[i]));
+                }
             }
         }
+        worst
     }
 }

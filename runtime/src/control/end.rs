@@ -3,9 +3,8 @@
 use super::Target;
 use crate::newton::{Spectrum, arc_per_chord, is_reached};
 use crate::space::larger;
-use crate::{Arrival, Controlled, Real, Space};
+use crate::{Controlled, Real, Space};
 use nalgebra::{SMatrix, SVector};
-use num_traits::Zero;
 
 /// A target with the units of its changes.
 pub(super) struct Goal<'a, X, T, const D: usize> {
@@ -37,15 +36,12 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
     where
         S: Controlled<D, U, C, Scalar = T, Place = X>,
     {
-        let lengths = match target.place() {
-            Some(goal) => {
-                let slope = system.arrival(goal, goal).slope;
-                let length = |i: usize| slope[(i, i)].abs().sqrt();
-                // Written so that NaN gives 1.
-                SVector::from_fn(|i, _| if length(i) > T::zero() { length(i) } else { T::one() })
-            }
-            None => SVector::from_element(T::one()),
-        };
+        let slope = target.place().map_or(SMatrix::zeros(), |goal| system.arrival(goal, goal).slope);
+        let lengths = SVector::from_fn(|i, _| {
+            let length = slope[(i, i)].abs().sqrt();
+            // Written so that NaN gives 1.
+            if length > T::zero() { length } else { T::one() }
+        });
         Self { target, lengths }
     }
 
@@ -60,33 +56,39 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
         let zero = T::zero();
         let Some(goal) = self.target.place() else {
             return PlanEnd {
-                lack: SVector::zero(),
-                slope: SMatrix::zero(),
-                pull: SVector::zero(),
-                metric: SMatrix::zero(),
+                lack: SVector::zeros(),
+                slope: SMatrix::zeros(),
+                pull: SVector::zeros(),
+                metric: SMatrix::zeros(),
                 squares: [zero; 2],
                 distance: zero,
                 scale: x.max_abs(),
             };
         };
+        let lengths = &self.lengths;
         let arrival = system.arrival(x, goal);
         let asked = if matches!(self.target, Target::Configuration(_)) { S::MOTIONS } else { D };
-        let (projector, mut lack) = self.closing(&arrival, asked);
+        let is_asked = |i: usize| if i < asked { T::one() } else { zero };
+        // as lengths: the projector to the changes that the target fixes, and the smallest that closes the gap
+        let spectrum = Spectrum::of(&SMatrix::from_fn(|i, j| {
+            arrival.slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j)
+        }));
+        let least = T::EPSILON.sqrt() * spectrum.largest();
+        let projector = spectrum.map(|value| if value <= least { zero } else { T::one() });
+        let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
+        let mut lack = inverse * SVector::from_fn(|i, _| arrival.residual[i] / lengths[i] * is_asked(i));
         let square =
             |from: usize, to: usize| (from..to).fold(zero, |sum, i| sum + arrival.residual[i] * arrival.residual[i]);
-        let along =
-            (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * arrival.residual[i] / self.lengths[i]);
+        let along = (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * arrival.residual[i] / lengths[i]);
         let momentum = square(S::MOTIONS, asked);
         let chord = larger(zero, goal.distance_squared(x) - square(S::MOTIONS, D));
-        let (along, across) = (larger(zero, along).sqrt(), larger(zero, chord - along).sqrt());
-        if let Some(factor) = arc_per_chord(along, across) {
+        let across = larger(zero, chord - along).sqrt();
+        if let Some(factor) = arc_per_chord(larger(zero, along).sqrt(), across) {
             (0..S::MOTIONS).for_each(|i| lack[i] *= factor);
         }
-        let slope = SMatrix::from_fn(|i, j| projector[(i, j)] * self.lengths[j]);
-        let is_asked = |i: usize| if i < asked { T::one() } else { zero };
         PlanEnd {
             lack,
-            slope,
+            slope: SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]),
             pull: SVector::from_fn(|i, _| arrival.residual[i] * is_asked(i)),
             metric: SMatrix::from_fn(|i, j| arrival.slope[(i, j)] * is_asked(i) * is_asked(j)),
             squares: [chord, momentum],
@@ -95,26 +97,11 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
         }
     }
 
-    /// The projector to the changes that the target fixes, and the smallest that closes the gap, both as lengths.
-    fn closing(&self, arrival: &Arrival<T, D>, asked: usize) -> (SMatrix<T, D, D>, SVector<T, D>) {
-        let is_asked = |i: usize| if i < asked { T::one() } else { T::zero() };
-        let lengths = &self.lengths;
-        let metric =
-            SMatrix::from_fn(|i, j| arrival.slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j));
-        let residual = SVector::<T, D>::from_fn(|i, _| arrival.residual[i] / lengths[i] * is_asked(i));
-        let spectrum = Spectrum::of(&metric);
-        let least = T::EPSILON.sqrt() * spectrum.largest();
-        let select = |value: T, chosen: T| if value <= least { T::zero() } else { chosen };
-        let lack = spectrum.map(|value| select(value, value.recip())) * residual;
-        (spectrum.map(|value| select(value, T::one())), lack)
-    }
-
     /// The multipliers ν with the covector Eᵀν nearest to this one, for an end where E is given.
     pub fn multipliers(&self, end: &PlanEnd<T, D>, covector: &SVector<T, D>) -> SVector<T, D> {
         let lengths = &self.lengths;
         let scaled = SVector::<T, D>::from_fn(|i, _| covector[i] / lengths[i]);
-        let projector = SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]);
-        projector * scaled
+        SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]) * scaled
     }
 }
 

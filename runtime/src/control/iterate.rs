@@ -1,6 +1,6 @@
 //! What is known between two sweeps, and what is decided by it.
 
-use super::barrier::Barrier;
+use super::barrier;
 use super::end::PlanEnd;
 use super::search::Made;
 use super::sweep::{PlanSummary, Settings};
@@ -43,13 +43,13 @@ pub(super) struct Iterate<X, T, const D: usize> {
     /// Sweeps in a row with corrections that no one sees.
     calm: u32,
     /// The largest price.
-    largest: T,
+    pub largest: T,
     /// The smallest distance to the target.
     pub nearest: T,
     /// Steps in a row that were next to nothing.
     pub stalls: u32,
     /// Whether no way down from a saddle was found.
-    pub is_cornered: bool,
+    is_cornered: bool,
     /// How often the price of the gap was raised.
     pub rounds: u32,
     /// The part of the first excess by which bounds are still relaxed.
@@ -81,20 +81,11 @@ pub(super) enum Verdict {
 
 impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// Before the first sweep; a barrier is chosen after it where none is given.
-    pub fn new(last: X, multipliers: SVector<T, D>, barrier: Option<Barrier<T>>, distance: T) -> Self {
+    pub fn new(last: X, multipliers: SVector<T, D>, barrier: Option<T>, distance: T) -> Self {
         let zero = T::zero();
-        let settings = Settings {
-            multipliers,
-            weight: SMatrix::from_element(zero),
-            gap_price: None,
-            barrier: barrier.unwrap_or(Barrier::none()),
-            curvature: Curvature::mirrored(zero, zero),
-            bend: T::one(),
-            is_last: false,
-        };
         Self {
             last,
-            settings,
+            settings: Settings::new(multipliers, barrier.unwrap_or(zero)),
             is_open: barrier.is_none(),
             damping: zero,
             is_probed: false,
@@ -121,36 +112,38 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         gramian: &Equilibrated<T, D>,
         stiffer: &SMatrix<T, D, D>,
     ) -> Use {
-        let (is_bent, is_whole) = (self.settings.bend > T::zero(), self.settings.bend >= T::one());
-        if !self.settings.curvature.is_mirrored {
-            let index = if self.is_priced() { summary.negative } else { index(summary.negative, self.rank, gramian) };
-            let depth = summary.fall.map_or(T::zero(), |(_, _, depth)| depth);
-            let is_deep = matches!(self.before, Some(before) if depth > T::from_f64(DEPTH) * before);
-            if index > 0 && is_deep && self.is_below(NEAR) && self.is_exact() && !self.is_cornered {
-                return Use::Escape;
-            }
-            if self.is_below(NEAR) && self.is_exact() && (index == 0 || summary.negative <= FLAT) {
-                return Use::Correction;
-            }
-            self.settings.curvature = self.mirrored();
-            self.is_probed = true;
-            if index == 0 && !self.is_priced() && stiffer.iter().all(|entry| entry.is_finite()) {
-                self.settings.weight = *stiffer;
-            } else if summary.negative > FLAT {
+        if self.settings.curvature.is_mirrored {
+            // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
+            let rank = gramian.rank();
+            self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
+            let bend = self.settings.bend;
+            if summary.negative > 0 && !self.is_probed && !(bend > T::zero() && bend < T::one()) {
+                self.settings.curvature = Curvature::exact(self.steadiness());
+            } else if summary.negative > FLAT && bend > T::zero() {
                 self.bend_less();
+                self.is_probed = false;
+            } else {
+                return Use::Correction;
             }
             return Use::Nothing;
         }
-        // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
-        let rank = gramian.rank();
-        self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
-        if summary.negative > 0 && !self.is_probed && (is_whole || !is_bent) {
-            self.settings.curvature = Curvature::exact(self.steadiness());
-        } else if summary.negative > FLAT && is_bent {
-            self.bend_less();
-            self.is_probed = false;
-        } else {
+        let is_priced = self.is_priced();
+        let index = if is_priced { summary.negative } else { gramian.index(summary.negative, self.rank) };
+        let is_near = self.is_exact() && self.before.is_some_and(|before| before <= T::from_ratio(NEAR.0, NEAR.1));
+        let depth = summary.fall.map_or(T::zero(), |fall| fall.depth);
+        let is_deep = self.before.is_some_and(|before| depth > T::from_f64(DEPTH) * before);
+        if is_near && index > 0 && is_deep && !self.is_cornered {
+            return Use::Escape;
+        }
+        if is_near && (index == 0 || summary.negative <= FLAT) {
             return Use::Correction;
+        }
+        self.settings.curvature = self.mirrored();
+        self.is_probed = true;
+        if index == 0 && !is_priced && stiffer.iter().all(|entry| entry.is_finite()) {
+            self.settings.weight = *stiffer;
+        } else if summary.negative > FLAT {
+            self.bend_less();
         }
         Use::Nothing
     }
@@ -159,16 +152,13 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// of configurations.
     pub fn price_gap(&mut self, stiffness: &SMatrix<T, D, D>, motions: usize) {
         let largest = |range: Range<usize>| range.fold(T::zero(), |max, i| larger(max, stiffness[(i, i)]));
-        let part = T::from_ratio(1, 8);
-        self.settings.gap_price = Some([largest(0..motions) * part, largest(motions..D) * part]);
+        self.settings.gap_price = Some([0..motions, motions..D].map(|range| largest(range) * T::from_ratio(1, 8)));
         self.settings.weight = SMatrix::from_element(T::zero());
     }
 
     /// Raises the price of the gap after a plan that is critical for this one.
     pub fn raise_price(&mut self) {
-        let factor = T::from_f64(8.0);
-        self.settings.gap_price =
-            self.settings.gap_price.map(|[by_motion, by_momentum]| [by_motion * factor, by_momentum * factor]);
+        self.settings.gap_price = self.settings.gap_price.map(|prices| prices.map(|price| price * T::from_f64(8.0)));
         self.rounds += 1;
         self.begin_again();
     }
@@ -176,11 +166,10 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// From now on corrections close the gap: its price becomes a weight, with multipliers that leave this price's force on the end,
     /// Eᵀ(ν − Re), as it is.
     pub fn close_gap(&mut self, force: SVector<T, D>, end: &PlanEnd<T, D>, motions: usize) {
-        let [by_motion, by_momentum] = self.settings.gap_price.unwrap_or([T::zero(); 2]);
-        let price = |i: usize| if i < motions { by_motion } else { by_momentum };
-        self.settings.weight = SMatrix::from_fn(|i, j| if i == j { price(i) } else { T::zero() });
+        let [by_motion, by_momentum] = self.settings.gap_price.take().unwrap_or([T::zero(); 2]);
+        let price = SVector::<T, D>::from_fn(|i, _| if i < motions { by_motion } else { by_momentum });
+        self.settings.weight = SMatrix::from_diagonal(&price);
         self.settings.multipliers = force + self.settings.weight * end.lack;
-        self.settings.gap_price = None;
         self.begin_again();
     }
 
@@ -213,18 +202,11 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         may_be
     }
 
-    /// Whether the correction before was smaller than this.
-    fn is_below(&self, (numerator, denominator): (i64, i64)) -> bool {
-        matches!(self.before, Some(before) if before <= T::from_ratio(numerator, denominator))
-    }
-
     /// Near a solution √ε, as a part of the price's curvature: it keeps corrections from going far where round-off alone bends the price, as
     /// along a symmetry.
     fn steadiness(&self) -> T {
-        match self.before {
-            Some(before) if before * before <= T::EPSILON.sqrt() => T::EPSILON.sqrt(),
-            _ => T::zero(),
-        }
+        let seen = T::EPSILON.sqrt();
+        self.before.filter(|before| *before * *before <= seen).map_or(T::zero(), |_| seen)
     }
 
     /// The curvature of the next sweep, so that it goes down.
@@ -238,14 +220,9 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     }
 
     /// The size of prices, for a price that vanishes at the solution a small part of the largest.
-    pub fn magnitude<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, decrement: T) -> T {
-        self.largest = larger(self.largest, summary.magnitude + decrement.abs());
-        summary.magnitude + T::EPSILON.sqrt() * self.largest
-    }
-
-    /// Counts a price among those that the problem has.
-    pub fn expect(&mut self, price: T) {
-        self.largest = larger(self.largest, price);
+    pub fn magnitude(&mut self, price: T, decrement: T) -> T {
+        self.largest = larger(self.largest, price + decrement.abs());
+        price + T::EPSILON.sqrt() * self.largest
     }
 
     /// Whether the gap is only priced.
@@ -261,7 +238,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     /// What is done after a sweep with a correction of this size, of which `unit` is round-off.
     pub fn verdict(&mut self, end: &PlanEnd<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
         let seen = T::EPSILON.sqrt();
-        let stagnates = matches!(self.before, Some(before) if before <= seen && size > before * T::from_ratio(1, 8));
+        let stagnates = self.before.is_some_and(|before| before <= seen && size > before * T::from_ratio(1, 8));
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
         self.calm = if size <= seen && self.damping <= T::one() { self.calm + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
@@ -276,7 +253,7 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
             Verdict::Correct
         } else if !end.is_reached() {
             Verdict::Stir
-        } else if self.settings.barrier.weight > last_barrier + last_barrier {
+        } else if self.settings.barrier > last_barrier + last_barrier {
             Verdict::Tighten
         } else {
             Verdict::Done
@@ -285,8 +262,8 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
 
     /// The next barrier, if it is another.
     pub fn tighten(&mut self, bounds: T, price: T) {
-        let next = self.settings.barrier.next(bounds, price);
-        if next.weight < self.settings.barrier.weight * T::from_ratio(9, 10) {
+        let next = barrier::next(self.settings.barrier, bounds, price);
+        if next < self.settings.barrier * T::from_ratio(9, 10) {
             self.settings.barrier = next;
             (self.before, self.calm, self.is_cornered) = (None, 0, false);
         }
@@ -301,16 +278,15 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         stiffer: SMatrix<T, D, D>,
         distance: T,
     ) {
-        let near = T::from_ratio(NEAR.0, NEAR.1);
+        let is_far = size > T::from_ratio(NEAR.0, NEAR.1);
         let (refused, fraction) = made.as_ref().map_or((usize::MAX, T::zero()), |made| (made.refused, made.fraction));
         if let Some(made) = made {
             self.last = made.last;
             self.settings.multipliers += made.change * made.fraction;
             self.relaxation *= T::one() - made.fraction;
         }
-        if self.is_priced() {
-            // the weight is raised between critical plans
-        } else if size > near || self.settings.weight.iter().all(|entry| *entry == T::zero()) {
+        // the weight of a priced gap is raised between critical plans
+        if !self.is_priced() && (is_far || self.settings.weight.iter().all(|entry| *entry == T::zero())) {
             self.settings.weight = stiffer;
         }
         self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), refused);
@@ -318,17 +294,11 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         self.settings.curvature = self.mirrored();
         if refused <= 1 {
             let more = larger(self.settings.bend * T::from_f64(4.0), T::from_ratio(1, 16));
-            self.settings.bend = if more < T::one() && size > near { more } else { T::one() };
+            self.settings.bend = if more < T::one() && is_far { more } else { T::one() };
         }
         let is_kept = self.is_priced() || self.rank == 0;
-        self.is_probed &= size > near && is_kept || negative > 0 && self.settings.bend >= T::one();
+        self.is_probed &= is_far && is_kept || negative > 0 && self.settings.bend >= T::one();
         self.nearest = if distance < self.nearest { distance } else { self.nearest };
         self.stalls = if fraction < T::from_f64(1e-3) { self.stalls + 1 } else { 0 };
     }
-}
-
-/// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
-/// of −Γ, less the number of conditions.
-pub(super) fn index<T: Real, const D: usize>(negative: usize, rank: usize, gramian: &Equilibrated<T, D>) -> usize {
-    (negative + gramian.positive()).saturating_sub(rank)
 }

@@ -1,103 +1,150 @@
-//! What a problem of optimal control is answered with.
+//! What a problem of optimal control is answered with, and what the caller stores for it.
 
-use super::Stage;
-use super::newton::CriticalPlan;
-use crate::{Controlled, Real};
-use core::fmt::{self, Debug, Formatter};
-use nalgebra::SVector;
+use crate::fields::{copied, debug, getters};
+use crate::{Controlled, Real, Space};
+use nalgebra::{SMatrix, SVector};
+
+/// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
+pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
+    pub(super) place: S::Place,
+    pub(super) input: SVector<S::Scalar, U>,
+    /// The costates p_k and p_{k+1}.
+    pub(super) costate: SVector<S::Scalar, D>,
+    pub(super) next_costate: SVector<S::Scalar, D>,
+    pub(super) gain: SMatrix<S::Scalar, U, D>,
+    pub(super) multipliers: SVector<S::Scalar, C>,
+    /// s > 0 with a + s = excess.
+    pub(super) slack: SVector<S::Scalar, C>,
+    /// By how much the bounds are still relaxed, 0 once a full step was made.
+    pub(super) excess: SVector<S::Scalar, C>,
+    /// k and G: the change of the input is k + G δν + K δ.
+    pub(super) shift: SVector<S::Scalar, U>,
+    pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
+    pub(super) trial: Trial<S::Place, S::Scalar, U, C>,
+    /// The input before the solution began, given back after an error.
+    pub(super) guess: SVector<S::Scalar, U>,
+}
+
+/// What a roll-out proposes for a stage.
+#[derive(Clone, Copy)]
+pub(super) struct Trial<X, T, const U: usize, const C: usize> {
+    pub place: X,
+    pub input: SVector<T, U>,
+    pub slack: SVector<T, C>,
+}
+
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
+    /// The step from `x` without input.
+    pub(super) fn rest(x: &S::Place) -> Self {
+        Self {
+            place: *x,
+            input: Space::origin(),
+            costate: Space::origin(),
+            next_costate: Space::origin(),
+            gain: Space::origin(),
+            multipliers: Space::origin(),
+            slack: Space::origin(),
+            excess: Space::origin(),
+            shift: Space::origin(),
+            by_multiplier: Space::origin(),
+            trial: Trial { place: *x, input: Space::origin(), slack: Space::origin() },
+            guess: Space::origin(),
+        }
+    }
+
+    /// The same with this input, as a guess.
+    #[inline]
+    #[must_use]
+    pub fn with_input(self, input: SVector<S::Scalar, U>) -> Self {
+        Self { input, ..self }
+    }
+
+    /// Goes back to the input of the guess, without multipliers.
+    pub(super) fn forget(&mut self) {
+        *self = Self { input: self.guess, guess: self.guess, ..Self::rest(&self.place) };
+    }
+
+    getters! {
+        /// The place x_k where the step starts.
+        ref place: S::Place;
+
+        /// The input u_k of the step from x_k to x_{k+1}.
+        ref input: SVector<S::Scalar, U>;
+
+        /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
+        ref costate: SVector<S::Scalar, D>;
+
+        /// The matrix K of optimal feedback: where x_k is found changed by δ, the optimal plan from there to the same target begins with
+        /// u_k + Kδ + O(δ²). Near the end, where not all of the target can be reached any more, what can be is.
+        ///
+        /// Shape U×D.
+        ref gain: SMatrix<S::Scalar, U, D>;
+
+        /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
+        ref multipliers: SVector<S::Scalar, C>;
+    }
+
+    /// Which bounds hold the inputs back: those whose multiplier is larger than what separates them from being reached.
+    #[inline]
+    pub fn active(&self) -> [bool; C] {
+        core::array::from_fn(|i| self.multipliers[i] > self.slack[i])
+    }
+}
+
+copied!(Stage<S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize]:
+    place, input, costate, gain, multipliers);
 
 /// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). The stages that it was solved
 /// in hold the plan itself.
 pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
-    plan: &'p [Stage<S, D, U, C>],
-    h: S::Scalar,
-    price: S::Scalar,
-    residual: S::Scalar,
-    gap: S::Scalar,
-    negative: usize,
-    iterations: u32,
-    end: S::Place,
-    costate: SVector<S::Scalar, D>,
+    pub(super) stages: &'p [Stage<S, D, U, C>],
+    pub(super) step_size: S::Scalar,
+    pub(super) price: S::Scalar,
+    pub(super) residual: S::Scalar,
+    pub(super) gap: S::Scalar,
+    pub(super) negative: usize,
+    pub(super) iterations: u32,
+    pub(super) end: S::Place,
+    pub(super) final_costate: SVector<S::Scalar, D>,
 }
 
 impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Optimum<'p, S, D, U, C> {
-    pub(super) fn new(plan: &'p [Stage<S, D, U, C>], solved: CriticalPlan<S, D, U, C>, h: S::Scalar) -> Self {
-        Self {
-            plan,
-            h,
-            price: solved.summary.price,
-            residual: solved.summary.residual,
-            gap: solved.end.distance,
-            negative: solved.negative,
-            iterations: solved.sweeps,
-            end: solved.last,
-            costate: solved.summary.costate,
-        }
-    }
+    getters! {
+        /// The price Σ ℓ + φ.
+        copy price: S::Scalar;
 
-    /// The price Σ ℓ + φ.
-    pub fn price(&self) -> S::Scalar {
-        self.price
-    }
+        /// The step size h.
+        copy step_size: S::Scalar;
 
-    /// The step size h.
-    pub fn step_size(&self) -> S::Scalar {
-        self.h
-    }
+        /// The number of linearisations that were made, but for the last, which is for gains and the index.
+        copy iterations: u32;
 
-    /// The number of linearisations that were made, but for the last, which is for gains and the index.
-    pub fn iterations(&self) -> u32 {
-        self.iterations
-    }
+        /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
+        copy residual: S::Scalar;
 
-    /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
-    pub fn residual(&self) -> S::Scalar {
-        self.residual
-    }
+        /// The distance to what was asked of the end, as the root of the sum of squares of all entries; 0 for [`Target::Free`](crate::Target).
+        copy gap: S::Scalar;
 
-    /// The distance to what was asked of the end, as the root of the sum of squares of all entries; 0 for [`Target::Free`](crate::Target).
-    pub fn gap(&self) -> S::Scalar {
-        self.gap
-    }
+        /// The Morse index: the number of independent changes of the inputs, among those that keep the target and the active bounds, that make
+        /// the price smaller. 0 on a local minimum.
+        copy negative: usize;
 
-    /// The Morse index: the number of independent changes of the inputs, among those that keep the target and the active bounds, that make
-    /// the price smaller. 0 on a local minimum.
-    pub fn negative(&self) -> usize {
-        self.negative
+        /// The place x_N: the target up to the [`gap`](Self::gap).
+        ref end: S::Place;
+
+        /// The costate p_N at the end: ∂φ/∂x and the multipliers of the target.
+        ref final_costate: SVector<S::Scalar, D>;
+
+        /// The steps in order, with place, input, costate, gain and multipliers.
+        copy stages: &'p [Stage<S, D, U, C>];
     }
 
     /// Whether no small change of the inputs, to second order, makes the price smaller.
     pub fn is_minimum(&self) -> bool {
         self.negative == 0
     }
-
-    /// The place x_N: the target up to the [`gap`](Self::gap).
-    pub fn end(&self) -> &S::Place {
-        &self.end
-    }
-
-    /// The costate p_N at the end: ∂φ/∂x and the multipliers of the target.
-    pub fn final_costate(&self) -> &SVector<S::Scalar, D> {
-        &self.costate
-    }
-
-    /// The steps in order, with place, input, costate, gain and multipliers.
-    pub fn stages(&self) -> &'p [Stage<S, D, U, C>] {
-        self.plan
-    }
 }
 
-/// Without the plan, which is long.
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Debug
-    for Optimum<'_, S, D, U, C>
-{
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Optimum")
-            .field("price", &self.price)
-            .field("iterations", &self.iterations)
-            .field("residual", &self.residual)
-            .field("gap", &self.gap)
-            .field("negative", &self.negative)
-            .finish_non_exhaustive()
-    }
-}
+// without the plan, which is long
+debug!(Optimum<'_, S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize]:
+    price, iterations, residual, gap, negative);

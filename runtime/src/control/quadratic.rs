@@ -1,7 +1,10 @@
 //! The quadratic model of one step in the backward sweep, and its elimination.
 
-use super::pivot::{Fall, Pivot};
-use crate::newton::Curvature;
+use super::end::PlanEnd;
+use super::sweep::Settings;
+use crate::linear::rows;
+use crate::newton::{Curvature, Equilibrated, Ldl, UNITS};
+use crate::space::larger;
 use crate::{BoundsExpansion, EndpointExpansion, Expansion, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -49,35 +52,28 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
 }
 
 impl<T: Real, const D: usize> Value<T, D> {
-    /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e)
+    /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e), or φ + ½ w d² where the squared distance d² to the target has the price w; the first `motions`
+    /// changes are those of configurations.
     pub fn of_end(
         endpoint: &EndpointExpansion<T, D>,
-        end: &super::end::PlanEnd<T, D>,
-        multipliers: &SVector<T, D>,
-        weight: &SMatrix<T, D, D>,
-    ) -> Self {
-        let force = multipliers - weight * end.lack;
-        Self {
-            costate: endpoint.slope + end.slope.tr_mul(&force),
-            hessian: endpoint.curvature + end.slope.tr_mul(&(weight * end.slope)),
-            by_multiplier: end.slope.transpose(),
-            violation: SVector::from_element(T::zero()),
-        }
-    }
-}
-
-impl<T: Real, const D: usize> Value<T, D> {
-    /// φ + ½ w d² with the squared distance d² to the target, for configurations and for momenta.
-    pub fn of_priced_end(
-        endpoint: &EndpointExpansion<T, D>,
-        end: &super::end::PlanEnd<T, D>,
+        end: &PlanEnd<T, D>,
+        settings: &Settings<T, D>,
         motions: usize,
-        [by_motion, by_momentum]: [T; 2],
     ) -> Self {
-        let price = |i: usize| if i < motions { by_motion } else { by_momentum };
+        let (force, stiffness) = match settings.gap_price {
+            Some([by_motion, by_momentum]) => {
+                let price = |i: usize| if i < motions { by_motion } else { by_momentum };
+                let force = SVector::from_fn(|i, _| -(price(i) * end.pull[i]));
+                (force, SMatrix::from_fn(|i, j| price(i) * end.metric[(i, j)]))
+            }
+            None => {
+                let force = settings.multipliers - settings.weight * end.lack;
+                (end.slope.tr_mul(&force), end.slope.tr_mul(&(settings.weight * end.slope)))
+            }
+        };
         Self {
-            costate: SVector::from_fn(|i, _| endpoint.slope[i] - price(i) * end.pull[i]),
-            hessian: endpoint.curvature + SMatrix::from_fn(|i, j| price(i) * end.metric[(i, j)]),
+            costate: endpoint.slope + force,
+            hessian: endpoint.curvature + stiffness,
             by_multiplier: end.slope.transpose(),
             violation: SVector::from_element(T::zero()),
         }
@@ -175,4 +171,93 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
         };
         (Policy { shift, gain, by_multiplier, negative: pivot.negative, fall: pivot.fall, yielding }, value)
     }
+}
+
+/// The inverse of a Hessian.
+struct Pivot<T, const U: usize> {
+    factors: Factors<T, U>,
+    /// The number of negative eigenvalues.
+    pub negative: usize,
+    /// The direction of the most negative one.
+    pub fall: Option<Fall<T, U>>,
+}
+
+/// A direction δu of an input in which the price curves down.
+#[derive(Clone, Copy)]
+pub(super) struct Fall<T, const U: usize> {
+    pub stage: usize,
+    pub direction: SVector<T, U>,
+    /// δuᵀ Q_uu δu < 0
+    pub curvature: T,
+    /// How deep it is, relative to the curvature of all steps alone. Along a symmetry it is no deeper than what a correction changes.
+    pub depth: T,
+}
+
+enum Factors<T, const U: usize> {
+    Triangular(Ldl<T, U>),
+    /// The inverse itself.
+    Spectral(SMatrix<T, U, U>),
+}
+
+impl<T: Real, const U: usize> Pivot<T, U> {
+    /// Of a symmetric matrix, of which only the lower triangle is read, where the price itself curves by `natural` along each input.
+    #[inline]
+    pub fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
+        let mut h = *h;
+        let Curvature { damping, steadiness, .. } = curvature;
+        if larger(damping, steadiness) > T::zero() {
+            for i in 0..U {
+                let entry = h[(i, i)];
+                h[(i, i)] = entry + larger(damping * entry.abs(), steadiness * natural[i].abs());
+            }
+        }
+        match Ldl::positive(&rows(&h)) {
+            Some(factors) => Self { factors: Factors::Triangular(factors), negative: 0, fall: None },
+            None => spectral(&h, curvature),
+        }
+    }
+
+    /// −H⁻¹B
+    #[inline]
+    pub fn against<const K: usize>(&self, b: &SMatrix<T, U, K>) -> SMatrix<T, U, K> {
+        match &self.factors {
+            Factors::Triangular(factors) => {
+                let mut w = rows(&-b);
+                factors.forward(&mut w);
+                let mut x = factors.divided(&w);
+                factors.backward(&mut x);
+                SMatrix::from_fn(|i, j| x[i][j])
+            }
+            Factors::Spectral(inverse) => -(inverse * b),
+        }
+    }
+}
+
+/// From the eigenvalues of the matrix with its diagonal scaled to ±1. Directions without any curvature are left alone.
+#[cold]
+fn spectral<T: Real, const U: usize>(h: &SMatrix<T, U, U>, curvature: Curvature<T>) -> Pivot<T, U> {
+    let scaled = Equilibrated::of(h);
+    let Equilibrated { spectrum, scale } = &scaled;
+    let largest = spectrum.largest();
+    let noise = T::from_f64(UNITS) * T::EPSILON * largest;
+    let inverse = scaled.map(|value| {
+        // Written so that NaN stays NaN.
+        if value.abs() <= noise && !curvature.is_mirrored || largest == T::zero() {
+            T::zero()
+        } else if !curvature.is_mirrored || value > noise {
+            value.recip()
+        } else {
+            spectrum.turned_over(value).recip()
+        }
+    });
+    let wrong = -T::EPSILON.sqrt() * largest;
+    let negative = spectrum.values.iter().filter(|&&value| value < wrong).count();
+    let least = (0..U).fold(0, |least, i| if spectrum.values[i] < spectrum.values[least] { i } else { least });
+    let fall = (negative > 0).then(|| Fall {
+        stage: 0,
+        direction: SVector::from_fn(|i, _| scale[i] * spectrum.vectors[(i, least)]),
+        curvature: spectrum.values[least],
+        depth: T::zero(),
+    });
+    Pivot { factors: Factors::Spectral(inverse), negative, fall }
 }

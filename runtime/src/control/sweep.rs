@@ -12,10 +12,8 @@
 //! for the bounds.
 
 use super::Stage;
-use super::barrier::Barrier;
 use super::end::{Goal, PlanEnd};
-use super::pivot::Fall;
-use super::quadratic::{Policy, Quadratic, Value};
+use super::quadratic::{Fall, Policy, Quadratic, Value};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Scalar, Space};
@@ -32,6 +30,14 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usi
     pub goal: Goal<'a, S::Place, S::Scalar, D>,
 }
 
+/// A plan, on the way from a guess to one of least price.
+pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
+    pub problem: Problem<'a, S, D, U, C>,
+    pub stages: &'a mut [Stage<S, D, U, C>],
+    /// The backward sweeps that were made.
+    pub sweeps: u32,
+}
+
 /// What a backward sweep is made with.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<T, const D: usize> {
@@ -40,7 +46,8 @@ pub(super) struct Settings<T, const D: usize> {
     pub weight: SMatrix<T, D, D>,
     /// Where no correction has to close the gap to the target: the price of its square, for changes of configurations and of momenta.
     pub gap_price: Option<[T; 2]>,
-    pub barrier: Barrier<T>,
+    /// The price μ of e-fold smaller slacks.
+    pub barrier: T,
     pub curvature: Curvature<T>,
     /// The part of the curvature of steps and bounds that is counted: 1 for all, 0 for none, which leaves that of the price.
     pub bend: T,
@@ -64,9 +71,8 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     pub gramian: SMatrix<T, D, D>,
     /// The number of negative eigenvalues of all Q_uu.
     pub negative: usize,
-    /// The direction of the most negative one, with its stage and how deep it is, relative to the curvature of all steps alone. Along a
-    /// symmetry it is no deeper than what a correction changes.
-    pub fall: Option<(usize, Fall<T, U>, T)>,
+    /// The direction of the most negative one.
+    pub fall: Option<Fall<T, U>>,
     /// By how far each input moves the end where it is 1 throughout, at most.
     pub reach: SVector<T, U>,
     /// The costate at the end.
@@ -76,21 +82,38 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     yielding: T,
 }
 
+impl<T: Real, const D: usize> Settings<T, D> {
+    /// Those of a first sweep.
+    pub fn new(multipliers: SVector<T, D>, barrier: T) -> Self {
+        let zero = T::zero();
+        Self {
+            multipliers,
+            weight: SMatrix::from_element(zero),
+            gap_price: None,
+            barrier,
+            curvature: Curvature::mirrored(zero, zero),
+            bend: T::one(),
+            is_last: false,
+        }
+    }
+}
+
 impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
     fn of_end(price: T, end: &PlanEnd<T, D>, costate: SVector<T, D>) -> Self {
+        let zero = T::zero();
         Self {
             price,
             magnitude: price.abs(),
-            descent: T::zero(),
-            residual: T::zero(),
+            descent: zero,
+            residual: zero,
             lack: -end.lack,
-            gramian: SMatrix::from_element(T::zero()),
+            gramian: SMatrix::from_element(zero),
             negative: 0,
             fall: None,
-            reach: SVector::from_element(T::zero()),
+            reach: SVector::from_element(zero),
             costate,
-            violation: T::zero(),
-            yielding: T::zero(),
+            violation: zero,
+            yielding: zero,
         }
     }
 
@@ -113,9 +136,9 @@ impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
         self.negative += policy.negative;
         self.yielding += policy.yielding;
         if let Some(fall) = policy.fall
-            && self.fall.is_none_or(|(_, deepest, _)| fall.curvature < deepest.curvature)
+            && self.fall.is_none_or(|deepest| fall.curvature < deepest.curvature)
         {
-            self.fall = Some((index, fall, model.depth(&fall)));
+            self.fall = Some(Fall { stage: index, depth: model.depth(&fall), ..fall });
         }
         for j in 0..U {
             self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
@@ -130,32 +153,44 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         self.time + S::Scalar::from_f64(steps as f64) * self.h
     }
 
+    /// x_{k+1}
+    ///
+    /// # Errors
+    /// Those of a step.
+    pub fn follow(&self, k: usize, x: &S::Place, u: &SVector<S::Scalar, U>) -> Result<S::Place, Error> {
+        self.system.follow(self.constants, self.time_after(k), x, u)
+    }
+
+    /// The end of a plan at `x`.
+    pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
+        self.goal.end(self.system, x)
+    }
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// Linearises and eliminates a plan that ends at `last`: fills costates, gains and shifts of the stages.
     ///
     /// # Errors
     /// Those of a step.
     pub fn eliminate(
-        &self,
-        plan: &mut [Stage<S, D, U, C>],
+        &mut self,
         last: &S::Place,
-        end: &PlanEnd<S::Scalar, D>,
-        settings: &Settings<S::Scalar, D>,
-    ) -> Result<PlanSummary<S::Scalar, D, U>, Error> {
-        let endpoint = self.system.endpoint_expanded(self.time_after(plan.len()), last);
-        let mut value = match settings.gap_price {
-            Some(price) => Value::of_priced_end(&endpoint, end, S::MOTIONS, price),
-            None => Value::of_end(&endpoint, end, &settings.multipliers, &settings.weight),
-        };
+        end: &PlanEnd<T, D>,
+        settings: &Settings<T, D>,
+    ) -> Result<PlanSummary<T, D, U>, Error> {
+        let Problem { system, constants, .. } = self.problem;
+        let steps = self.stages.len();
+        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), last);
+        let mut value = Value::of_end(&endpoint, end, settings, S::MOTIONS);
         let mut summary = PlanSummary::of_end(endpoint.price, end, value.costate);
-        for (index, stage) in plan.iter_mut().enumerate().rev() {
-            let t = self.time_after(index);
-            let step =
-                self.system.expand(self.constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+        for (index, stage) in self.stages.iter_mut().enumerate().rev() {
+            let t = self.problem.time_after(index);
+            let step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
             let mut model = Quadratic::of_step(&step);
             if C > 0 {
-                let bounds =
-                    self.system.bounds_expanded(t, &stage.place, &stage.input, &(stage.multipliers * settings.bend));
-                let (force, stiffness) = settings.barrier.condense(stage);
+                let multipliers = stage.multipliers * settings.bend;
+                let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
+                let (force, stiffness) = stage.condensed(settings.barrier);
                 let force = if settings.is_last { stage.multipliers } else { force };
                 let (violation, weights) = stage.violation();
                 model.add_bounds(&bounds, &force, &stiffness, &weights);
@@ -176,8 +211,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             }
             value = before;
         }
-        if let Some((_, _, depth)) = &mut summary.fall {
-            *depth /= S::Scalar::from_f64(plan.len() as f64);
+        if let Some(fall) = &mut summary.fall {
+            fall.depth /= T::from_f64(steps as f64);
         }
         Ok(summary)
     }
