@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Analytic, Function, Rational, Role, Shape, integer};
 
 use super::kernel::DEEPEST_EXPRESSION;
-use super::scalar::{Callee, Output};
+use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
 
 /// Straight-line code of one output entry or shared term.
@@ -117,6 +117,14 @@ pub enum MatrixOperation {
     Entry(usize, usize),
 }
 
+impl MatrixOperation {
+    /// Whether the sign of an operand is that of the result; of sums each term has its own.
+    pub(super) fn is_linear(&self) -> bool {
+        use MatrixOperation::*;
+        !matches!(self, Entries | Shifted | Inverse | Analytic(_) | Value | Gradient(_) | Determinant | Largest)
+    }
+}
+
 /// Straight-line code.
 #[derive(Clone, Default, Debug)]
 pub struct Kernel {
@@ -126,27 +134,46 @@ pub struct Kernel {
     pub outputs: Vec<(Shape, Vec<Code>)>,
 }
 
+/// Where a shared term stands when terms are put into each other.
+enum Place {
+    /// It is left out: nothing is made of it.
+    Nowhere,
+    /// It is written where it is used.
+    Inside,
+    /// It is a shared term.
+    Named,
+}
+
 impl Kernel {
-    /// The entries of arguments that it reads, as often as they stand in it.
-    pub fn inputs(&self) -> Vec<&Input> {
-        let mut inputs = Vec::new();
+    /// The code of its terms and outputs, and all parts of it.
+    pub(super) fn each(&self) -> impl Iterator<Item = &Code> {
         let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).for_each(|code| code.read(&mut inputs));
-        inputs
+        self.locals.iter().chain(outputs).flat_map(Code::each)
+    }
+
+    /// The arguments that it reads entries of or takes as a whole, as often as they stand in it.
+    pub fn inputs(&self) -> Vec<&Input> {
+        self.each().filter_map(|code| code.input().map(|(input, _)| input)).collect()
+    }
+
+    /// The rows of arguments that it reads, with the arguments.
+    pub(super) fn rows_read(&self) -> impl Iterator<Item = (Role, usize)> {
+        let rows = |(input, shape): (&Input, Shape)| {
+            let role = input.role;
+            (input.row..input.row + shape.rows).map(move |row| (role, row))
+        };
+        self.each().filter_map(Code::input).flat_map(rows)
     }
 
     /// Which of its terms depend on an argument of a role that is wanted.
     pub fn depends_on(&self, wanted: impl Fn(Role) -> bool) -> Vec<bool> {
         let mut depends: Vec<bool> = Vec::new();
         for code in &self.locals {
-            let found = code.any(&mut |part| match part {
-                Code::Local(index) => depends.get(*index).copied().unwrap_or(false),
-                Code::Read(input) => wanted(input.role),
-                Code::Whole(whole) => {
-                    matches!(&whole.operation, MatrixOperation::Argument(input) if wanted(input.role))
-                }
-                _ => false,
-            });
+            let depends_on = |part: &Code| match part {
+                Code::Local(index) => depends[*index],
+                part => part.input().is_some_and(|(input, _)| wanted(input.role)),
+            };
+            let found = code.each().any(depends_on);
             depends.push(found);
         }
         depends
@@ -155,69 +182,61 @@ impl Kernel {
     /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
     pub(super) fn without_unused(self) -> Kernel {
         let mut uses = vec![0_usize; self.locals.len()];
-        let count = |code: &Code, uses: &mut [usize]| code.locals().into_iter().for_each(|index| uses[index] += 1);
-        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|entry| count(entry, &mut uses));
+        let entries = || self.outputs.iter().flat_map(|(_, entries)| entries);
+        entries().flat_map(Code::locals).for_each(|index| uses[index] += 1);
         for index in (0..self.locals.len()).rev() {
             if uses[index] > 0 {
-                count(&self.locals[index], &mut uses);
+                self.locals[index].locals().for_each(|other| uses[other] += 1);
             }
         }
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        let alone: Vec<usize> = outputs
-            .filter_map(|entry| match entry {
-                Code::Local(index) if uses[*index] == 1 => Some(*index),
-                _ => None,
-            })
-            .collect();
-        let mut places: Vec<Code> = Vec::new();
-        let mut locals = Vec::new();
-        for (index, code) in self.locals.iter().enumerate() {
-            if uses[index] == 0 {
-                places.push(Code::Local(index));
-                continue;
-            }
-            let code = code.with_locals(&|other| places[other].clone());
-            if alone.contains(&index) {
-                places.push(code);
-            } else {
-                places.push(Code::Local(locals.len()));
-                locals.push(code);
-            }
-        }
-        Kernel { locals, outputs: self.outputs_with(&places) }
-    }
-
-    /// The outputs with other codes for the shared terms.
-    fn outputs_with(&self, places: &[Code]) -> Vec<(Shape, Vec<Code>)> {
-        let placed = |entry: &Code| entry.with_locals(&|index| places[index].clone());
-        self.outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(placed).collect())).collect()
+        let outputs: Vec<usize> = entries().filter_map(Code::as_local).collect();
+        self.placed(|index| match uses[index] {
+            0 => Place::Nowhere,
+            1 if outputs.contains(&index) => Place::Inside,
+            _ => Place::Named,
+        })
     }
 
     /// The same with each shared term that is used once in its place, where its type is known without a name.
     pub(super) fn nested(self) -> Kernel {
         let mut uses = vec![0_usize; self.locals.len()];
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).flat_map(Code::locals).for_each(|index| uses[index] += 1);
+        let entries = self.outputs.iter().flat_map(|(_, entries)| entries);
+        self.locals.iter().chain(entries).flat_map(Code::locals).for_each(|index| uses[index] += 1);
         // the type of what is returned is known
         let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
         let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).collect();
-        let mut places: Vec<Code> = Vec::new();
         let mut depths: Vec<usize> = Vec::new();
-        let mut locals = Vec::new();
-        for (index, (code, uses)) in self.locals.iter().zip(uses).enumerate() {
-            let depth = 1 + code.locals().into_iter().map(|other| depths[other]).max().unwrap_or(0);
-            let code = code.with_locals(&|other| places[other].clone());
+        self.placed(|index| {
+            let code = &self.locals[index];
+            let depth = 1 + code.locals().map(|other| depths[other]).max().unwrap_or(0);
             let has_place = !code.needs_name() || returned.contains(&index);
-            if uses == 1 && has_place && depth <= DEEPEST_EXPRESSION {
-                places.push(code);
-                depths.push(depth);
-            } else {
-                depths.push(0);
-                places.push(Code::Local(locals.len()));
-                locals.push(code);
-            }
+            let is_inside = uses[index] == 1 && has_place && depth <= DEEPEST_EXPRESSION;
+            depths.push(if is_inside { depth } else { 0 });
+            if is_inside { Place::Inside } else { Place::Named }
+        })
+    }
+
+    /// The same with each shared term at the place that it is given.
+    fn placed(&self, mut place: impl FnMut(usize) -> Place) -> Kernel {
+        let (mut places, mut locals): (Vec<Code>, Vec<Code>) = (Vec::new(), Vec::new());
+        for (index, code) in self.locals.iter().enumerate() {
+            let put_in = || code.with_locals(&|other: usize| places[other].clone());
+            let placed = match place(index) {
+                Place::Nowhere => Code::Local(index),
+                Place::Inside => put_in(),
+                Place::Named => {
+                    locals.push(put_in());
+                    Code::Local(locals.len() - 1)
+                }
+            };
+            places.push(placed);
         }
-        Kernel { locals, outputs: self.outputs_with(&places) }
+        Kernel { locals, outputs: self.outputs_by(|entry| entry.with_locals(&|index| places[index].clone())) }
+    }
+
+    /// Its outputs with other entries.
+    pub(super) fn outputs_by(&self, other: impl Fn(&Code) -> Code) -> Vec<(Shape, Vec<Code>)> {
+        self.outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(&other).collect())).collect()
     }
 
     /// Its outputs, where each is an entry of an argument.
@@ -235,9 +254,8 @@ impl Kernel {
             Code::Term(index) => Some(terms[*index].clone()),
             _ => None,
         };
-        let mapped = |codes: &Vec<Code>| codes.iter().map(|code| code.mapped(&put_in)).collect();
-        let outputs = self.outputs.iter().map(|(shape, entries)| (*shape, mapped(entries))).collect();
-        Kernel { locals: mapped(&self.locals), outputs }
+        let mapped = |code: &Code| code.mapped(&put_in);
+        Kernel { locals: self.locals.iter().map(mapped).collect(), outputs: self.outputs_by(mapped) }
     }
 
     /// Which of its terms an output is made of.
@@ -250,14 +268,6 @@ impl Kernel {
             }
         }
         needed
-    }
-
-    /// The arguments that it takes as a whole, with their shapes.
-    pub(super) fn arguments(&self) -> Vec<(&Input, Shape)> {
-        let mut arguments = Vec::new();
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).for_each(|code| code.take(&mut arguments));
-        arguments
     }
 }
 
@@ -309,7 +319,7 @@ impl Code {
         let (mut total, mut all) = (constant.clone(), Vec::new());
         for (coefficient, term) in terms {
             match term {
-                Code::Sum(constant, terms) if *coefficient == integer(1) || *coefficient == integer(-1) => {
+                Code::Sum(constant, terms) if is_unit(coefficient) => {
                     let (constant, terms) = Code::summands(constant, terms);
                     total += constant * coefficient;
                     all.extend(terms.into_iter().map(|(weight, term)| (weight * coefficient, term)));
@@ -330,13 +340,8 @@ impl Code {
     /// Whether it is a matrix whose size only the type of a name says.
     pub(crate) fn needs_name(&self) -> bool {
         let Code::Whole(whole) = self else { return false };
-        matches!(
-            whole.operation,
-            MatrixOperation::Embedded(..)
-                | MatrixOperation::Skew
-                | MatrixOperation::SkewComponents
-                | MatrixOperation::SkewOuter
-        )
+        use MatrixOperation::*;
+        matches!(whole.operation, Embedded(..) | Skew | SkewComponents | SkewOuter)
     }
 
     fn divisor(&self) -> Option<&Code> {
@@ -346,36 +351,30 @@ impl Code {
         }
     }
 
-    fn read<'a>(&'a self, inputs: &mut Vec<&'a Input>) {
+    /// The argument that it reads an entry of or takes as a whole, with the shape of that.
+    fn input(&self) -> Option<(&Input, Shape)> {
         match self {
-            Code::Read(input) => inputs.push(input),
-            Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.read(inputs)),
-            Code::Product(factors) => factors.iter().for_each(|factor| factor.read(inputs)),
-            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => x.read(inputs),
-            Code::Call(_, arguments) => {
-                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| entry.read(inputs));
-            }
-            Code::Whole(whole) => {
-                if let MatrixOperation::Argument(input) = &whole.operation {
-                    inputs.push(input);
-                }
-                whole.operands.iter().for_each(|operand| operand.read(inputs));
-            }
-            Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => {}
+            Code::Read(input) => Some((input, Shape::scalar())),
+            Code::Whole(whole) => match &whole.operation {
+                MatrixOperation::Argument(input) => Some((input, whole.shape)),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
-    fn take<'a>(&'a self, arguments: &mut Vec<(&'a Input, Shape)>) {
-        if let Code::Whole(whole) = self
-            && let MatrixOperation::Argument(input) = &whole.operation
-        {
-            arguments.push((input, whole.shape));
-        }
-        self.parts().into_iter().for_each(|part| part.take(arguments));
+    /// It and all its parts, each before those that it is made of.
+    pub(super) fn each(&self) -> impl Iterator<Item = &Code> {
+        let mut open = vec![self];
+        std::iter::from_fn(move || {
+            let code = open.pop()?;
+            open.extend(code.parts().into_iter().rev());
+            Some(code)
+        })
     }
 
     /// The codes that it is made of.
-    pub(super) fn parts(&self) -> Vec<&Code> {
+    fn parts(&self) -> Vec<&Code> {
         match self {
             Code::Sum(_, terms) => terms.iter().map(|(_, term)| term).collect(),
             Code::Product(factors) => factors.iter().collect(),
@@ -388,11 +387,11 @@ impl Code {
     }
 
     /// The shared terms that it stands on, by their indices.
-    pub(super) fn locals(&self) -> Vec<usize> {
-        match self {
-            Code::Local(index) | Code::Output(index, ..) => vec![*index],
-            _ => self.parts().into_iter().flat_map(Code::locals).collect(),
-        }
+    pub(super) fn locals(&self) -> impl Iterator<Item = usize> {
+        self.each().filter_map(|part| match part {
+            Code::Local(index) | Code::Output(index, ..) => Some(*index),
+            _ => None,
+        })
     }
 
     /// The same with other codes for its shared terms.
@@ -433,10 +432,5 @@ impl Code {
             }
             other => other.clone(),
         }
-    }
-
-    /// Whether a test holds for it or for one of its parts.
-    pub(super) fn any(&self, test: &mut impl FnMut(&Code) -> bool) -> bool {
-        test(self) || self.parts().into_iter().any(|part| part.any(test))
     }
 }

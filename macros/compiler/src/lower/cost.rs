@@ -1,8 +1,12 @@
 //! The operations of kernels.
 
-use clebsch_symbolic::integer;
+use std::fmt;
+use std::iter::Sum;
 
-use super::{Code, Kernel};
+use clebsch_symbolic::{Shape, Zero};
+
+use super::scalar::is_unit;
+use super::{Code, Kernel, MatrixOperation};
 
 /// The operations of a kernel.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Default, Debug)]
@@ -22,38 +26,33 @@ pub struct Cost {
 impl Kernel {
     /// The operations of this kernel.
     pub fn cost(&self) -> Cost {
-        let mut cost = Cost::default();
-        self.locals.iter().for_each(|code| cost.count(code));
-        self.outputs.iter().flat_map(|(_, entries)| entries).for_each(|code| cost.count(code));
-        cost
+        self.each().map(Cost::of).sum()
     }
 
     /// The operations that stand in its code: one on whole matrices is one.
     pub fn length(&self) -> usize {
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        let whole: usize = self.locals.iter().chain(outputs).map(Cost::within_matrices).sum();
-        self.cost().total() - whole
+        let within = |code: &Code| match code {
+            Code::Whole(whole) => whole.cost.total().saturating_sub(1),
+            _ => 0,
+        };
+        self.cost().total() - self.each().map(within).sum::<usize>()
     }
 }
 
 impl Cost {
-    /// The operations on entries that operations on whole matrices are made of, but for one each.
-    fn within_matrices(code: &Code) -> usize {
-        let parts: usize = code.parts().into_iter().map(Cost::within_matrices).sum();
-        match code {
-            Code::Whole(whole) => parts + whole.cost.total().saturating_sub(1),
-            _ => parts,
-        }
+    /// Additions and multiplications.
+    fn sums(additions: usize, multiplications: usize) -> Cost {
+        Cost { additions, multiplications, ..Cost::default() }
     }
 
-    /// So many times the cost.
-    pub fn times(self, count: usize) -> Cost {
+    /// The sum of two costs.
+    pub fn plus(self, other: Cost) -> Cost {
         Cost {
-            additions: self.additions * count,
-            multiplications: self.multiplications * count,
-            divisions: self.divisions * count,
-            roots: self.roots * count,
-            calls: self.calls * count,
+            additions: self.additions + other.additions,
+            multiplications: self.multiplications + other.multiplications,
+            divisions: self.divisions + other.divisions,
+            roots: self.roots + other.roots,
+            calls: self.calls + other.calls,
         }
     }
 
@@ -62,49 +61,76 @@ impl Cost {
         self.additions + self.multiplications + self.divisions + self.roots + self.calls
     }
 
-    fn count(&mut self, code: &Code) {
+    /// The operations of a code without those of its parts.
+    fn of(code: &Code) -> Cost {
         match code {
             Code::Sum(constant, terms) => {
-                self.additions += terms.len() - 1 + (*constant != integer(0)) as usize;
-                for (coefficient, term) in terms {
-                    self.multiplications += !(*coefficient == integer(1) || *coefficient == integer(-1)) as usize;
-                    self.count(term);
-                }
+                let scaled = terms.iter().filter(|(weight, _)| !is_unit(weight)).count();
+                Cost::sums(terms.len() - 1 + usize::from(!constant.is_zero()), scaled)
             }
             Code::Product(factors) => {
                 // a division takes the place of a multiplication
                 let below =
                     Code::quotient(factors).map_or(0, |(above, below)| below.len().min(above.len() + below.len() - 1));
-                self.multiplications += factors.len() - 1 - below;
-                factors.iter().for_each(|factor| self.count(factor));
+                Cost::sums(0, factors.len() - 1 - below)
             }
-            Code::Reciprocal(x) => {
-                self.divisions += 1;
-                self.count(x);
-            }
-            Code::Root(x, _) => {
-                self.roots += 1;
-                self.count(x);
-            }
+            Code::Reciprocal(_) => Cost { divisions: 1, ..Cost::default() },
+            Code::Root(..) => Cost { roots: 1, ..Cost::default() },
             // at worst: next to θ = 0 it is a polynomial
-            Code::PerOnePlusCosine(x) => {
-                (self.additions, self.divisions, self.roots) = (self.additions + 2, self.divisions + 1, self.roots + 1);
-                self.count(x);
-            }
-            Code::Function(_, x) => {
-                self.calls += 1;
-                self.count(x);
-            }
-            Code::Call(_, arguments) => {
-                self.calls += 1;
-                arguments.iter().flat_map(|(_, entries)| entries).for_each(|entry| self.count(entry));
-            }
-            Code::Whole(whole) => {
-                *self = self.plus(whole.cost);
-                whole.operands.iter().for_each(|operand| self.count(operand));
-            }
-            Code::Read(_) | Code::Pi | Code::Number(_) | Code::Constant(_) | Code::Term(_) => {}
-            Code::Local(_) | Code::Output(..) => {}
+            Code::PerOnePlusCosine(_) => Cost { divisions: 1, roots: 1, ..Cost::sums(2, 0) },
+            Code::Function(..) | Code::Call(..) => Cost { calls: 1, ..Cost::default() },
+            Code::Whole(whole) => whole.cost,
+            _ => Cost::default(),
         }
+    }
+}
+
+impl MatrixOperation {
+    /// Its operations, from the shape of its result and that of its first operand.
+    pub(super) fn cost(&self, shape: Shape, first: Shape) -> Cost {
+        let (n, all) = (shape.rows, shape.len());
+        match self {
+            MatrixOperation::Sum(weights) => {
+                Cost::sums((weights.len() - 1) * all, weights.iter().filter(|weight| !is_unit(weight)).count() * all)
+            }
+            MatrixOperation::Scaled | MatrixOperation::Hadamard => Cost::sums(0, all),
+            MatrixOperation::Shifted | MatrixOperation::SkewComponents | MatrixOperation::Axial => Cost::sums(n, 0),
+            MatrixOperation::Product => Cost::sums(all * (first.columns - 1), all * first.columns),
+            MatrixOperation::InertiaTimes => Cost::sums(n * (n - 1), n * n),
+            MatrixOperation::SkewTimes => Cost::sums(n * n, n * (n - 1)),
+            MatrixOperation::SkewOuter => Cost::sums(n, 2 * n),
+            MatrixOperation::Pairing => Cost::sums(first.len(), first.len()),
+            MatrixOperation::Trace => Cost::sums(first.rows, 0),
+            MatrixOperation::Inverse => Cost { divisions: n, ..Cost::sums(n.pow(3), n.pow(3)) },
+            MatrixOperation::Determinant => {
+                let third = first.rows.pow(3) / 3;
+                Cost { divisions: first.rows.pow(2) / 2, ..Cost::sums(third, third) }
+            }
+            // squarings and a rational approximation, twelve products
+            MatrixOperation::Analytic(_) => Cost { calls: 1, ..Cost::sums(12 * n.pow(2) * (n - 1), 12 * n.pow(3)) },
+            MatrixOperation::Value | MatrixOperation::Gradient(_) => Cost { calls: 1, ..Cost::default() },
+            _ => Cost::default(),
+        }
+    }
+}
+
+impl Sum for Cost {
+    fn sum<I: Iterator<Item = Cost>>(costs: I) -> Cost {
+        costs.fold(Cost::default(), Cost::plus)
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            (self.additions, "+"),
+            (self.multiplications, "×"),
+            (self.divisions, "÷"),
+            (self.roots, "√"),
+            (self.calls, "f"),
+        ];
+        let text: Vec<String> =
+            parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
+        f.write_str(if text.is_empty() { "no operations".to_string() } else { text.join(" ") }.as_str())
     }
 }

@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Rational, Table, Zero, integer, work};
 
 use super::kernel::{Id, Operation, Operations};
+use super::scalar::is_unit;
 
 #[derive(Default)]
 struct Factored {
@@ -191,9 +192,8 @@ impl Factored {
 
     /// Adds a term to a sum; of a sum that stands nowhere else, its terms.
     fn append(&self, operations: &Operations, sum: &mut Vec<(Rational, Id)>, (coefficient, term): (Rational, Id)) {
-        let is_unit = coefficient == integer(1) || coefficient == integer(-1);
         match operations.value(term) {
-            Operation::Sum(constant, inner) if constant.is_zero() && is_unit && self.uses[term] == 0 => {
+            Operation::Sum(constant, inner) if constant.is_zero() && is_unit(&coefficient) && self.uses[term] == 0 => {
                 let inner = self.sums.get(&term).unwrap_or(inner);
                 inner.iter().for_each(|(weight, term)| add(sum, weight * &coefficient, *term));
             }
@@ -246,85 +246,4 @@ fn without(factors: &[Id], factor: Id) -> Vec<Id> {
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::lower::kernel::kernel;
-    use crate::lower::{Hoisting, Input, Scalar, Scalars};
-    use clebsch_symbolic::{Role, Shape, integer};
-
-    /// Entries of an input.
-    fn inputs<const N: usize>(scalars: &mut Scalars) -> [Scalar; N] {
-        let entry = |row| Input {
-            role: Role::Momentum(0),
-            name: "x".to_string(),
-            row,
-            column: 0,
-            is_vector: true,
-            is_scalar: false,
-        };
-        std::array::from_fn(|row| scalars.input(entry(row)))
-    }
-
-    /// Σ ± the products of some factors.
-    fn sum(scalars: &mut Scalars, terms: &[(i64, &[Scalar])]) -> Scalar {
-        let terms: Vec<_> =
-            terms.iter().map(|(sign, factors)| (scalars.product(factors.iter().copied()), integer(*sign))).collect();
-        scalars.sum(integer(0), terms)
-    }
-
-    /// Additions and multiplications of outputs.
-    fn operations(scalars: &mut Scalars, outputs: Vec<Scalar>) -> (usize, usize) {
-        let cost = kernel(scalars, &[(Shape::vector(outputs.len()), outputs)], Hoisting::Nothing).cost();
-        (cost.additions, cost.multiplications)
-    }
-
-    #[test]
-    fn a_common_factor_is_taken_out() {
-        let mut scalars = Scalars::default();
-        let [a, b, c] = inputs(&mut scalars);
-        let whole = sum(&mut scalars, &[(1, &[a, b]), (-1, &[a, c])]);
-        assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
-    }
-
-    #[test]
-    fn what_is_at_hand_is_not_made_again() {
-        let mut scalars = Scalars::default();
-        let [a, b, c] = inputs(&mut scalars);
-        let [left, right] = [[a, b], [a, c]].map(|factors| scalars.product(factors));
-        let whole = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
-        assert_eq!(operations(&mut scalars, vec![left, right, whole]), (1, 2));
-    }
-
-    /// k (a b − c d) + k (a e + c f) = k (a (b + e) + c (f − d)).
-    #[test]
-    fn sums_that_stand_alone_are_opened() {
-        let mut scalars = Scalars::default();
-        let [k, a, b, c, d, e, f] = inputs(&mut scalars);
-        let first = sum(&mut scalars, &[(1, &[a, b]), (-1, &[c, d])]);
-        let second = sum(&mut scalars, &[(1, &[a, e]), (1, &[c, f])]);
-        let whole = sum(&mut scalars, &[(1, &[k, first]), (1, &[k, second])]);
-        assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
-    }
-
-    /// (a b + a c)/2 − (a d − b c)/2 = (a (b + c − d) + b c)/2.
-    #[test]
-    fn numbers_are_factors() {
-        let mut scalars = Scalars::default();
-        let [a, b, c, d] = inputs(&mut scalars);
-        let first = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
-        let second = sum(&mut scalars, &[(1, &[a, d]), (-1, &[b, c])]);
-        let half = clebsch_symbolic::rational(1, 2);
-        let whole = scalars.sum(integer(0), [(first, half.clone()), (second, -half)]);
-        assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
-    }
-
-    /// k (a b − a b) + k c: what cancels once the factor is out leaves nothing.
-    #[test]
-    fn what_cancels_leaves_nothing() {
-        let mut scalars = Scalars::default();
-        let [k, a, b, c] = inputs(&mut scalars);
-        let [first, second] =
-            [(1, c), (-1, a)].map(|(sign, other)| sum(&mut scalars, &[(1, &[a, b]), (sign, &[other])]));
-        let whole = sum(&mut scalars, &[(1, &[k, first]), (-1, &[k, second])]);
-        assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
-    }
-}
+mod tests;

@@ -56,7 +56,7 @@ pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
         let value = lowering.value(expr);
         match expr.shape().is_scalar() {
             true => value,
-            false => lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar(), Cost::default()),
+            false => lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar()),
         }
     };
     let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
@@ -107,8 +107,14 @@ impl Matrices {
         Code::Local(index)
     }
 
-    fn operation(&mut self, operation: MatrixOperation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
+    fn operation(&mut self, operation: MatrixOperation, operands: Vec<Code>, shape: Shape) -> Code {
+        let first = operands.first().map_or(Shape::scalar(), |operand| self.shape(operand));
+        let cost = operation.cost(shape, first);
         self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
+    }
+
+    fn shape(&self, code: &Code) -> Shape {
+        self.operation_of(code).map_or(Shape::scalar(), |whole| whole.shape)
     }
 
     /// Expressions are deep: each kind has a function of its own, so that this one has little on the stack.
@@ -123,24 +129,18 @@ impl Matrices {
             View::Stack(entries) => self.stack(&entries, shape),
             View::Word(word) => self.scalar_word(&word),
             View::Trace(word) => self.trace(&word),
-            View::Transpose(a) => self.of_matrix(MatrixOperation::Transpose, a, shape, Cost::default()),
-            View::Inverse(a) => self.of_matrix(MatrixOperation::Inverse, a, shape, cost_of_inverse(shape.rows)),
-            View::Analytic(function, a) => {
-                self.of_matrix(MatrixOperation::Analytic(function), a, shape, cost_of_series(shape.rows))
-            }
+            View::Transpose(a) => self.of_matrix(MatrixOperation::Transpose, a, shape),
+            View::Inverse(a) => self.of_matrix(MatrixOperation::Inverse, a, shape),
+            View::Analytic(function, a) => self.of_matrix(MatrixOperation::Analytic(function), a, shape),
             View::Opaque(_, output, arguments) => self.opaque(output, &arguments, shape),
-            View::Determinant(a) => {
-                self.of_matrix(MatrixOperation::Determinant, a, shape, cost_of_determinant(a.shape().rows))
-            }
+            View::Determinant(a) => self.of_matrix(MatrixOperation::Determinant, a, shape),
             View::Function(function, a) => self.function(function, a),
             View::Block(a, row, column) => self.block(a, row, column, shape),
             View::Embed(a, row, column) if self.joins_blocks => self.embedded(a, (row, column), shape),
-            View::Embed(a, row, column) => {
-                self.of_matrix(MatrixOperation::Embedded(row, column), a, shape, Cost::default())
-            }
+            View::Embed(a, row, column) => self.of_matrix(MatrixOperation::Embedded(row, column), a, shape),
             View::Hadamard(a, b) => self.hadamard(a, b, shape),
-            View::DiagonalMatrix(a) => self.of_matrix(MatrixOperation::DiagonalMatrix, a, shape, Cost::default()),
-            View::Diagonal(a) => self.of_matrix(MatrixOperation::Diagonal, a, shape, Cost::default()),
+            View::DiagonalMatrix(a) => self.of_matrix(MatrixOperation::DiagonalMatrix, a, shape),
+            View::Diagonal(a) => self.of_matrix(MatrixOperation::Diagonal, a, shape),
             View::Wedge(algebra, x) => self.wedge(graph, algebra, x, shape),
             View::Components(algebra, a) => match self.outer(graph, algebra, a) {
                 Some(components) => components,
@@ -150,9 +150,9 @@ impl Matrices {
     }
 
     /// An operation on one matrix.
-    fn of_matrix(&mut self, operation: MatrixOperation, a: Expr<'_>, shape: Shape, cost: Cost) -> Code {
+    fn of_matrix(&mut self, operation: MatrixOperation, a: Expr<'_>, shape: Shape) -> Code {
         let a = self.value(a);
-        self.operation(operation, vec![a], shape, cost)
+        self.operation(operation, vec![a], shape)
     }
 
     fn stack(&mut self, entries: &[Expr<'_>], shape: Shape) -> Code {
@@ -167,7 +167,7 @@ impl Matrices {
     fn opaque(&mut self, output: usize, arguments: &[Expr<'_>], shape: Shape) -> Code {
         let arguments: Vec<Code> = arguments.iter().map(|&argument| self.value(argument)).collect();
         let operation = if output == 0 { MatrixOperation::Value } else { MatrixOperation::Gradient(output - 1) };
-        self.operation(operation, arguments, shape, Cost { calls: 1, ..Cost::default() })
+        self.operation(operation, arguments, shape)
     }
 
     fn hadamard(&mut self, a: Expr<'_>, b: Expr<'_>, shape: Shape) -> Code {
@@ -175,8 +175,7 @@ impl Matrices {
         if shape.is_scalar() {
             return Code::Product(operands);
         }
-        let cost = Cost { multiplications: shape.len(), ..Cost::default() };
-        self.operation(MatrixOperation::Hadamard, operands, shape, cost)
+        self.operation(MatrixOperation::Hadamard, operands, shape)
     }
 
     fn components_of(&mut self, graph: &Graph, algebra: Algebra, a: Expr<'_>) -> Code {
@@ -185,7 +184,7 @@ impl Matrices {
     }
 
     fn entries(&mut self, shape: Shape, entries: Vec<Code>) -> Code {
-        self.operation(MatrixOperation::Entries, entries, shape, Cost::default())
+        self.operation(MatrixOperation::Entries, entries, shape)
     }
 
     fn block(&mut self, a: Expr<'_>, row: usize, column: usize, shape: Shape) -> Code {
@@ -198,17 +197,17 @@ impl Matrices {
         let value = self.value(a);
         match shape.is_scalar() {
             true => self.entry(&value, row, column),
-            false => self.operation(MatrixOperation::Block(row, column), vec![value], shape, Cost::default()),
+            false => self.operation(MatrixOperation::Block(row, column), vec![value], shape),
         }
     }
 
     /// Σ x_k E_k, entry by entry where the basis has no function of its own.
     fn wedge(&mut self, graph: &Graph, algebra: Algebra, x: Expr<'_>, shape: Shape) -> Code {
         if is_rotations(graph, algebra) {
-            return self.of_matrix(MatrixOperation::Skew, x, shape, Cost::default());
+            return self.of_matrix(MatrixOperation::Skew, x, shape);
         }
         if is_hat(graph, algebra) {
-            return self.of_matrix(MatrixOperation::Hat, x, shape, Cost::default());
+            return self.of_matrix(MatrixOperation::Hat, x, shape);
         }
         let (x, basis) = (self.value(x), graph.basis(algebra));
         let mut entries = vec![Vec::new(); shape.len()];
@@ -225,12 +224,10 @@ impl Matrices {
     fn components(&mut self, graph: &Graph, algebra: Algebra, a: Code) -> Code {
         let shape = Shape::vector(algebra.dimension());
         if is_rotations(graph, algebra) {
-            let cost = Cost { additions: shape.rows, ..Cost::default() };
-            return self.operation(MatrixOperation::SkewComponents, vec![a], shape, cost);
+            return self.operation(MatrixOperation::SkewComponents, vec![a], shape);
         }
         if is_hat(graph, algebra) && !(self.joins_blocks && self.is_read(&a)) {
-            let cost = Cost { additions: 3, ..Cost::default() };
-            return self.operation(MatrixOperation::Axial, vec![a], shape, cost);
+            return self.operation(MatrixOperation::Axial, vec![a], shape);
         }
         let basis = graph.basis(algebra);
         let component = |element: &clebsch_symbolic::Sparse| {
@@ -249,9 +246,7 @@ impl Matrices {
         let (word, cut) = outer_product(graph, algebra, a)?;
         let row: Vec<Expr<'_>> = word[cut..].iter().rev().map(|letter| letter.transpose()).collect();
         let operands = vec![self.product(&word[..cut]), self.product(&row)];
-        let m = algebra.dimension();
-        let cost = Cost { additions: m, multiplications: 2 * m, ..Cost::default() };
-        Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(m), cost))
+        Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(algebra.dimension())))
     }
 
     fn scalar_sum(&mut self, terms: Vec<WordTerm<'_>>) -> Code {
@@ -270,66 +265,49 @@ impl Matrices {
     }
 
     fn powers(&mut self, scalars: &[(Expr<'_>, (i64, i64))]) -> Vec<Code> {
-        let mut factors = Vec::new();
-        for (base, (numerator, denominator)) in scalars {
+        let power = |(base, (numerator, denominator)): &(Expr<'_>, (i64, i64))| {
             let base = self.value(*base);
-            let root = match denominator {
-                1 => base,
+            let power = match (numerator.unsigned_abs() as usize, denominator) {
+                (1, 1) => base,
+                (count, 1) => Code::Product(vec![base; count]),
                 _ => Code::Root(Box::new(base), (numerator.abs(), *denominator)),
             };
-            let count = if *denominator == 1 { numerator.unsigned_abs() as usize } else { 1 };
-            let root = if count > 1 { self.shared(root) } else { root };
-            let factor = match count {
-                1 => root,
-                _ => Code::Product(vec![root; count]),
-            };
-            let factor = if *numerator < 0 { Code::reciprocal(factor) } else { factor };
-            factors.push(self.shared(factor));
-        }
-        factors
+            self.shared(if *numerator < 0 { Code::reciprocal(power) } else { power })
+        };
+        scalars.iter().map(power).collect()
     }
 
     /// A product of letters that is 1×1.
     fn scalar_word(&mut self, word: &[Expr<'_>]) -> Code {
         match word {
             [only] => self.value(*only),
-            [first, rest @ ..] => {
-                let (a, b) = (self.value(first.transpose()), self.product(rest));
-                let n = first.shape().columns;
-                let cost = Cost { additions: n, multiplications: n, ..Cost::default() };
-                match n {
-                    1 => Code::Product(vec![a, b]),
-                    _ => self.operation(MatrixOperation::Pairing, vec![a, b], Shape::scalar(), cost),
-                }
+            [first, rest @ ..] if first.shape().columns == 1 => {
+                Code::Product(vec![self.value(first.transpose()), self.product(rest)])
             }
+            [first, rest @ ..] => self.pairing(*first, rest),
             [] => Code::Number(integer(1)),
         }
     }
 
     /// tr(AB) = ⟨Aᵀ, B⟩, A the first letter.
     fn trace(&mut self, word: &[Expr<'_>]) -> Code {
-        let n = word[0].shape().rows;
         match word {
             [only] => {
-                let only = self.value(*only);
+                let (n, only) = (only.shape().rows, self.value(*only));
                 if self.joins_blocks && self.is_read(&only) {
                     return total((0..n).map(|i| (integer(1), self.entry(&only, i, i))).collect());
                 }
-                self.operation(
-                    MatrixOperation::Trace,
-                    vec![only],
-                    Shape::scalar(),
-                    Cost { additions: n, ..Cost::default() },
-                )
+                self.operation(MatrixOperation::Trace, vec![only], Shape::scalar())
             }
-            [first, rest @ ..] => {
-                let (a, b) = (self.value(first.transpose()), self.product(rest));
-                let entries = first.shape().len();
-                let cost = Cost { additions: entries, multiplications: entries, ..Cost::default() };
-                self.operation(MatrixOperation::Pairing, vec![a, b], Shape::scalar(), cost)
-            }
+            [first, rest @ ..] => self.pairing(*first, rest),
             [] => Code::Number(integer(0)),
         }
+    }
+
+    /// ⟨Aᵀ, B⟩, B the product of the other letters.
+    fn pairing(&mut self, first: Expr<'_>, others: &[Expr<'_>]) -> Code {
+        let operands = vec![self.value(first.transpose()), self.product(others)];
+        self.operation(MatrixOperation::Pairing, operands, Shape::scalar())
     }
 
     /// The product of some letters, in the order that takes the fewest multiplications.
@@ -340,30 +318,23 @@ impl Matrices {
         let cut = cheapest_cut(word);
         let (left, right) = word.split_at(cut);
         let shape = Shape::new(left[0].shape().rows, right[right.len() - 1].shape().columns);
-        let inner = right[0].shape().rows;
-        if let ([letter], 1) = (left, shape.columns)
-            && let Some((sign, x)) = skew_letter(*letter)
-        {
-            let operands = vec![self.value(x), self.product(right)];
-            let cost = Cost { additions: inner * inner, multiplications: inner * (inner - 1), ..Cost::default() };
-            let turned = self.operation(MatrixOperation::SkewTimes, operands, shape, cost);
-            return self.total(shape, vec![(sign, turned)]);
-        }
-        if let ([letter], 1) = (left, shape.columns)
-            && letter.as_symbol().is_some_and(|symbol| symbol.role == Role::InertiaInverse)
-        {
-            let vector = self.product(right);
-            let cost = product_cost(inner, inner, 1);
-            return self.operation(MatrixOperation::InertiaTimes, vec![vector], shape, cost);
-        }
-        if let ([letter], 1) = (left, shape.columns)
-            && let View::Literal(numbers) = letter.view()
-        {
-            let vector = self.product(right);
-            return self.combinations(&numbers, &vector, shape);
+        if let ([letter], 1) = (left, shape.columns) {
+            if let Some((sign, x)) = skew_letter(*letter) {
+                let operands = vec![self.value(x), self.product(right)];
+                let turned = self.operation(MatrixOperation::SkewTimes, operands, shape);
+                return self.total(shape, vec![(sign, turned)]);
+            }
+            if letter.as_symbol().is_some_and(|symbol| symbol.role == Role::InertiaInverse) {
+                let vector = self.product(right);
+                return self.operation(MatrixOperation::InertiaTimes, vec![vector], shape);
+            }
+            if let View::Literal(numbers) = letter.view() {
+                let vector = self.product(right);
+                return self.combinations(&numbers, &vector, shape);
+            }
         }
         let operands = vec![self.product(left), self.product(right)];
-        self.operation(MatrixOperation::Product, operands, shape, product_cost(shape.rows, inner, shape.columns))
+        self.operation(MatrixOperation::Product, operands, shape)
     }
 
     /// A matrix of numbers times a vector, without its zeros.
@@ -440,9 +411,7 @@ impl Matrices {
             let sum = self.gathered(parts_of, left);
             let value = self.value(letter);
             let operands = if first { vec![value, sum] } else { vec![sum, value] };
-            let inner = if first { parts_of.rows } else { parts_of.columns };
-            let cost = product_cost(shape.rows, inner, shape.columns);
-            parts.push((integer(1), self.operation(MatrixOperation::Product, operands, shape, cost)));
+            parts.push((integer(1), self.operation(MatrixOperation::Product, operands, shape)));
         }
         let (mut identity, mut scales) = (integer(0), Vec::new());
         for term in terms {
@@ -453,7 +422,6 @@ impl Matrices {
                 (false, None) => parts.push((coefficient, self.product(&word))),
                 (false, Some(scale)) => {
                     let product = self.product(&word);
-                    let cost = Cost { multiplications: shape.len(), ..Cost::default() };
                     let weight = linear(integer(0), vec![(coefficient, scale)]);
                     if self.joins_blocks && self.is_listed(&product) {
                         let entries = shape.positions().map(|(i, j)| times(&weight, self.entry(&product, i, j)));
@@ -462,18 +430,14 @@ impl Matrices {
                         continue;
                     }
                     let weight = self.shared(weight);
-                    parts.push((
-                        integer(1),
-                        self.operation(MatrixOperation::Scaled, vec![product, weight], shape, cost),
-                    ));
+                    parts.push((integer(1), self.operation(MatrixOperation::Scaled, vec![product, weight], shape)));
                 }
             }
         }
         if identity != integer(0) || !scales.is_empty() {
             let multiple = self.shared(linear(identity, scales));
             let sum = self.total(shape, parts);
-            let cost = Cost { additions: shape.rows, ..Cost::default() };
-            parts = vec![(integer(1), self.operation(MatrixOperation::Shifted, vec![sum, multiple], shape, cost))];
+            parts = vec![(integer(1), self.operation(MatrixOperation::Shifted, vec![sum, multiple], shape))];
         }
         parts
     }
@@ -481,21 +445,14 @@ impl Matrices {
     fn total(&mut self, shape: Shape, parts: Vec<(Rational, Code)>) -> Code {
         match parts.as_slice() {
             [(weight, only)] if weight.is_one() => return only.clone(),
-            [] => return self.operation(MatrixOperation::Zero, Vec::new(), shape, Cost::default()),
+            [] => return self.operation(MatrixOperation::Zero, Vec::new(), shape),
             _ => {}
         }
         if let Some(entries) = self.joined(shape, &parts) {
             return self.entries(shape, entries);
         }
-        let multiplications =
-            parts.iter().filter(|(weight, _)| *weight != integer(1) && *weight != integer(-1)).count();
-        let cost = Cost {
-            additions: (parts.len() - 1) * shape.len(),
-            multiplications: multiplications * shape.len(),
-            ..Cost::default()
-        };
         let (weights, operands) = parts.into_iter().unzip();
-        self.operation(MatrixOperation::Sum(weights), operands, shape, cost)
+        self.operation(MatrixOperation::Sum(weights), operands, shape)
     }
 }
 
@@ -538,25 +495,6 @@ fn outer_product<'g>(graph: &Graph, algebra: Algebra, a: Expr<'g>) -> Option<(Ve
 fn entry(a: &Code, i: usize, j: usize) -> Code {
     let (operation, operands) = (MatrixOperation::Entry(i, j), vec![a.clone()]);
     Code::Whole(Box::new(Whole { operation, operands, shape: Shape::scalar(), cost: Cost::default() }))
-}
-
-fn cost_of_inverse(n: usize) -> Cost {
-    Cost { additions: n * n * n, multiplications: n * n * n, divisions: n, ..Cost::default() }
-}
-
-fn cost_of_determinant(n: usize) -> Cost {
-    let third = n * n * n / 3;
-    Cost { additions: third, multiplications: third, divisions: n * n / 2, ..Cost::default() }
-}
-
-/// Squarings and a rational approximation.
-fn cost_of_series(n: usize) -> Cost {
-    Cost { calls: 1, ..product_cost(n, n, n).times(12) }
-}
-
-fn product_cost(rows: usize, inner: usize, columns: usize) -> Cost {
-    let all = rows * inner * columns;
-    Cost { additions: all - rows * columns, multiplications: all, ..Cost::default() }
 }
 
 /// constant + Σ coefficient · code.

@@ -4,36 +4,8 @@ use std::fmt;
 
 use clebsch_symbolic::{Analytic, integer};
 
-use super::{Callee, Code, Cost, Input, Kernel, MatrixOperation, Program, Whole};
+use super::{Callee, Code, Input, Kernel, MatrixOperation, Program, Whole};
 use crate::derive::Id;
-
-impl Cost {
-    /// The sum of two costs.
-    pub fn plus(self, other: Cost) -> Cost {
-        Cost {
-            additions: self.additions + other.additions,
-            multiplications: self.multiplications + other.multiplications,
-            divisions: self.divisions + other.divisions,
-            roots: self.roots + other.roots,
-            calls: self.calls + other.calls,
-        }
-    }
-}
-
-impl fmt::Display for Cost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts = [
-            (self.additions, "+"),
-            (self.multiplications, "×"),
-            (self.divisions, "÷"),
-            (self.roots, "√"),
-            (self.calls, "f"),
-        ];
-        let text: Vec<String> =
-            parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
-        f.write_str(if text.is_empty() { "no operations".to_string() } else { text.join(" ") }.as_str())
-    }
-}
 
 impl fmt::Display for Program<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

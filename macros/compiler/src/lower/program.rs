@@ -191,7 +191,7 @@ impl Program<'_> {
 
     /// The operations of all kernels together.
     pub fn cost(&self) -> Cost {
-        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).fold(Cost::default(), Cost::plus)
+        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).sum()
     }
 
     /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
@@ -212,7 +212,7 @@ impl Program<'_> {
         let increment = self.makes_increments(substep).then_some(Id::Increment);
         let moves = if self.find(Id::Displacement).is_some() { Id::Displacement } else { Id::Advance };
         let ids = solves.chain(kicks).chain(increment).chain([moves]);
-        ids.map(|id| self.kernel(id).cost()).fold(Cost::default(), Cost::plus)
+        ids.map(|id| self.kernel(id).cost()).sum()
     }
 
     /// ρ(x) and Dρ(x) of an equation; of a linear one −ρ(0) and Dρ.

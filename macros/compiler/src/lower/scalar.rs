@@ -341,7 +341,8 @@ impl Scalars {
     }
 }
 
-fn is_unit(coefficient: &Rational) -> bool {
+/// Whether a number is 1 or −1, so that nothing is multiplied.
+pub(super) fn is_unit(coefficient: &Rational) -> bool {
     coefficient.is_one() || *coefficient == integer(-1)
 }
 

@@ -206,21 +206,12 @@ impl<'g> Maker<'_, 'g> {
 /// The components of the momentum and the chart coordinates that some kernels read, by their indices among those of all factors.
 fn read(formulas: &Formulas<'_>, kernels: &[(Id, Kernel)]) -> (BTreeSet<usize>, BTreeSet<usize>) {
     let (mut momenta, mut coordinates) = (BTreeSet::new(), BTreeSet::new());
-    for (_, kernel) in kernels {
-        for input in kernel.inputs() {
-            match input.role {
-                Role::Momentum(k) => momenta.insert(formulas.model.offset(k) + input.row),
-                Role::Chart(block) => coordinates.insert(formulas.symbols.blocks[block].offset + input.row),
-                _ => false,
-            };
-        }
-        for (input, shape) in kernel.arguments() {
-            match input.role {
-                Role::Momentum(k) => momenta.extend((0..shape.rows).map(|row| formulas.model.offset(k) + row)),
-                Role::Chart(block) => coordinates.extend(formulas.symbols.blocks[block].components()),
-                _ => {}
-            }
-        }
+    for (role, row) in kernels.iter().flat_map(|(_, kernel)| kernel.rows_read()) {
+        match role {
+            Role::Momentum(k) => momenta.insert(formulas.model.offset(k) + row),
+            Role::Chart(block) => coordinates.insert(formulas.symbols.blocks[block].offset + row),
+            _ => false,
+        };
     }
     (momenta, coordinates)
 }

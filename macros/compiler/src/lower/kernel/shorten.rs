@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Rational, Shape, Table, Zero, integer};
 
 use super::{Builder, Id, Operation, entries};
+use crate::lower::scalar::is_unit;
 use crate::lower::{balance, factors, sums};
 
 /// The additions and multiplications that a processor begins in a cycle, about.
@@ -16,8 +17,7 @@ const CALL: u32 = 40;
 
 /// When a term of a sum is there.
 pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)) -> u32 {
-    let is_unit = *coefficient == integer(1) || *coefficient == integer(-1);
-    delays[*term] + if is_unit { 0 } else { balance::STEP }
+    delays[*term] + if is_unit(coefficient) { 0 } else { balance::STEP }
 }
 
 impl Builder<'_, '_> {
@@ -94,7 +94,6 @@ impl Builder<'_, '_> {
 
     /// The additions and multiplications of the outputs, shared ones once.
     fn count_operations(&self, outputs: &[(Shape, Vec<Id>)]) -> usize {
-        let is_unit = |weight: &Rational| *weight == integer(1) || *weight == integer(-1);
         let count = |id: Id| match self.operations.value(id) {
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);

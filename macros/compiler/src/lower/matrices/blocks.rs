@@ -7,7 +7,7 @@ use crate::lower::{Code, Input, MatrixOperation, Whole};
 
 impl Matrices {
     /// The operation that a matrix is the result of.
-    fn operation_of<'a>(&'a self, code: &'a Code) -> Option<&'a Whole> {
+    pub(super) fn operation_of<'a>(&'a self, code: &'a Code) -> Option<&'a Whole> {
         match code {
             Code::Local(index) => self.operation_of(&self.locals[*index]),
             Code::Whole(whole) => Some(whole),

@@ -32,8 +32,7 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
         }
     }
     prepare.outputs = terms.iter().map(|&index| (shape(index), vec![before(index)])).collect();
-    let renamed = |entries: &Vec<Code>| entries.iter().map(|entry| entry.with_locals(&after)).collect();
-    rest.outputs = kernel.outputs.iter().map(|(shape, entries)| (*shape, renamed(entries))).collect();
+    rest.outputs = kernel.outputs_by(|entry| entry.with_locals(&after));
     (prepare, rest)
 }
 
