@@ -77,7 +77,11 @@ fn program<'g>(
     declaration: &Declaration,
     stage: &Cell<CompilerStage>,
 ) -> Result<Program<'g>, Diagnostics> {
-    let mut program = program_of_steps(graph, declaration, stage)?;
+    let mut program = match program_of_steps(graph, declaration, stage)? {
+        Program::Mechanics(program) => program,
+        // what inputs move has no methods
+        steered => return Ok(steered),
+    };
     let mut diagnostics = Diagnostics::new();
     // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
     let graphs = std::iter::successors(Some(graph), |graph| Some(graph.another())).skip(1);
@@ -88,7 +92,7 @@ fn program<'g>(
             Err(errors) => errors.into_vec().into_iter().for_each(|error| diagnostics.push(error)),
         }
     }
-    diagnostics.propagate(program)
+    diagnostics.propagate(Program::Mechanics(program))
 }
 
 /// The program of a declaration as its own dials step it.

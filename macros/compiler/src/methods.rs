@@ -3,17 +3,17 @@
 use proc_macro2::Ident;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::lower::Program;
+use crate::lower::{MechanicsProgram, Program};
 
 /// A further way to step the system of a program.
 pub struct MethodProgram<'g> {
     /// The unit struct of the user that stands for it.
     pub name: Ident,
     /// Its program, of which the system is that of the declared dials.
-    pub program: Program<'g>,
+    pub program: MechanicsProgram<'g>,
 }
 
-impl Program<'_> {
+impl MechanicsProgram<'_> {
     /// The text of `DERIVATION` of a method.
     pub(crate) fn derivation_by(&self, name: &Ident) -> String {
         let system = self.formulas.model.item.ident.to_string();
@@ -29,14 +29,16 @@ impl<'g> MethodProgram<'g> {
     pub(crate) fn new(
         name: &Ident,
         program: Program<'g>,
-        declared: &Program<'g>,
+        declared: &MechanicsProgram<'g>,
     ) -> Result<MethodProgram<'g>, Diagnostics> {
-        let of = |program: &Program<'g>| -> Vec<String> {
+        // by construction: a method has the system of its declaration
+        let Program::Mechanics(program) = program else { return Err(Diagnostics::new()) };
+        let of = |program: &MechanicsProgram<'g>| -> Vec<String> {
             program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.clone()).collect()
         };
         let conserved = of(&program);
         match of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
-            None => Ok(MethodProgram { name: name.clone(), program }),
+            None => Ok(MethodProgram { name: name.clone(), program: *program }),
             Some(lost) => {
                 let message = format!("the method `{name}` does not conserve the momentum `{lost}`");
                 let error = Diagnostic::new(name.span(), message);

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use clebsch_compiler::derive::{Formula, Formulas, Id};
-use clebsch_compiler::lower::Program;
+use clebsch_compiler::derive::{Formula, FormulaTable, Id};
+use clebsch_compiler::lower::{MechanicsProgram, Program};
 use clebsch_compiler::{Graph, compile, emit};
 use quote::ToTokens;
 use syn::{Attribute, Expr, ImplItem, Item, ItemImpl, Lit, Meta, PathArguments, Stmt, Type};
@@ -37,9 +37,9 @@ impl Documented {
 }
 
 /// The substep that a suffix stands for.
-fn substep(formulas: &Formulas<'_>, suffix: &str) -> usize {
+fn substep(program: Option<&MechanicsProgram<'_>>, suffix: &str) -> usize {
     match suffix {
-        "_whole" | "Whole" => formulas.stepped,
+        "_whole" | "Whole" => program.map_or(0, |program| program.formulas.stepped),
         "_adjoint" | "Adjoint" => 1,
         _ => 0,
     }
@@ -54,16 +54,18 @@ fn of_trait(item: &ItemImpl) -> Option<(usize, Option<usize>)> {
 }
 
 /// Whether it is the move of a step that takes the coordinates, and not the increment.
-fn moves_by_coordinates(program: &Program<'_>, item: &ItemImpl, method: &str) -> bool {
+fn moves_by_coordinates(program: Option<&MechanicsProgram<'_>>, item: &ItemImpl, method: &str) -> bool {
     let of = item.trait_.as_ref().and_then(|(path, _)| path.segments.last());
-    method == "advance" && of.is_some_and(|of| of.ident == "Parts") && program.find(Id::Displacement).is_some()
+    method == "advance"
+        && of.is_some_and(|of| of.ident == "Parts")
+        && program.is_some_and(|program| program.find(Id::Displacement).is_some())
 }
 
 /// The place of the type of a momentum equation, `EquationFirst1`.
-fn of_equation(formulas: &Formulas<'_>, name: &str) -> Option<(usize, Option<usize>)> {
+fn of_equation(program: Option<&MechanicsProgram<'_>>, name: &str) -> Option<(usize, Option<usize>)> {
     let suffix = name.strip_prefix("Equation")?.trim_end_matches(|c: char| c.is_ascii_digit());
     let number: usize = name.trim_start_matches(|c: char| !c.is_ascii_digit()).parse().ok()?;
-    Some((substep(formulas, suffix), Some(number - 1)))
+    Some((substep(program, suffix), Some(number - 1)))
 }
 
 fn documentation(attributes: &[Attribute]) -> Vec<String> {
@@ -104,14 +106,14 @@ fn item_of(statement: &Stmt) -> Option<Item> {
 }
 
 /// All methods and types among the items of a program.
-fn documented(program: &Program<'_>, items: Vec<Item>) -> Vec<Documented> {
-    let formulas = &program.formulas;
-    let is_power = |owner: &str| formulas.model.power.as_ref().is_some_and(|power| power.item.ident == owner);
+fn documented(program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<Documented> {
+    let power = program.and_then(|program| program.formulas.model.power.as_ref());
+    let is_power = |owner: &str| power.is_some_and(|power| power.item.ident == owner);
     let mut all = Vec::new();
     for item in items {
         match item {
             Item::Struct(item) => {
-                let place = of_equation(formulas, &item.ident.to_string());
+                let place = of_equation(program, &item.ident.to_string());
                 let name = if place.is_some() { "Equation".to_string() } else { item.ident.to_string() };
                 all.push(Documented { name, place, lines: documentation(&item.attrs) });
             }
@@ -121,7 +123,7 @@ fn documented(program: &Program<'_>, items: Vec<Item>) -> Vec<Documented> {
                 for method in &item.items {
                     let ImplItem::Fn(method) = method else { continue };
                     let mut name = method.sig.ident.to_string();
-                    let place = of_equation(formulas, &owner).or_else(|| of_trait(&item));
+                    let place = of_equation(program, &owner).or_else(|| of_trait(&item));
                     if moves_by_coordinates(program, &item, &name) {
                         name = "displace".to_string();
                     }
@@ -142,10 +144,10 @@ fn documented(program: &Program<'_>, items: Vec<Item>) -> Vec<Documented> {
 }
 
 /// What the documentation of a program shows and the table does not say, or the other way round.
-fn differences(program: &Program<'_>, items: Vec<Item>) -> Vec<String> {
+fn differences(table: &FormulaTable<'_>, program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<String> {
     let mut found = Vec::new();
     for item in documented(program, items) {
-        let rows: Vec<_> = program.formulas.table().iter().filter(|row| item.shows(row)).collect();
+        let rows: Vec<_> = table.rows().iter().filter(|row| item.shows(row)).collect();
         let expected: Vec<String> = rows.iter().map(|row| row.equation()).collect();
         let source = rows.first().and_then(|row| row.source).map(|source| format!("Source: {source}."));
         if item.equations() != expected || item.source() != source.as_deref() {
@@ -173,10 +175,18 @@ fn methods_show_the_formulas_that_they_compute() {
             let program = compile(&graph, item.to_token_stream()).unwrap_or_else(|errors| panic!("{errors}"));
             let items = items(&program);
             let blocks = items_of_methods(&items);
-            assert_eq!(blocks.len(), program.methods.len(), "{}", path.display());
-            let methods = program.methods.iter().zip(blocks);
-            let of_methods = methods.flat_map(|(method, items)| differences(&method.program, items));
-            let found: Vec<String> = of_methods.chain(differences(&program, items)).collect();
+            let found = match &program {
+                Program::Mechanics(program) => {
+                    assert_eq!(blocks.len(), program.methods.len(), "{}", path.display());
+                    let of = |program: &MechanicsProgram<'_>, items| {
+                        differences(program.formulas.table(), Some(program), items)
+                    };
+                    let methods = program.methods.iter().zip(blocks);
+                    let of_methods = methods.flat_map(|(method, items)| of(&method.program, items));
+                    of_methods.chain(of(program, items)).collect::<Vec<String>>()
+                }
+                Program::Steered(program) => differences(program.formulas.table(), None, items),
+            };
             different.extend(found.into_iter().map(|difference| format!("{}: {difference}", path.display())));
             count += 1;
         }

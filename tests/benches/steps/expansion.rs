@@ -60,7 +60,8 @@ fn expansion(item: syn::ItemStruct) -> Expansion {
     };
     let mut costs = (Cost::default(), Cost::default());
     // where a step moves by the chart coordinates alone, increments are made for others
-    let steps = (0..program.steps.len()).all(|index| program.makes_increments(index));
+    let steps =
+        program.mechanics().is_none_or(|program| (0..program.steps.len()).all(|index| program.makes_increments(index)));
     for (kernel, cost) in program.kernels().into_iter().map(|(name, kernel)| (name, kernel.cost())) {
         let stem = kernel.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
         // what ends in `_whole` serves the inverse Legendre transform of a composed step alone

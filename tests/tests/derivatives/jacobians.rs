@@ -2,7 +2,7 @@
 
 use clebsch_compiler::Graph;
 use clebsch_compiler::derive::{Id, MomentumEquation, Solution};
-use clebsch_compiler::lower::{Program, Solve};
+use clebsch_compiler::lower::{MechanicsProgram, Solve};
 use clebsch_symbolic::Expr;
 use clebsch_tests::oracle::random::Random;
 
@@ -80,7 +80,7 @@ fn jacobians_of_all_implicit_equations() {
 }
 
 /// The chart block of a component, and its row there.
-fn place(program: &Program<'_>, component: usize) -> (usize, usize) {
+fn place(program: &MechanicsProgram<'_>, component: usize) -> (usize, usize) {
     let blocks = &program.formulas.symbols.blocks;
     let k = blocks.iter().position(|block| block.components().contains(&component)).expect("a component");
     (k, component - blocks[k].offset)
@@ -98,7 +98,12 @@ fn moved<'g>(values: &mut Values, equation: &MomentumEquation<'g>, chart: Expr<'
 }
 
 /// Where there is a formula for the solution, it solves the equation, for momenta that motions have.
-fn assert_solved<'g>(program: &Program<'g>, values: &mut Values, equation: &MomentumEquation<'g>, solve: &Solve) {
+fn assert_solved<'g>(
+    program: &MechanicsProgram<'g>,
+    values: &mut Values,
+    equation: &MomentumEquation<'g>,
+    solve: &Solve,
+) {
     let formulas = &program.formulas;
     for (k, mu) in formulas.symbols.momenta.iter().enumerate() {
         // p small enough for sin θ < 1

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use clebsch_compiler::lower::Program;
+use clebsch_compiler::lower::{MechanicsProgram, Program};
 use clebsch_compiler::{Graph, compile};
 use clebsch_symbolic::{Expr, Group, Matrix, Property, Role, Shape};
 use clebsch_tests::oracle::random::Random;
@@ -11,19 +11,20 @@ use quote::ToTokens;
 pub use crate::kernels::Values;
 
 /// The first four stages of the struct in a fixture's text.
-pub fn program<'g>(graph: &'g Graph, text: &str) -> Program<'g> {
+pub fn program<'g>(graph: &'g Graph, text: &str) -> MechanicsProgram<'g> {
     let file = syn::parse_file(text).expect("a Rust file");
     let structs = file.items.iter().filter(|item| matches!(item, syn::Item::Struct(_)));
     let item = structs.map(ToTokens::to_token_stream).next().expect("a struct");
     match compile(graph, item) {
-        Ok(program) => program,
+        Ok(Program::Mechanics(program)) => *program,
+        Ok(Program::Steered(_)) => panic!("inputs move it"),
         Err(errors) => panic!("{errors}"),
     }
 }
 
 impl Values {
     /// Random numbers that keep what is promised of each symbol; the step is 0.1.
-    pub fn random(program: &Program<'_>, random: &mut Random) -> Values {
+    pub fn random(program: &MechanicsProgram<'_>, random: &mut Random) -> Values {
         let formulas = &program.formulas;
         let (model, symbols) = (&formulas.model, &formulas.symbols);
         let mut all: Vec<Expr<'_>> = vec![model.step_size, model.time];

@@ -3,7 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use clebsch_compiler::derive::{self, Solution, Structure};
-use clebsch_compiler::lower::{Program, Solve};
+use clebsch_compiler::diagnostic::Diagnostics;
+use clebsch_compiler::lower::{MechanicsProgram, Program, Solve};
 use clebsch_compiler::{Graph, compile};
 use clebsch_symbolic::Chart;
 use clebsch_tests::oracle::precise::double_double::DoubleDouble;
@@ -49,7 +50,7 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
     let run = || -> Result<Found, String> {
         let tokens: TokenStream = text.parse().map_err(|error| format!("no tokens: {error}"))?;
         let graph = Graph::new();
-        let program = compile(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
+        let program = mechanics(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
         let found = compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))?;
         let collocated = collocated(problem, seed)?;
         match (seed / 2).is_multiple_of(2) && !found.couples {
@@ -64,12 +65,20 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
     result.map_err(|error| format!("seed {seed}: {error}\n{text}"))
 }
 
+/// The first four stages.
+fn mechanics<'g>(graph: &'g Graph, tokens: TokenStream) -> Result<MechanicsProgram<'g>, Diagnostics> {
+    match compile(graph, tokens)? {
+        Program::Mechanics(program) => Ok(*program),
+        Program::Steered(_) => panic!("inputs move it"),
+    }
+}
+
 /// Whether something was known of the Jacobian of an equation.
 fn is_specialised(solve: &Solve) -> bool {
     solve.solution == Solution::Linear || !solve.given.is_empty() || solve.structure != Structure::Dense
 }
 
-fn compiled(problem: &Declared, program: &Program<'_>, random: &mut Random) -> Result<Found, String> {
+fn compiled(problem: &Declared, program: &MechanicsProgram<'_>, random: &mut Random) -> Result<Found, String> {
     let start = start(problem, random);
     let fields: Vec<Vec<f64>> = problem.fields.iter().map(|field| field.value.entries().to_vec()).collect();
     let mut stepper = Stepper::new(program, &fields, H);
@@ -114,7 +123,7 @@ fn compensated(problem: &Declared, seed: u64) -> Result<bool, String> {
     problem.dials.push("summation = compensated");
     let tokens: TokenStream = problem.text().parse().map_err(|error| format!("no tokens: {error}"))?;
     let graph = Graph::new();
-    let program = match compile(&graph, tokens) {
+    let program = match mechanics(&graph, tokens) {
         Ok(program) => program,
         Err(errors) if errors.to_string().contains("there is no sum to compensate") => return Ok(false),
         Err(errors) => return Err(format!("refused with compensated sums:\n{errors}")),
@@ -133,7 +142,7 @@ fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
     problem.dials.push("order = 16");
     let tokens: TokenStream = problem.text().parse().map_err(|error| format!("no tokens: {error}"))?;
     let graph = Graph::new();
-    let program = match compile(&graph, tokens) {
+    let program = match mechanics(&graph, tokens) {
         Ok(program) => program,
         Err(errors) if errors.to_string().contains("`order = 16`") => return Ok(false),
         Err(errors) => return Err(format!("refused in steps of order 16:\n{errors}")),
@@ -174,7 +183,7 @@ fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
     free.potential = None;
     let tokens: TokenStream = free.text().parse().map_err(|error| format!("no tokens: {error}"))?;
     let graph = Graph::new();
-    let program = compile(&graph, tokens).map_err(|errors| format!("refused without a potential:\n{errors}"))?;
+    let program = mechanics(&graph, tokens).map_err(|errors| format!("refused without a potential:\n{errors}"))?;
     // where the equation has inverses or exponentials of matrices, its residual is a difference, and x not right to its own last digits
     let formulas = &program.formulas;
     let is_difference = |equation: &derive::MomentumEquation<'_>| {

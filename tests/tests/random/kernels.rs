@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use clebsch_compiler::derive::Id;
-use clebsch_compiler::lower::{Callee, Code, Kernel, MatrixOperation, Output, Program, Whole};
+use clebsch_compiler::lower::{Callee, Code, Kernel, MatrixOperation, MechanicsProgram, Output, Whole};
 use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
 use nalgebra::SMatrix;
 
@@ -31,7 +31,7 @@ impl Values {
     }
 
     /// Σ; of κI the kernel gives κ.
-    pub fn inertia(&self, program: &Program<'_>) -> Matrix<f64> {
+    pub fn inertia(&self, program: &MechanicsProgram<'_>) -> Matrix<f64> {
         let shape = program.formulas.inertia.shape();
         let entries = self.run(program.kernel(Id::Inertia), &[], &[]).remove(0);
         match entries[..] {

@@ -4,14 +4,14 @@ use std::cell::RefCell;
 
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
 use clebsch_compiler::derive::{Id, Solution};
-use clebsch_compiler::lower::{Kernel, Program, Solve};
+use clebsch_compiler::lower::{Kernel, MechanicsProgram, Solve};
 use nalgebra::{SMatrix, SVector};
 
 use crate::kernels::Values;
 
 /// A program with the values of its parameters.
 pub struct Stepper<'a, 'g> {
-    program: &'a Program<'g>,
+    program: &'a MechanicsProgram<'g>,
     values: Values,
     constants: Vec<f64>,
 }
@@ -34,7 +34,7 @@ impl Seen {
 
 impl<'a, 'g> Stepper<'a, 'g> {
     /// What `stepper(h)` does; parameters in the order of the fields.
-    pub fn new(program: &'a Program<'g>, fields: &[Vec<f64>], h: f64) -> Stepper<'a, 'g> {
+    pub fn new(program: &'a MechanicsProgram<'g>, fields: &[Vec<f64>], h: f64) -> Stepper<'a, 'g> {
         let model = &program.formulas.model;
         let mut values = Values::default();
         values.set(model.step_size, &[h]);

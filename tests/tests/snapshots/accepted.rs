@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use clebsch_compiler::lower::Program;
+use clebsch_compiler::lower::{MechanicsProgram, Program};
 use clebsch_compiler::parse::Declaration;
 use clebsch_compiler::{emit, parse};
 use insta::assert_snapshot;
@@ -28,12 +28,22 @@ fn every_stage_of_every_accepted_fixture() {
 }
 
 fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
-    let formulas = &program.formulas;
+    let (model, formulas, latex) = match program {
+        Program::Mechanics(program) => {
+            let model = with_methods(program, |program| program.formulas.model.to_string());
+            let table = program.formulas.table();
+            (model, with_methods(program, |program| program.formulas.table().to_string()), table.latex())
+        }
+        Program::Steered(program) => {
+            let table = program.formulas.table();
+            (program.formulas.model.to_string(), table.to_string(), table.latex())
+        }
+    };
     assert_snapshot!(format!("{name}.1_declaration"), declaration);
-    assert_snapshot!(format!("{name}.2_model"), with_methods(program, |program| program.formulas.model.to_string()));
-    assert_snapshot!(format!("{name}.3_formulas"), with_methods(program, |program| program.formulas.to_string()));
+    assert_snapshot!(format!("{name}.2_model"), model);
+    assert_snapshot!(format!("{name}.3_formulas"), formulas);
     if IN_LATEX.contains(&name) {
-        assert_snapshot!(format!("{name}.3_formulas_latex"), formulas.latex());
+        assert_snapshot!(format!("{name}.3_formulas_latex"), latex);
     }
     assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
     assert_snapshot!(format!("{name}.5_derivation"), emit::derivations(program));
@@ -43,7 +53,7 @@ fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
 }
 
 /// A stage with the same of each method behind it.
-fn with_methods(program: &Program<'_>, print: impl Fn(&Program<'_>) -> String) -> String {
+fn with_methods(program: &MechanicsProgram<'_>, print: impl Fn(&MechanicsProgram<'_>) -> String) -> String {
     let methods = program.methods.iter();
     let methods = methods.map(|method| format!("\nmethod {}\n{}", method.name, print(&method.program)));
     methods.fold(print(program), |text, method| text + &method)

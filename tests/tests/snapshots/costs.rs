@@ -61,7 +61,8 @@ fn operations_of_all_fixtures() {
 
 fn cost(program: &Program<'_>, wanted: Wanted) -> Cost {
     // where a step moves by the chart coordinates alone, increments are made for others
-    let steps = (0..program.steps.len()).all(|index| program.makes_increments(index));
+    let steps =
+        program.mechanics().is_none_or(|program| (0..program.steps.len()).all(|index| program.makes_increments(index)));
     let stands_for =
         |name: &str| if name.starts_with("increment") && !steps { "act".to_string() } else { name.to_string() };
     let kernels = program.kernels().into_iter().filter(|(name, _)| wanted(&stands_for(name)));

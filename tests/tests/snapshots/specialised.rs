@@ -38,7 +38,8 @@ fn body((action, potential): (&str, &str), is_heavy: bool, (inertia, field): (&s
 fn operations(program: &Program<'_>) -> usize {
     let asked =
         ["act", "momentum", "coadjoint", "legendre", "potential", "inertia", "constants", "cotangent", "conserved"];
-    let makes_increments = (0..program.steps.len()).all(|index| program.makes_increments(index));
+    let makes_increments =
+        program.mechanics().is_none_or(|program| (0..program.steps.len()).all(|index| program.makes_increments(index)));
     let is_stepped = |name: &str| {
         let is_formula = asked.iter().any(|other| name.starts_with(other)) && !name.starts_with("advance");
         !is_formula && name != "generator" && name != "membership" && (makes_increments || name != "increment")

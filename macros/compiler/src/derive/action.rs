@@ -4,10 +4,10 @@ use clebsch_symbolic::{Expr, Shape, identity};
 
 use super::Symbols;
 use super::symbols::logarithm;
-use crate::model::{Factor, Model, Side};
+use crate::model::{Factor, Side, System};
 
 /// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
-pub(super) fn generator<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+pub(super) fn generator<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
     let factors = || model.factors.iter().zip(&symbols.algebra);
     let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).collect();
     let at_identity = identities(model);
@@ -15,7 +15,7 @@ pub(super) fn generator<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Exp
 }
 
 /// The replacement of every group element by the identity, and of its logarithm by zero.
-pub(super) fn identities<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let elements = model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph)));
     let logarithms = (0..model.factors.len()).map(|k| logarithm(model, k));
     elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
@@ -32,12 +32,12 @@ pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) ->
 }
 
 /// Ad*_F μ.
-pub(super) fn coadjoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+pub(super) fn coadjoint<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
     model.factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).collect()
 }
 
 /// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
-pub(super) fn cotangent_lift<'g>(model: &Model<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
+pub(super) fn cotangent_lift<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
     let inverses: Vec<_> =
         model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
     let images = model.action.iter().map(|image| image.substitute(&inverses));
@@ -59,7 +59,7 @@ pub(super) fn adjoint_of<'g>(factor: &Factor<'g>, xi: Expr<'g>) -> Expr<'g> {
 
 /// The components of −J(q, ∂_q K) for each factor.
 pub(super) fn coupling<'g>(
-    model: &Model<'g>,
+    model: &System<'g>,
     symbols: &Symbols<'g>,
     momentum_map: &[Expr<'g>],
     kinetic: Expr<'g>,
@@ -71,7 +71,7 @@ pub(super) fn coupling<'g>(
 
 /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
 pub(super) fn impulse<'g>(
-    model: &Model<'g>,
+    model: &System<'g>,
     symbols: &Symbols<'g>,
     momentum_map: &[Expr<'g>],
     potential: Expr<'g>,
@@ -85,7 +85,7 @@ pub(super) fn impulse<'g>(
 /// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are: then it is the orthogonal projection to them,
 /// for ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes of each other. c is 1 on spheres, and |E_i|² where matrices are multiplied.
 pub(super) fn projection<'g>(
-    model: &Model<'g>,
+    model: &System<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     momentum_map: &[Expr<'g>],
@@ -106,7 +106,7 @@ pub(super) fn projection<'g>(
 }
 
 /// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
-pub(super) fn is_free<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
+pub(super) fn is_free<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
     if generator.is_empty() {
         return false;
     }

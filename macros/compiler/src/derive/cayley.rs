@@ -5,22 +5,22 @@
 
 use clebsch_symbolic::{Expr, Group, Property, Role, Shape};
 
-use crate::model::{Factor, Model};
+use crate::model::{Factor, System};
 
 /// The symbol z of a factor.
-pub(crate) fn symbol<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
+pub(crate) fn symbol<'g>(model: &System<'g>, k: usize) -> Expr<'g> {
     let factor = &model.factors[k];
     let shape = Shape::vector(factor.group.dimension());
     model.graph.symbol(&format!("cay⁻¹({})", factor.name), shape, Role::Cayley(k), Property::General)
 }
 
 /// Whether (F − I)(F + I)⁻¹ is in the Lie algebra, as a matrix.
-fn is_rational(model: &Model<'_>, group: Group) -> bool {
+fn is_rational(model: &System<'_>, group: Group) -> bool {
     !group.is_translation() && group != Group::UnitQuaternions && group.has_cayley_chart(model.graph)
 }
 
 /// (F − I)(F + I)⁻¹ with F = I + D, D(2I + D)⁻¹, in coordinates.
-pub(crate) fn of_increment<'g>(model: &Model<'g>, k: usize, increment: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
+pub(crate) fn of_increment<'g>(model: &System<'g>, k: usize, increment: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
     let group = model.factors[k].group;
     if !is_rational(model, group) {
         return None;
@@ -30,12 +30,12 @@ pub(crate) fn of_increment<'g>(model: &Model<'g>, k: usize, increment: Expr<'g>)
 }
 
 /// The replacements of the components of (F − I)(F + I)⁻¹, block by block, by those of Z.
-pub(super) fn replacements<'g>(model: &Model<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn replacements<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let rational = model.factors.iter().enumerate().filter(|(_, factor)| is_rational(model, factor.group));
     rational.flat_map(|(k, factor)| of_factor(model, k, factor)).collect()
 }
 
-fn of_factor<'g>(model: &Model<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+fn of_factor<'g>(model: &System<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let (group, f, z) = (factor.group, factor.symbol, symbol(model, k));
     let identity = group.identity(model.graph);
     let whole = (f - identity) * (f + identity).inverse();
@@ -48,7 +48,7 @@ fn of_factor<'g>(model: &Model<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr<
 }
 
 /// δz along δF = ηF, or along δF = Fη.
-pub(super) fn motion<'g>(model: &Model<'g>, k: usize, eta: Expr<'g>, from_left: bool) -> Option<(Expr<'g>, Expr<'g>)> {
+pub(super) fn motion<'g>(model: &System<'g>, k: usize, eta: Expr<'g>, from_left: bool) -> Option<(Expr<'g>, Expr<'g>)> {
     let group = model.factors[k].group;
     if !is_rational(model, group) {
         return None;

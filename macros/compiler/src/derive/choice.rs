@@ -3,16 +3,26 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::edges::Inserted;
-use super::{Bend, Endpoint, Formulas, InputStep, Jet, MatrixForm, Steering};
+use super::{Bend, Endpoint, InputStep, Jet, MatrixForm, MechanicsFormulas, SteeredFormulas, Steering, SystemFormulas};
 
 /// Makes the matrices of a choice.
 pub struct Choice<'a, 'g> {
-    formulas: &'a Formulas<'g>,
+    /// The formulas of the system.
+    pub formulas: &'a SystemFormulas<'g>,
     at: Inserted<'g>,
     /// What the inputs are chosen with.
     pub steering: &'a Steering<'g>,
-    /// What the inputs of forces do to an edge.
-    pub bend: Option<&'a Bend<'g>>,
+    /// What the inputs do.
+    pub step: StepOfChoice<'a, 'g>,
+}
+
+/// What inputs do in a step.
+#[derive(Copy, Clone)]
+pub enum StepOfChoice<'a, 'g> {
+    /// They move the configuration by themselves.
+    Steered(&'a InputStep<'g>),
+    /// They are those of forces, which act at both ends of an edge.
+    Forced(&'a Bend<'g>),
 }
 
 /// An entry of a symmetric matrix of which the lower triangle is known.
@@ -20,13 +30,22 @@ fn symmetric<'g>(lower: &[Vec<Expr<'g>>], i: usize, j: usize) -> Expr<'g> {
     if i >= j { lower[i][j] } else { lower[j][i] }
 }
 
-impl<'g> Formulas<'g> {
+impl<'g> SteeredFormulas<'g> {
+    /// What the choice of inputs needs.
+    pub fn choice(&self) -> Option<Choice<'_, 'g>> {
+        Choice::of(self, StepOfChoice::Steered(&self.step))
+    }
+}
+
+impl<'g> MechanicsFormulas<'g> {
     /// What a choice of inputs needs, where there is one.
     pub fn choice(&self) -> Option<Choice<'_, 'g>> {
-        let bend = self.substeps.first().and_then(|substep| substep.variation.as_ref()?.bend.as_ref());
-        Some(Choice { formulas: self, at: Inserted::of(self), steering: self.steering.as_ref()?, bend })
+        let bend = self.substeps.first()?.variation.as_ref()?.bend.as_ref()?;
+        Choice::of(self, StepOfChoice::Forced(bend))
     }
+}
 
+impl<'g> SystemFormulas<'g> {
     /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
     pub fn endpoint_expanded(&self, endpoint: &Endpoint<'g>) -> Vec<MatrixForm<'g>> {
         let (at, jet, m) = (Inserted::of(self), &endpoint.price, self.model.dimension());
@@ -39,7 +58,11 @@ impl<'g> Formulas<'g> {
     }
 }
 
-impl<'g> Choice<'_, 'g> {
+impl<'a, 'g> Choice<'a, 'g> {
+    fn of(formulas: &'a SystemFormulas<'g>, step: StepOfChoice<'a, 'g>) -> Option<Choice<'a, 'g>> {
+        Some(Choice { at: Inserted::of(formulas), steering: formulas.steering.as_ref()?, formulas, step })
+    }
+
     fn motions(&self) -> usize {
         self.formulas.model.dimension()
     }
@@ -100,9 +123,10 @@ impl<'g> Choice<'_, 'g> {
 
     /// ∂/∂h and ∂/∂t of ℓ with what the costate or the multipliers of the step add.
     pub fn price_of_time(&self) -> MatrixForm<'g> {
-        let of_step = self.steering.step.as_ref().map(|step| step.by_time).or(self.bend.map(|bend| bend.by_time));
-        let zero = self.formulas.model.graph.integer(0);
-        let of_step = of_step.unwrap_or([zero; 2]);
+        let of_step = match self.step {
+            StepOfChoice::Steered(step) => step.by_time,
+            StepOfChoice::Forced(bend) => bend.by_time,
+        };
         self.at.entries(Shape::vector(2), |i, _| self.steering.price_of_time[i] + of_step[i])
     }
 

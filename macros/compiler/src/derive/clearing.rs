@@ -5,12 +5,12 @@ use clebsch_symbolic::{Chart, Expr, Group, View, WordTerm};
 
 use super::Symbols;
 use super::symbols::ChartBlock;
-use crate::model::{Model, Side};
+use crate::model::{Mechanics, Side};
 
 /// The residual of a factor, the components of `array` less μ, by the congruence with I ∓ Z of a Cayley chart; `None` if denominators
 /// are left, or there are none.
 pub(super) fn by_congruence<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     k: usize,
     (array, mu, plain): (Expr<'g>, Expr<'g>, Expr<'g>),
@@ -40,7 +40,7 @@ fn momentum<'g>(group: Group, (left, right): (Expr<'g>, Expr<'g>), coordinates: 
 /// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of the rotation;
 /// `None` if denominators are left, or there are none.
 pub(super) fn of_rotation<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     block: &ChartBlock<'g>,
     rows: Expr<'g>,
@@ -59,7 +59,7 @@ pub(super) fn of_rotation<'g>(
 }
 
 /// The skew matrix with components that are a term: ½(A − Aᵀ) for ⟨A, E⟩.
-fn skew_matrix<'g>(model: &Model<'g>, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
+fn skew_matrix<'g>(model: &Mechanics<'g>, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
     let matrix_of = |letter: Expr<'g>| match letter.view() {
         View::Components(_, inner) => Some((inner - inner.transpose()) / 2),
         _ => None,

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 use super::equation::{MomentumEquation, SineForm, Sources, chart_slope, is_moving, own_part, without_part};
 use super::trivialisation::Covector;
 use super::{Substep, Symbols};
-use crate::model::Model;
+use crate::model::Mechanics;
 
 /// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
 /// in one plane has sin θ = |a| and tan(θ/2) = |x|.
@@ -119,7 +119,7 @@ pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<
 }
 
 /// An expression with all momenta but that of a block set to zero.
-fn without_others<'g>(model: &Model<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
+fn without_others<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
     let others = (0..symbols.blocks.len()).filter(|&j| j != i);
     others.fold(expression, |expression, j| without_part(model, symbols, expression, j))
 }

@@ -7,7 +7,7 @@ use super::exact::{by_inertia, inertia_inverse};
 use super::{Energy, Symbols};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Isotropy, Model, Order};
+use crate::model::{Isotropy, Mechanics, Order};
 
 /// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
 ///
@@ -69,7 +69,7 @@ pub(super) fn collocation<'g>(
 }
 
 /// A leaf of the configuration that need not lie on its orbit.
-fn off_orbit<'g>(model: &Model<'g>, i: usize) -> Expr<'g> {
+fn off_orbit<'g>(model: &Mechanics<'g>, i: usize) -> Expr<'g> {
     let leaf = &model.configurations[i];
     model.graph.symbol(&leaf.name, leaf.shape, Role::Configuration(i), Property::General)
 }
@@ -88,7 +88,7 @@ fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<
 /// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity: J(q, p) = μ where the columns of the generator of each factor are
 /// orthogonal and of the same length.
 fn lift<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     momentum_map: &[Expr<'g>],
     generator: &[Expr<'g>],
@@ -124,7 +124,7 @@ fn lift<'g>(
 }
 
 /// Whether J(0, p) is not zero.
-fn is_affine<'g>(model: &Model<'g>, momentum_map: &[Expr<'g>]) -> bool {
+fn is_affine<'g>(model: &Mechanics<'g>, momentum_map: &[Expr<'g>]) -> bool {
     let origin: Vec<_> = model.configurations.iter().map(|leaf| (leaf.symbol, model.graph.zero(leaf.shape))).collect();
     momentum_map.iter().any(|momentum| !identity::vanishes(momentum.substitute(&origin)))
 }
@@ -148,7 +148,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
 
 /// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
 fn check_linear<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     general: &[(Expr<'g>, Expr<'g>)],
     generator: &[Expr<'g>],
@@ -165,7 +165,7 @@ fn check_linear<'g>(
 }
 
 /// Where order 16 is asked for.
-fn asked(model: &Model<'_>) -> Found {
+fn asked(model: &Mechanics<'_>) -> Found {
     // by construction: no other order is there without being written
     Found::at(model.spans.order.unwrap_or_else(proc_macro2::Span::call_site))
 }

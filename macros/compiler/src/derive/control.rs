@@ -6,16 +6,14 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape};
 
-use super::{EdgeDerivatives, Symbols, action};
-use crate::model::{Discretization, Factor, Kinetic, Model, Side};
+use super::{EdgeDerivatives, Symbols, SystemFormulas, action};
+use crate::model::{Discretization, Factor, Motion, Side, Steered, System};
 
 /// The direction in which symbols move.
 pub(super) type Direction<'g> = Vec<(Expr<'g>, Expr<'g>)>;
 
 /// What the inputs are chosen with.
 pub struct Steering<'g> {
-    /// The step that inputs make by themselves; `None` where they are those of forces.
-    pub step: Option<InputStep<'g>>,
     /// ℓ(t, h, q, u).
     pub price: Jet<'g>,
     /// The derivatives of ℓ with respect to h and t.
@@ -87,7 +85,7 @@ impl<'g> Jet<'g> {
 }
 
 /// Each element of the basis as a motion of q.
-pub(super) fn motions<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Direction<'g>> {
+pub(super) fn motions<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Direction<'g>> {
     let motion = |element: &Direction<'g>| {
         let leaves = model.configurations.iter().zip(generator);
         leaves.map(|(leaf, velocity)| (leaf.symbol, velocity.substitute(element))).collect()
@@ -96,7 +94,7 @@ pub(super) fn motions<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &
 }
 
 /// Each entry of the input.
-pub(super) fn inputs<'g>(model: &Model<'g>) -> Vec<Direction<'g>> {
+pub(super) fn inputs<'g>(model: &System<'g>) -> Vec<Direction<'g>> {
     let entries = |symbol: Expr<'g>| {
         symbol.shape().positions().map(move |(i, j)| vec![(symbol, symbol.graph().unit(symbol.shape(), i, j))])
     };
@@ -105,7 +103,7 @@ pub(super) fn inputs<'g>(model: &Model<'g>) -> Vec<Direction<'g>> {
 
 /// Everything that a declared choice of inputs needs.
 pub(super) fn steering<'g>(
-    model: &Model<'g>,
+    model: &System<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     momentum_map: &[Expr<'g>],
@@ -117,7 +115,6 @@ pub(super) fn steering<'g>(
     let by_time = |value: Expr<'g>| [along(value, model.step_size), along(value, model.time)];
     let count = Shape::vector(control.bounds.len().max(1));
     Some(Steering {
-        step: element(model).map(|element| step(model, symbols, element, &all)),
         price: Jet::of(control.price, &all),
         price_of_time: by_time(control.price),
         bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
@@ -135,28 +132,27 @@ pub struct Endpoint<'g> {
 }
 
 /// The price of the end with its derivatives.
-pub(super) fn endpoint<'g>(model: &Model<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Option<Endpoint<'g>> {
+pub(super) fn endpoint<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Option<Endpoint<'g>> {
     let price = model.endpoint?;
     let by_time = price.differential(&[(model.time, model.graph.integer(1))]);
     Some(Endpoint { price: Jet::of(price, &motions(model, symbols, generator)), by_time })
 }
 
 /// J(q, q⁺ − q).
-fn approach<'g>(model: &Model<'g>, symbols: &Symbols<'g>, momentum_map: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn approach<'g>(model: &System<'g>, symbols: &Symbols<'g>, momentum_map: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let leaves = model.configurations.iter().zip(symbols.covectors.iter().zip(&symbols.images));
     let gaps: Vec<_> = leaves.map(|(leaf, (p, image))| (*p, *image - leaf.symbol)).collect();
     momentum_map.iter().map(|momentum| momentum.substitute(&gaps)).collect()
 }
 
 /// F − I for each factor, made of inputs.
-fn element<'g>(model: &Model<'g>) -> Option<Vec<Expr<'g>>> {
-    let (velocity, discretization) = match &model.kinetic {
-        Kinetic::Controls { velocity, discretization } => (velocity, *discretization),
-        Kinetic::Dynamics(next) => {
+fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
+    let (velocity, discretization) = match &model.motion {
+        Motion::Controls { velocity, discretization } => (velocity, *discretization),
+        Motion::Dynamics(next) => {
             let leaves = model.configurations.iter().zip(next);
-            return Some(leaves.map(|(leaf, next)| *next - leaf.symbol).collect());
+            return leaves.map(|(leaf, next)| *next - leaf.symbol).collect();
         }
-        Kinetic::Cost(_) | Kinetic::Lagrangian { .. } => return None,
     };
     let increment = |(factor, xi): (&Factor<'g>, &Expr<'g>)| {
         let chart = match discretization {
@@ -173,7 +169,7 @@ fn element<'g>(model: &Model<'g>) -> Option<Vec<Expr<'g>>> {
         let (numerator, denominator) = chart.increment(factor.group, &coordinates.collect::<Vec<_>>());
         numerator / denominator
     };
-    Some(model.factors.iter().zip(velocity).map(increment).collect())
+    model.factors.iter().zip(velocity).map(increment).collect()
 }
 
 /// The logarithmic derivative b along a direction, an element of the Lie algebra: F⁻¹δF for a right action, δF F⁻¹ for a left one.
@@ -190,13 +186,11 @@ fn coordinates<'g>(group: Group, element: Expr<'g>) -> Expr<'g> {
     if group.is_translation() { element } else { group.projected_coordinates(element) }
 }
 
-fn step<'g>(
-    model: &Model<'g>,
-    symbols: &Symbols<'g>,
-    increment: Vec<Expr<'g>>,
-    directions: &[Direction<'g>],
-) -> InputStep<'g> {
-    let dimension = model.dimension();
+/// The step that inputs make, with its derivatives.
+pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> InputStep<'g> {
+    let (symbols, dimension) = (&formulas.symbols, model.dimension());
+    let directions = [motions(model, symbols, &formulas.generator), inputs(model)].concat();
+    let increment = element(model);
     let parts: Vec<Factored<'_, 'g>> = model
         .factors
         .iter()
@@ -221,7 +215,7 @@ fn step<'g>(
         of_factor.fold(model.graph.zero(Shape::vector(dimension)), |sum, part| sum + part)
     };
     let second = |i: usize, j: usize| {
-        let of_factor = parts.iter().map(|part| part.curvature(directions, i, j));
+        let of_factor = parts.iter().map(|part| part.curvature(&directions, i, j));
         of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
     };
     let one = model.graph.integer(1);
@@ -293,7 +287,7 @@ pub struct Bend<'g> {
 
 /// What a choice of the inputs of forces needs of an edge.
 pub(super) fn bend<'g>(
-    model: &Model<'g>,
+    model: &System<'g>,
     variation: &EdgeDerivatives<'g>,
     (costate, multiplier): (Expr<'g>, Expr<'g>),
     ends: &[Direction<'g>],
@@ -312,7 +306,7 @@ pub(super) fn bend<'g>(
 }
 
 /// ½ μ·[E_i, E_j] for a right action, −½ μ·[E_i, E_j] for a left one.
-fn bracket<'g>(model: &Model<'g>, mu: Expr<'g>) -> Vec<Vec<Expr<'g>>> {
+fn bracket<'g>(model: &System<'g>, mu: Expr<'g>) -> Vec<Vec<Expr<'g>>> {
     let (whole, zero) = (model.dimension(), model.graph.integer(0));
     let mut entries = vec![vec![zero; whole]; whole];
     for (k, factor) in model.factors.iter().enumerate() {

@@ -4,14 +4,12 @@ use clebsch_symbolic::Expr;
 
 use super::{exact, velocity};
 use crate::diagnostic::Diagnostics;
-use crate::model::{Discretization, Kinetic, Model};
+use crate::model::{Discretization, Kinetic, Mechanics};
 
 /// The cost K(t, h, q, F), as declared or made from the Lagrangian.
-pub(super) fn kinetic_cost<'g>(model: &Model<'g>) -> Result<Expr<'g>, Diagnostics> {
+pub(super) fn kinetic_cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
     let (energy, velocities, discretization) = match &model.kinetic {
         Kinetic::Cost(cost) => return Ok(*cost),
-        // by construction: what inputs move has no kinetic energy, and none is asked for
-        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => return Ok(model.graph.integer(0)),
         Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
     };
     let h = model.step_size;

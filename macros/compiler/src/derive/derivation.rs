@@ -6,8 +6,8 @@ mod step;
 
 use std::fmt::Write;
 
-use super::{Formulas, Structure};
-use crate::model::{Discretization, Kinetic, Model, Side};
+use super::{MechanicsFormulas, SteeredFormulas, Structure};
+use crate::model::{Discretization, Motion, Side, System};
 
 /// What lowering found, which the derivation tells.
 pub struct Lowered {
@@ -34,10 +34,7 @@ pub struct Iteration {
 }
 
 /// The text of `DERIVATION`.
-pub fn derivation(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
-    if formulas.model.is_steered() {
-        return steered(formulas, lowered);
-    }
+pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let item = model.power.as_ref().map_or(&model.item, |power| &power.item);
     let system = [
@@ -50,16 +47,17 @@ pub fn derivation(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
     let scheme = [step::scheme(formulas, lowered), form(formulas, lowered)];
     let left_out = conserved::left_out(formulas);
     format!(
-        "{}\n\n{}\n{}\n{left_out}\nFormulas\n\n{formulas}\nCost\n\n{}",
+        "{}\n\n{}\n{}\n{left_out}\nFormulas\n\n{}\nCost\n\n{}",
         item.ident,
         system.concat(),
         scheme.concat(),
+        formulas.table(),
         lowered.costs,
     )
 }
 
 /// What a state holds where steps are made in a plane, and how the code is written.
-fn form(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+fn form(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let is_pushed = formulas.substeps.iter().any(|substep| substep.start.is_some() || substep.end.is_some());
     let in_plane = match (lowered.turns_in_plane, is_pushed) {
         (true, true) => {
@@ -74,7 +72,7 @@ fn form(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 }
 
 /// What a power is.
-fn sites(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let Some(power) = &formulas.model.power else { return String::new() };
     let length = &power.length;
     let equal = if power.is_uniform {
@@ -102,16 +100,16 @@ fn sites(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 }
 
 /// The text of a system whose configuration inputs move.
-fn steered(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+pub fn derivation_of_control(formulas: &SteeredFormulas<'_>, costs: &str) -> String {
     let model = &formulas.model;
-    let motion = match &model.kinetic {
-        Kinetic::Controls { discretization: Discretization::Exponential, .. } => {
+    let motion = match &model.motion {
+        Motion::Controls { discretization: Discretization::Exponential, .. } => {
             "A step moves the configuration by F = exp(h ξ(u)), exact where the input stays as it is."
         }
-        Kinetic::Controls { .. } => {
+        Motion::Controls { .. } => {
             "A step moves the configuration by F = (I − h/2 ξ(u))⁻¹(I + h/2 ξ(u)), of second order in h."
         }
-        _ => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
+        Motion::Dynamics(_) => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
     };
     let inputs: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
     let bounds = match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
@@ -120,16 +118,16 @@ fn steered(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
         count => format!(" and keep {count} bounds"),
     };
     format!(
-        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{formulas}\nCost\n\n{}",
+        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{}\nCost\n\n{costs}",
         model.item.ident,
         frames(model),
         inputs.join(", "),
-        lowered.costs,
+        formulas.table(),
     )
 }
 
 /// Which frame momenta are in, factor by factor.
-fn frames(model: &Model<'_>) -> String {
+fn frames(model: &System<'_>) -> String {
     let mut text = String::new();
     for factor in &model.factors {
         if !factor.moves {
@@ -157,7 +155,7 @@ fn frames(model: &Model<'_>) -> String {
 }
 
 /// The kinetic energy in coordinates, for a look at what the cost stands for.
-fn energy(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let names: Vec<String> = formulas
         .symbols
         .algebra

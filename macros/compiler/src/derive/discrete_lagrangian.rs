@@ -6,7 +6,7 @@ use clebsch_symbolic::{Expr, identity};
 use super::action::identities;
 use super::symbols::logarithm;
 use super::trivialisation;
-use crate::model::{Factor, Model, Order};
+use crate::model::{Factor, Mechanics, Order};
 
 /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), with U₀ and U₁ written as functions of a configuration and of its time.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub struct DiscreteLagrangian<'g> {
 }
 
 /// Separates the cost into a part of F and a part of q where it is such a sum, and places the potential.
-pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> DiscreteLagrangian<'g> {
+pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Expr<'g>) -> DiscreteLagrangian<'g> {
     let static_part = cost.substitute(&identities(model));
     let couples = |kinetic: Expr<'g>| model.configurations.iter().any(|leaf| kinetic.depends_on(leaf.symbol));
     let difference = cost - static_part;
@@ -39,7 +39,7 @@ pub(super) fn separate<'g>(model: &Model<'g>, cost: Expr<'g>) -> DiscreteLagrang
 }
 
 /// −h/2 V at both ends of a step of second order, −h V at the end of one of first order.
-fn placed_potential<'g>(model: &Model<'g>) -> (Expr<'g>, Expr<'g>) {
+fn placed_potential<'g>(model: &Mechanics<'g>) -> (Expr<'g>, Expr<'g>) {
     let (h, zero) = (model.step_size, model.graph.integer(0));
     match (model.potential, model.order) {
         (None, _) => (zero, zero),
@@ -50,7 +50,7 @@ fn placed_potential<'g>(model: &Model<'g>) -> (Expr<'g>, Expr<'g>) {
 
 impl<'g> DiscreteLagrangian<'g> {
     /// −ℓd(t + h, −h, Φ_F q, F⁻¹), whose scheme is the adjoint.
-    pub fn adjoint(&self, model: &Model<'g>) -> DiscreteLagrangian<'g> {
+    pub fn adjoint(&self, model: &Mechanics<'g>) -> DiscreteLagrangian<'g> {
         let h = model.step_size;
         let inverse = |factor: &Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
         let mut reversed: Vec<_> = model.factors.iter().map(inverse).collect();
@@ -73,7 +73,7 @@ impl<'g> DiscreteLagrangian<'g> {
     }
 
     /// Whether ℓd is its own adjoint, up to what no variation sees: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials.
-    pub fn is_time_symmetric(&self, model: &Model<'g>) -> bool {
+    pub fn is_time_symmetric(&self, model: &Mechanics<'g>) -> bool {
         let adjoint = self.adjoint(model);
         let leaves = || model.configurations.iter().map(|leaf| leaf.symbol);
         let potentials = |lagrangian: &DiscreteLagrangian<'g>| -> Vec<Expr<'g>> {
@@ -92,7 +92,7 @@ impl<'g> DiscreteLagrangian<'g> {
     }
 
     /// The Lagrangian of a part of the step: the step `h` stands for is `step`, and its start is `later` than that of the whole.
-    fn of_part(&self, model: &Model<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
+    fn of_part(&self, model: &Mechanics<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
         let scaled = |part: Expr<'g>| part.substitute(&[(model.step_size, step)]);
         DiscreteLagrangian {
             kinetic: self.kinetic.substitute(&[(model.step_size, step), (model.time, model.time + later)]),
@@ -107,7 +107,7 @@ impl<'g> DiscreteLagrangian<'g> {
 /// asked for, else half a step of ℓd and half a step of its adjoint, and then ℓd itself again, whose Legendre transform is to be
 /// inverted.
 pub(super) fn substeps<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
 ) -> Vec<(i64, DiscreteLagrangian<'g>)> {
     if model.order == Order::First || lagrangian.is_time_symmetric(model) {

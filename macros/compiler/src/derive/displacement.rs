@@ -2,10 +2,10 @@
 
 use clebsch_symbolic::{Chart, Expr, identity};
 
-use super::Formulas;
+use super::MechanicsFormulas;
 use crate::model::Isotropy;
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// q⁺ for each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not
     /// move like that.
     ///
@@ -15,7 +15,7 @@ impl<'g> Formulas<'g> {
     }
 }
 
-fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> {
+fn displaced_leaf<'g>(formulas: &MechanicsFormulas<'g>, leaf: usize) -> Option<Expr<'g>> {
     let (model, symbols) = (&formulas.model, &formulas.symbols);
     let (q, image) = (model.configurations[leaf].symbol, model.action[leaf]);
     if q.shape().columns != 1 {
@@ -48,7 +48,7 @@ fn displaced_leaf<'g>(formulas: &Formulas<'g>, leaf: usize) -> Option<Expr<'g>> 
 }
 
 /// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.
-fn is_perpendicular<'g>(formulas: &Formulas<'g>, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
+fn is_perpendicular<'g>(formulas: &MechanicsFormulas<'g>, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
     let (model, symbols) = (&formulas.model, &formulas.symbols);
     // forces in 𝔤*, and what a cost gives at rest, need not be momenta of that kind
     let is_momentum = symbols.charts[k] == Chart::Sine

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{EdgeDerivatives, Formulas, MatrixForm, increments, inserted, inverse_by};
+use super::{EdgeDerivatives, MatrixForm, MechanicsFormulas, SystemFormulas, increments, inserted, inverse_by};
 use crate::model::{Configuration, LeafSpace};
 
 /// What the kernels of an edge compute.
@@ -23,7 +23,7 @@ pub(super) struct Inserted<'g> {
 }
 
 impl<'g> Inserted<'g> {
-    pub(super) fn of(formulas: &Formulas<'g>) -> Inserted<'g> {
+    pub(super) fn of(formulas: &SystemFormulas<'g>) -> Inserted<'g> {
         let leaves = formulas.model.configurations.iter().zip(&formulas.symbols.images);
         let inverses = leaves.flat_map(|(leaf, image): (&Configuration<'g>, &Expr<'g>)| match leaf.space {
             LeafSpace::Group(group) => {
@@ -51,7 +51,7 @@ impl<'g> Inserted<'g> {
     }
 }
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// What the kernels of an edge compute: with whole matrices derivatives along one motion, of which loops make the columns.
     pub fn edge_matrices(&self, variation: &EdgeDerivatives<'g>, keeps_matrices: bool) -> EdgeMatrices<'g> {
         let at = Inserted::of(self);

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Expr, Shape, identity, integer};
 use super::action::identities;
 use super::{DiscreteLagrangian, Symbols, naming};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Factor, Kinetic, Model};
+use crate::model::{Factor, Kinetic, Mechanics};
 
 /// The Lagrangian ℓ(t, q, ξ) = ½ ξ·Σξ + A·ξ − V(t, q) that is the limit of ℓd(t, h, q, exp hξ)/h, less the potential.
 pub struct Energy<'g> {
@@ -18,7 +18,11 @@ pub struct Energy<'g> {
 }
 
 /// The kinetic part of the continuous Lagrangian.
-pub(super) fn kinetic<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
+pub(super) fn kinetic<'g>(
+    model: &Mechanics<'g>,
+    symbols: &Symbols<'g>,
+    cost: Expr<'g>,
+) -> Result<Energy<'g>, Diagnostics> {
     if let Kinetic::Lagrangian { energy, velocities, .. } = &model.kinetic {
         let replaced: Vec<_> = velocities.iter().copied().zip(symbols.algebra.iter().copied()).collect();
         return declared(model, symbols, energy.substitute(&replaced));
@@ -36,7 +40,7 @@ pub(super) fn kinetic<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'
 }
 
 /// lim K(h, I + hξ)/h, less its value at rest.
-fn general<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
+fn general<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
     let along = |factor: &Factor<'g>, xi: Expr<'g>| {
         let identity = factor.group.identity(model.graph);
@@ -54,7 +58,7 @@ fn general<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Resu
 }
 
 /// The parts of a declared Lagrangian ℓ(t, q, ξ): of second and of first order in ξ.
-fn declared<'g>(model: &Model<'g>, symbols: &Symbols<'g>, lagrangian: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
+fn declared<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, lagrangian: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
     let zero = model.graph.integer(0);
     let rest: Vec<_> = symbols.algebra.iter().map(|xi| (*xi, model.graph.zero(xi.shape()))).collect();
     let directions: Vec<_> = symbols.algebra.iter().map(|xi| (*xi, *xi)).collect();
@@ -89,7 +93,7 @@ fn second_order<'g>(symbols: &Symbols<'g>, lagrangian: Expr<'g>) -> Expr<'g> {
 }
 
 /// The first to fourth derivatives of K(h, exp εξ) at ε = 0.
-fn along_exponential<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Vec<Expr<'g>> {
+fn along_exponential<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, cost: Expr<'g>) -> Vec<Expr<'g>> {
     let factors = model.factors.iter().zip(&symbols.algebra);
     let directions: Vec<_> = factors
         .map(|(factor, xi)| (factor.symbol, factor.group.translate_left(factor.symbol, factor.group.wedge(*xi))))
@@ -105,7 +109,7 @@ fn along_exponential<'g>(model: &Model<'g>, symbols: &Symbols<'g>, cost: Expr<'g
 }
 
 /// A·ξ, the limit of the slope of the cost at the identity.
-fn gyroscopic<'g>(model: &Model<'g>, slope: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
+fn gyroscopic<'g>(model: &Mechanics<'g>, slope: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
     if identity::vanishes(slope) {
         return Ok(model.graph.integer(0));
     }
@@ -133,7 +137,7 @@ fn limit<'g>(expr: Expr<'g>, h: Expr<'g>) -> Option<Expr<'g>> {
 }
 
 /// The limit of the second variation, h-free as that of an action has to be.
-fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
+fn check_scaling<'g>(model: &Mechanics<'g>, energy: Expr<'g>) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
     let scaled = energy.substitute(&[(h, 2 * h)]);
     if energy == scaled || identity::equal(&[energy], &[scaled]) {
@@ -168,7 +172,7 @@ fn check_scaling<'g>(model: &Model<'g>, energy: Expr<'g>) -> Result<Expr<'g>, Di
 }
 
 /// Whether derivatives of third and fourth order of the cost vanish faster than those of an action that is not quadratic.
-fn is_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> bool {
+fn is_quadratic<'g>(model: &Mechanics<'g>, derivatives: &[Expr<'g>]) -> bool {
     let survives = |order: i64| {
         let derivative = derivatives[order as usize - 1];
         !identity::vanishes(derivative)
@@ -177,7 +181,7 @@ fn is_quadratic<'g>(model: &Model<'g>, derivatives: &[Expr<'g>]) -> bool {
     !(survives(3) || survives(4))
 }
 
-fn check_rank<'g>(model: &Model<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
+fn check_rank<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
     let inertia = inertia(symbols, energy);
     if is_multiple_of_identity(inertia) {
         return Ok(());
@@ -220,7 +224,7 @@ enum Lost {
     Other,
 }
 
-fn lost_direction<'g>(model: &Model<'g>, inertia: Expr<'g>) -> Lost {
+fn lost_direction<'g>(model: &Mechanics<'g>, inertia: Expr<'g>) -> Lost {
     let dimension = inertia.shape().rows;
     for leaf in model.configurations.iter().filter(|leaf| leaf.shape == Shape::vector(dimension)) {
         if identity::vanishes(inertia * leaf.symbol) {
@@ -253,7 +257,10 @@ pub(super) fn uniform<'g>(symbols: &Symbols<'g>, energy: Expr<'g>, inertia: Expr
 }
 
 /// V(t, q): the declared potential and what the cost holds of one.
-pub(super) fn potential<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<Expr<'g>, Diagnostics> {
+pub(super) fn potential<'g>(
+    model: &Mechanics<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+) -> Result<Expr<'g>, Diagnostics> {
     let h = model.step_size;
     let held = match lagrangian.couples {
         true => lagrangian.kinetic.substitute(&identities(model)),

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::{ChartBlock, Symbols};
-use crate::model::Model;
+use crate::model::Mechanics;
 
 /// The momentum equation of coordinates that depend on each other.
 #[derive(Clone)]
@@ -77,7 +77,7 @@ pub struct SineForm<'g> {
 
 /// What an equation is derived from.
 pub(super) struct Sources<'a, 'g> {
-    pub(super) model: &'a Model<'g>,
+    pub(super) model: &'a Mechanics<'g>,
     pub(super) symbols: &'a Symbols<'g>,
     pub(super) momentum_map: &'a [Expr<'g>],
     pub(super) inertia: Expr<'g>,
@@ -146,14 +146,19 @@ impl<'g> MomentumEquation<'g> {
 }
 
 /// The part of the momentum symbol that belongs to a block.
-pub(super) fn own_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, i: usize) -> Expr<'g> {
+pub(super) fn own_part<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, i: usize) -> Expr<'g> {
     let block = symbols.blocks[i];
     let start = block.offset - model.offset(block.factor);
     symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension()))
 }
 
 /// An expression with the momentum of a block set to zero.
-pub(super) fn without_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, expression: Expr<'g>, i: usize) -> Expr<'g> {
+pub(super) fn without_part<'g>(
+    model: &Mechanics<'g>,
+    symbols: &Symbols<'g>,
+    expression: Expr<'g>,
+    i: usize,
+) -> Expr<'g> {
     let block = symbols.blocks[i];
     let (start, mu) = (block.offset - model.offset(block.factor), symbols.momenta[block.factor]);
     let keep =
@@ -163,7 +168,7 @@ pub(super) fn without_part<'g>(model: &Model<'g>, symbols: &Symbols<'g>, express
 }
 
 /// dx/dξ at the identity in a block.
-pub(crate) fn chart_slope(model: &Model<'_>, symbols: &Symbols<'_>, i: usize) -> (i64, i64) {
+pub(crate) fn chart_slope(model: &Mechanics<'_>, symbols: &Symbols<'_>, i: usize) -> (i64, i64) {
     let block = symbols.blocks[i];
     let group = model.factors[block.factor].group;
     symbols.charts[block.factor].slope_at_identity(&model.graph.blocks(group)[block.block])
@@ -175,7 +180,7 @@ pub(crate) fn is_diagonal(matrix: Expr<'_>) -> bool {
 }
 
 /// Whether an expression depends on the configuration, on the time or on the input.
-pub(super) fn is_moving<'g>(model: &Model<'g>, expression: Expr<'g>) -> bool {
+pub(super) fn is_moving<'g>(model: &Mechanics<'g>, expression: Expr<'g>) -> bool {
     expression.depends_on(model.time)
         || model.inputs.iter().any(|leaf| expression.depends_on(leaf.symbol))
         || model.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))

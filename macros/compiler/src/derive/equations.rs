@@ -12,7 +12,7 @@ use super::trivialisation::Covector;
 use super::{Substep, Symbols, exact, structure};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{ChartChoice, Discretization, Kinetic, Model};
+use crate::model::{ChartChoice, Discretization, Mechanics};
 
 /// The momentum equations of a substep.
 ///
@@ -161,7 +161,7 @@ fn residual<'g>(
 
 /// r(q, I), the momentum of the motion that rests.
 pub(super) fn at_identity<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     before: &[Covector<'g>],
     coupling: Option<&[Expr<'g>]>,
     k: usize,
@@ -229,11 +229,11 @@ fn equation<'g>(
 
 /// Velocities by Cayley's map have poles in the exponential chart, which Cayley's own has not.
 pub(super) fn check_poles(
-    model: &Model<'_>,
+    model: &Mechanics<'_>,
     symbols: &Symbols<'_>,
     substeps: &[Substep<'_>],
 ) -> Result<(), Diagnostics> {
-    let by_cayley = matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Cayley, .. });
+    let by_cayley = model.kinetic.discretization() == Some(Discretization::Cayley);
     let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
     let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
     let has_poles = |equation: &MomentumEquation<'_>| {

@@ -7,7 +7,7 @@ use super::equation::{MomentumEquation, Solution, Sources, Structure, is_diagona
 use super::{DiscreteLagrangian, Substep, Symbols, action, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Kinetic, Model, Order, Side};
+use crate::model::{Discretization, Mechanics, Order, Side};
 
 /// A step of drifts and kicks, with a force gradient where the potential is a formula.
 pub struct Splitting<'g> {
@@ -20,12 +20,12 @@ pub struct Splitting<'g> {
 }
 
 /// Whether a step without a potential is to be the exact free motion.
-pub(super) fn is_exact(model: &Model<'_>) -> bool {
-    matches!(&model.kinetic, Kinetic::Lagrangian { discretization: Discretization::Exact, .. })
+pub(super) fn is_exact(model: &Mechanics<'_>) -> bool {
+    model.kinetic.discretization() == Some(Discretization::Exact)
 }
 
 /// Whether the motion of a factor is found from the constants of free rotation.
-pub(super) fn is_free_rotation(model: &Model<'_>, k: usize) -> bool {
+pub(super) fn is_free_rotation(model: &Mechanics<'_>, k: usize) -> bool {
     is_exact(model) && !model.factors[k].group.is_translation()
 }
 
@@ -35,7 +35,7 @@ pub(super) fn is_free_rotation(model: &Model<'_>, k: usize) -> bool {
 /// # Errors
 /// A group or an energy whose free motion is not known.
 pub(super) fn stand_in<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     energy: Expr<'g>,
     velocities: &[Expr<'g>],
 ) -> Result<Expr<'g>, Diagnostics> {
@@ -49,7 +49,7 @@ pub(super) fn stand_in<'g>(
     Ok(h * energy.substitute(&discrete))
 }
 
-fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
+fn check<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
     let known = |group: Group| {
         group.is_translation() || matches!(group, Group::SpecialOrthogonal(3 | 4) | Group::UnitQuaternions)
     };
@@ -73,7 +73,7 @@ fn check<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Re
 }
 
 /// Whether an energy is a constant quadratic form of each velocity alone.
-fn is_constant_form<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
+fn is_constant_form<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
     let moves = energy.depends_on(model.time) || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
     let quadratic = |velocity: &Expr<'g>| {
         let gradient = energy.gradient(*velocity);
@@ -84,7 +84,7 @@ fn is_constant_form<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<
 }
 
 /// Whether a distribution of mass has the energy, on the factors where this matters.
-fn has_mass<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
+fn has_mass<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
     model.factors.iter().zip(velocities).all(|(factor, velocity)| {
         factor.group != Group::SpecialOrthogonal(4)
             || velocity::mass_matrix(factor.group, energy.gradient(*velocity).matrix_of_linear(*velocity)).is_some()
@@ -92,7 +92,7 @@ fn has_mass<'g>(model: &Model<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) ->
 }
 
 /// Whether a solution gives F − I and the next momentum themselves, not chart coordinates: the free motion of four dimensions, which is alone.
-pub(super) fn turns_whole(model: &Model<'_>) -> bool {
+pub(super) fn turns_whole(model: &Mechanics<'_>) -> bool {
     is_exact(model) && model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4))
 }
 
@@ -135,7 +135,7 @@ pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquat
 }
 
 /// F⁻ℓd and F⁺ℓd of a factor that moves freely, with the symbol μ for the momentum of the free motion that makes F.
-pub(super) fn legendre<'g>(model: &Model<'g>, symbols: &Symbols<'g>, k: usize) -> (Expr<'g>, Expr<'g>) {
+pub(super) fn legendre<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, k: usize) -> (Expr<'g>, Expr<'g>) {
     let (factor, mu) = (&model.factors[k], symbols.momenta[k]);
     let carried = match factor.side {
         Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
@@ -145,7 +145,7 @@ pub(super) fn legendre<'g>(model: &Model<'g>, symbols: &Symbols<'g>, k: usize) -
 }
 
 /// Whether a step without its kicks is the exact flow of the kinetic energy.
-pub(super) fn drifts_exactly(model: &Model<'_>, symbols: &Symbols<'_>, substeps: &[Substep<'_>]) -> bool {
+pub(super) fn drifts_exactly(model: &Mechanics<'_>, symbols: &Symbols<'_>, substeps: &[Substep<'_>]) -> bool {
     let [substep] = substeps else { return false };
     let is_known = |equation: &MomentumEquation<'_>| match equation.solution {
         Solution::FreeRotation => true,

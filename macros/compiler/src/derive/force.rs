@@ -6,7 +6,7 @@
 use clebsch_symbolic::{Expr, identity};
 
 use super::velocity;
-use crate::model::{Discretization, Kinetic, Model, Order};
+use crate::model::{Discretization, Mechanics, Order};
 
 /// The forces on an edge, in the components of each factor.
 #[derive(Clone)]
@@ -28,7 +28,7 @@ impl<'g> EdgeForce<'g> {
 
 /// f in 𝔤*, that on configurations by J(q, f); `None` if nothing acts.
 pub(super) fn covector<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     covectors: &[Expr<'g>],
     momentum_map: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
@@ -41,7 +41,7 @@ pub(super) fn covector<'g>(
 }
 
 /// The impulses of a force f on an edge that is one of `parts` in a step.
-pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], divisor: i64) -> EdgeForce<'g> {
+pub(super) fn on_edge<'g>(model: &Mechanics<'g>, covector: &[Expr<'g>], divisor: i64) -> EdgeForce<'g> {
     let part = model.step_size / divisor;
     let (first, last) = match model.order {
         Order::First => (model.graph.integer(0), part),
@@ -65,17 +65,14 @@ pub(super) fn on_edge<'g>(model: &Model<'g>, covector: &[Expr<'g>], divisor: i64
     }
 }
 
-fn velocities<'a, 'g>(model: &'a Model<'g>) -> &'a [Expr<'g>] {
+fn velocities<'a, 'g>(model: &'a Mechanics<'g>) -> &'a [Expr<'g>] {
     model.force.as_ref().map_or(&[], |force| &force.velocities)
 }
 
 /// The replacement of ξ by ξ(F)/h: by the logarithm where the Lagrangian is discretised so or where Cayley's map leaves a factor, by
 /// the projection where that is asked for, else by Cayley's map. Both ends see the same velocity, so it has to be odd: ξ(F⁻¹) = −ξ(F).
-fn moving<'g>(model: &Model<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let chosen = match &model.kinetic {
-        Kinetic::Lagrangian { discretization, .. } => *discretization,
-        Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => Discretization::Cayley,
-    };
+fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let chosen = model.kinetic.discretization().unwrap_or(Discretization::Cayley);
     let has_cayley =
         model.factors.iter().all(|factor| factor.group.is_translation() || factor.group.has_cayley_chart(model.graph));
     let discretization = match chosen {

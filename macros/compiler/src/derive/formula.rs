@@ -24,6 +24,8 @@ pub struct Formula<'g> {
     pub source: Option<Reference>,
     /// How often it is computed.
     pub heat: Heat,
+    /// Whether prints and `DERIVATION` list it.
+    pub(super) is_listed: bool,
     /// How the right side is written.
     wording: Wording<'g>,
     /// Which of its expressions are said in the momentum μ of the free motion to F, with μ and F.
@@ -63,6 +65,7 @@ impl<'g> Formula<'g> {
             written: None,
             source: entry.source,
             heat: entry.heat,
+            is_listed: entry.is_listed,
             wording: Wording::AsIs,
             free: Vec::new(),
             text: OnceCell::new(),
@@ -188,6 +191,51 @@ impl Notation {
                 ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
             ),
         }
+    }
+}
+
+/// The formulas of a system, in the order of the derivation.
+pub struct FormulaTable<'g>(Vec<Formula<'g>>);
+
+impl<'g> FormulaTable<'g> {
+    /// The table of these rows, without those that say nothing.
+    pub(super) fn new(mut rows: Vec<Formula<'g>>) -> FormulaTable<'g> {
+        rows.retain(|row| !row.value.is_empty());
+        FormulaTable(rows)
+    }
+
+    /// All formulas.
+    pub fn rows(&self) -> &[Formula<'g>] {
+        &self.0
+    }
+
+    /// The formulas that prints and `DERIVATION` show: those that are listed, unless they say that something vanishes.
+    pub fn listing(&self) -> impl Iterator<Item = &Formula<'g>> {
+        self.0.iter().filter(|row| row.is_listed && !row.is_trivial())
+    }
+
+    /// The formula with an id, or none where a system does not have it.
+    pub fn titled(&self, id: Id) -> &[Formula<'g>] {
+        self.titled_all(|other| other == id)
+    }
+
+    /// The right sides of a formula; `None` where a system does not have it.
+    pub fn value(&self, id: Id) -> Option<&[Expr<'g>]> {
+        self.titled(id).first().map(|row| row.value.as_slice())
+    }
+
+    /// The formulas whose ids are of a kind; they stand together in the table.
+    pub fn titled_all(&self, is_meant: impl Fn(Id) -> bool) -> &[Formula<'g>] {
+        let is_meant = |row: &Formula<'g>| is_meant(row.id);
+        let Some(first) = self.0.iter().position(&is_meant) else { return &[] };
+        let count = self.0[first..].iter().take_while(|row| is_meant(row)).count();
+        &self.0[first..first + count]
+    }
+}
+
+impl fmt::Display for FormulaTable<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.listing().try_for_each(|formula| writeln!(f, "{}", formula.to_string().trim_end()))
     }
 }
 

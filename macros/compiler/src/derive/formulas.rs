@@ -2,30 +2,65 @@
 
 use std::cell::OnceCell;
 use std::fmt;
+use std::ops::Deref;
+use std::rc::Rc;
 
 use clebsch_symbolic::{Chart, Expr, Group};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, DiscreteLagrangian, EdgeDerivatives, EdgeForce, Endpoint, Energy, Formula, MomentumEquation, Quantity,
-    SiteTerm, Splitting, Steering, Symbols, Symmetries, equation, exact, signature, variation,
+    Collocation, DiscreteLagrangian, EdgeDerivatives, EdgeForce, Endpoint, Energy, FormulaTable, InputStep,
+    MomentumEquation, Quantity, SiteTerm, Splitting, Steering, Symbols, Symmetries, equation, exact, signature,
+    variation,
 };
-use crate::model::{Isotropy, LeafSpace, Model};
+use crate::model::{Isotropy, LeafSpace, Mechanics, Steered, System};
 
 /// What is derived, as matrix expressions.
-pub struct Formulas<'g> {
-    /// The model that all of it is derived from.
-    pub model: Model<'g>,
+pub enum Formulas<'g> {
+    /// Of mechanics.
+    Mechanics(Box<MechanicsFormulas<'g>>),
+    /// Of a configuration that inputs move.
+    Steered(Box<SteeredFormulas<'g>>),
+}
+
+/// What follows from the action, and from the prices of inputs and of the end.
+pub struct SystemFormulas<'g> {
+    /// What it is derived from.
+    pub model: Rc<System<'g>>,
     /// The symbols that the derivation adds to those of the model.
     pub symbols: Symbols<'g>,
     /// The infinitesimal generator ξ_Q(q), for each leaf of the configuration.
     pub generator: Vec<Expr<'g>>,
+    /// J(q, p), for each factor.
+    pub momentum_map: Vec<Expr<'g>>,
+    /// What the choice of inputs needs; `None` where nothing is chosen.
+    pub steering: Option<Steering<'g>>,
+    /// The price of the end; `None` if there is none.
+    pub endpoint: Option<Endpoint<'g>>,
+    /// All formulas as a table, made when it is first asked for.
+    pub(super) table: OnceCell<FormulaTable<'g>>,
+}
+
+/// What is derived of a configuration that inputs move.
+pub struct SteeredFormulas<'g> {
+    /// What follows from the action and from the prices.
+    pub system: SystemFormulas<'g>,
+    /// The model that all of it is derived from.
+    pub model: Steered<'g>,
+    /// The step that inputs make.
+    pub step: InputStep<'g>,
+}
+
+/// What is derived of mechanics.
+pub struct MechanicsFormulas<'g> {
+    /// What follows from the action and from the prices.
+    pub system: SystemFormulas<'g>,
+    /// The model that all of it is derived from.
+    pub model: Mechanics<'g>,
     /// Whether only the identity fixes a general configuration.
     pub is_free: bool,
     /// J(q, μ_Q(q))/c for each factor, where some motions fix q and that is the orthogonal projection of μ to 𝔤_q^⊥, as on spheres.
     pub projection: Option<Vec<Expr<'g>>>,
-    /// J(q, p), for each factor.
-    pub momentum_map: Vec<Expr<'g>>,
     /// Ad*_F μ, for each factor.
     pub coadjoint: Vec<Expr<'g>>,
     /// (TΦ_F)^{-*} p as a function of F, q⁺ and p, for each leaf of the configuration.
@@ -69,12 +104,6 @@ pub struct Formulas<'g> {
     pub is_exact: bool,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
     pub covector: Option<Vec<Expr<'g>>>,
-    /// What the choice of inputs needs; `None` where nothing is chosen.
-    pub steering: Option<Steering<'g>>,
-    /// The price of the end; `None` if there is none.
-    pub endpoint: Option<Endpoint<'g>>,
-    /// All of it as the rows of a table, made when it is first asked for.
-    pub(super) table: OnceCell<Vec<Formula<'g>>>,
 }
 
 /// One discrete Lagrangian with what a step of it needs.
@@ -107,7 +136,38 @@ pub struct Substep<'g> {
     pub variation: Option<EdgeDerivatives<'g>>,
 }
 
-impl Formulas<'_> {
+impl<'g> Deref for MechanicsFormulas<'g> {
+    type Target = SystemFormulas<'g>;
+
+    fn deref(&self) -> &SystemFormulas<'g> {
+        &self.system
+    }
+}
+
+impl<'g> Deref for SteeredFormulas<'g> {
+    type Target = SystemFormulas<'g>;
+
+    fn deref(&self) -> &SystemFormulas<'g> {
+        &self.system
+    }
+}
+
+impl<'g> Formulas<'g> {
+    /// All formulas.
+    pub fn table(&self) -> &FormulaTable<'g> {
+        match self {
+            Formulas::Mechanics(formulas) => formulas.table(),
+            Formulas::Steered(formulas) => formulas.table(),
+        }
+    }
+
+    /// The formulas that `DERIVATION` lists, in an `align*` of LaTeX.
+    pub fn latex(&self) -> String {
+        self.table().latex()
+    }
+}
+
+impl MechanicsFormulas<'_> {
     /// How many directions the kinetic energy is positive and negative in, for positive parameters.
     pub fn signature(&self) -> Option<(usize, usize)> {
         match is_multiple_of_identity(self.inertia) {
@@ -188,15 +248,12 @@ impl Formulas<'_> {
 
 impl fmt::Display for Formulas<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for formula in self.listing() {
-            writeln!(f, "{}", formula.to_string().trim_end())?;
-        }
-        Ok(())
+        write!(f, "{}", self.table())
     }
 }
 
 /// Whether a discrete Lagrangian depends on the time.
-pub(super) fn is_timed(model: &Model<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
+pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_>) -> bool {
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));

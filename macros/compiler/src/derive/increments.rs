@@ -2,11 +2,11 @@
 
 use clebsch_symbolic::{Expr, Group};
 
-use super::Formulas;
+use super::SystemFormulas;
 use crate::model::Factor;
 
 /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
-pub(crate) fn increments<'g>(formulas: &Formulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(crate) fn increments<'g>(formulas: &SystemFormulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let symbols = &formulas.symbols;
     let factors = formulas.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
     let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {

@@ -1,6 +1,6 @@
 //! The formulas in LaTeX: the constant `DERIVATION_LATEX`.
 
-use super::{Formula, Formulas};
+use super::{Formula, FormulaTable};
 
 /// Words of left sides; other words are names.
 const WORDS: [&str; 6] = ["at", "with", "for", "each", "of", "in"];
@@ -40,7 +40,7 @@ const LETTERS: [(char, &str); 31] = [
     ('₂', "_2"),
 ];
 
-impl Formulas<'_> {
+impl FormulaTable<'_> {
     /// The formulas that `DERIVATION` lists, in an `align*`.
     pub fn latex(&self) -> String {
         let row = |formula: &Formula<'_>| {

@@ -46,27 +46,27 @@ mod velocity;
 
 use std::cell::OnceCell;
 
-use clebsch_symbolic::{Expr, Shape, identity};
+use clebsch_symbolic::{Expr, identity};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Model, Order};
+use crate::model::{Mechanics, Model, Order, Steered};
 
 pub use catalogue::{Entry, Heat, Id};
 pub(crate) use cayley::of_increment as cayley_coordinates;
-pub use choice::Choice;
+pub use choice::{Choice, StepOfChoice};
 pub use collocation::Collocation;
 pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
-pub use derivation::{Iteration, Lowered, derivation};
+pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use edges::EdgeMatrices;
 pub use energy::Energy;
 pub use equation::{MomentumEquation, Solution, Structure};
 pub use exact::Splitting;
 pub use force::EdgeForce;
-pub use formula::Formula;
+pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
-pub use formulas::{Formulas, Substep};
+pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas, Substep, SystemFormulas};
 use increments::{from_increment, increments, inserted, inverse_by};
 pub use matrix_form::MatrixForm;
 pub use power::{Home, SiteTerm, Stencil, stencil};
@@ -83,15 +83,19 @@ pub use variation::{EdgeDerivatives, Quantity};
 /// # Errors
 /// A kinetic part that is degenerate, does not scale like an action, or is not quadratic.
 pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
+    match model {
+        Model::Mechanics(model) => Ok(Formulas::Mechanics(Box::new(mechanics(*model)?))),
+        Model::Steered(model) => Ok(Formulas::Steered(Box::new(steered(*model)))),
+    }
+}
+
+fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
-    let mut symbols = Symbols::new(&model);
+    let mut symbols = Symbols::new(&model, model.kinetic.discretization());
     let generator = action::generator(&model, &symbols);
     let momentum_map = action::momentum_map(&symbols, &generator);
     let steering = control::steering(&model, &symbols, &generator, &momentum_map);
     let endpoint = control::endpoint(&model, &symbols, &generator);
-    if model.is_steered() {
-        return Ok(steered(model, symbols, (generator, momentum_map), (steering, endpoint)));
-    }
     let cost = cost::kinetic_cost(&model)?;
     let energy = energy::kinetic(&model, &symbols, cost)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
@@ -158,7 +162,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     closed_form::adopt_sine(&mut symbols, &mut substeps);
     equations::check_poles(&model, &symbols, &substeps)?;
     tolerance::check(&model, &substeps, collocation.is_some())?;
-    let formulas = Formulas {
+    let formulas = MechanicsFormulas {
         splitting,
         collocation,
         is_exact,
@@ -167,7 +171,6 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         legendre,
         legendre_next,
         legendre_kick,
-        table: OnceCell::new(),
         projection: match is_free {
             true => None,
             false => action::projection(&model, &symbols, &generator, &momentum_map),
@@ -178,10 +181,16 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         uniform_inertia: energy::uniform(&symbols, energy.kinetic, inertia)
             .filter(|_| !equation::is_moving(&model, inertia)),
         inertia,
+        system: SystemFormulas {
+            model: model.system.clone(),
+            symbols,
+            generator,
+            momentum_map,
+            steering,
+            endpoint,
+            table: OnceCell::new(),
+        },
         model,
-        symbols,
-        generator,
-        momentum_map,
         energy,
         potential_energy,
         links,
@@ -191,57 +200,30 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
         substeps,
         stepped,
         covector,
-        steering,
-        endpoint,
     };
     summation::check(&formulas)?;
     Ok(formulas)
 }
 
 /// What is left without mechanics: the action, and what the choice of inputs needs.
-fn steered<'g>(
-    model: Model<'g>,
-    symbols: Symbols<'g>,
-    (generator, momentum_map): (Vec<Expr<'g>>, Vec<Expr<'g>>),
-    (steering, endpoint): (Option<Steering<'g>>, Option<Endpoint<'g>>),
-) -> Formulas<'g> {
-    let (graph, zero) = (model.graph, model.graph.integer(0));
-    Formulas {
-        legendre: Vec::new(),
-        legendre_next: Vec::new(),
-        legendre_kick: None,
-        table: OnceCell::new(),
-        is_free: action::is_free(&model, &symbols, &generator),
-        projection: None,
-        coadjoint: action::coadjoint(&model, &symbols),
-        cotangent_lift: Vec::new(),
-        inertia: graph.zero(Shape::square(model.dimension())),
-        uniform_inertia: None,
-        energy: Energy { kinetic: zero, gyroscopic: zero, general: None },
-        potential_energy: zero,
-        links: Vec::new(),
-        symmetries: Symmetries::default(),
-        lagrangian: DiscreteLagrangian { kinetic: zero, start: zero, end: zero, couples: false },
-        quantities: Vec::new(),
-        substeps: Vec::new(),
-        stepped: 0,
-        splitting: None,
-        collocation: None,
-        is_exact: false,
-        stagger: None,
-        is_staggered: false,
-        covector: None,
-        steering,
-        endpoint,
-        model,
+fn steered(model: Steered<'_>) -> SteeredFormulas<'_> {
+    let symbols = Symbols::new(&model, None);
+    let generator = action::generator(&model, &symbols);
+    let momentum_map = action::momentum_map(&symbols, &generator);
+    let system = SystemFormulas {
+        model: model.system.clone(),
+        steering: control::steering(&model, &symbols, &generator, &momentum_map),
+        endpoint: control::endpoint(&model, &symbols, &generator),
         symbols,
         generator,
         momentum_map,
-    }
+        table: OnceCell::new(),
+    };
+    SteeredFormulas { step: control::step(&model, &system), model, system }
 }
 
 /// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.
-fn check_unmoved<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<(), Diagnostics> {
+fn check_unmoved<'g>(model: &Mechanics<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<(), Diagnostics> {
     let (before, after) = trivialised(model, lagrangian);
     let agrees = trivialisation::agreement(model, &before, &after);
     let Some(factor) = model.factors.iter().zip(agrees).find(|(factor, agrees)| !factor.moves && !agrees) else {
@@ -255,7 +237,7 @@ fn check_unmoved<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> 
 }
 
 /// An offered symmetry has to be one.
-fn check_offers(model: &Model<'_>, symmetries: &Symmetries<'_>) -> Result<(), Diagnostics> {
+fn check_offers(model: &Mechanics<'_>, symmetries: &Symmetries<'_>) -> Result<(), Diagnostics> {
     let Some(&index) = symmetries.refused.first() else { return Ok(()) };
     let offered = &model.symmetries[index];
     let (what, unchanged) = match model.force.is_some() {
@@ -323,16 +305,19 @@ fn substep<'g>(
 }
 
 /// T* ∂_F K before the step and after it, for each factor.
-fn trivialised<'g>(model: &Model<'g>, lagrangian: &DiscreteLagrangian<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
+fn trivialised<'g>(
+    model: &Mechanics<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
     (0..model.factors.len()).map(|k| trivialisation::trivialisations(model, lagrangian.kinetic, k)).unzip()
 }
 
-fn components<'g>(model: &Model<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
+fn components<'g>(model: &Mechanics<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
     model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).collect()
 }
 
 /// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.
-fn at_rest<'g>(model: &Model<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
+fn at_rest<'g>(model: &Mechanics<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
     let rest: Vec<_> = (0..model.factors.len()).map(|k| -equations::at_identity(model, before, coupling, k)).collect();
     rest.iter().any(|part| !identity::vanishes(*part)).then_some(rest)
 }

@@ -2,10 +2,10 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, identity};
 
-use super::{Formulas, Substep, increments};
+use super::{MechanicsFormulas, Substep, SystemFormulas, increments};
 use crate::model::Factor;
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// Functions of the time at which a step starts, of functions of a time that is `later`.
     pub(super) fn as_of_start(&self, later: Expr<'g>, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let moved = [(self.model.time, self.model.time + later)];
@@ -89,7 +89,9 @@ impl<'g> Formulas<'g> {
         }
         self.carried_on(substep).map(|carried| self.at_increments(&carried))
     }
+}
 
+impl<'g> SystemFormulas<'g> {
     /// Expressions with I + D put in for F, products distributed.
     pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let elements = increments(self);

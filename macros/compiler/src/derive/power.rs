@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Property, Role};
 
-use crate::model::{Configuration, Linear, Model, Power, SiteIndex, Term};
+use crate::model::{Configuration, Linear, Mechanics, Power, SiteIndex, Term};
 
 /// A term of the potential of a power with its gradient.
 pub struct SiteTerm<'g> {
@@ -54,7 +54,7 @@ pub struct Stencil<'g> {
 }
 
 /// The gradient of one site; `None` where terms cannot be told by the sites that they read, such as those of sums over pairs.
-pub fn stencil<'g>(model: &Model<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<'g>> {
+pub fn stencil<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<'g>> {
     let power = model.power.as_ref()?;
     let zero = |leaf: &Configuration<'g>| model.graph.zero(leaf.shape);
     let gradient = model.configurations.iter().map(zero).collect();
@@ -82,7 +82,7 @@ pub fn stencil<'g>(model: &Model<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<
 
 impl<'g> Stencil<'g> {
     /// The symbol of a configuration at a place of a term, as that of a site relative to the one whose gradient this is.
-    fn moved(&mut self, model: &Model<'g>, symbol: Expr<'g>, (own, wraps): (Expr<'g>, bool)) -> Option<Expr<'g>> {
+    fn moved(&mut self, model: &Mechanics<'g>, symbol: Expr<'g>, (own, wraps): (Expr<'g>, bool)) -> Option<Expr<'g>> {
         let (power, Some(Role::At(place, leaf))) = (model.power.as_ref()?, role(symbol)) else { return None };
         let there = &power.places[place];
         let site = own.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
@@ -112,7 +112,7 @@ fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
 }
 
 /// The terms of a power, with their gradients; nothing else has any.
-pub(super) fn links<'g>(model: &Model<'g>) -> Vec<SiteTerm<'g>> {
+pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
     let Some(power) = &model.power else { return Vec::new() };
     let link = |term: &Term<'g>| {
         let symbols = term.value.symbols();
@@ -136,7 +136,7 @@ fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr
 }
 
 /// The change of each term where all of its sites move alike: by `motion`, given for the site itself.
-pub(super) fn moved<'g>(model: &Model<'g>, links: &[SiteTerm<'g>], motion: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub(super) fn moved<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>], motion: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let of_link = |link: &SiteTerm<'g>| {
         let symbols = link.term.value.symbols();
         let mut change = model.graph.integer(0);

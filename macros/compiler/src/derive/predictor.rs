@@ -4,9 +4,9 @@ use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::equation::chart_slope;
 use super::exact::{by_inertia, inertia_inverse};
-use super::{Formulas, MatrixForm, MomentumEquation, Solution, Substep};
+use super::{MatrixForm, MechanicsFormulas, MomentumEquation, Solution, Substep};
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// Whether an equation is started from, or solved by, what is right to first order in h: Σ does not change, and nothing better is known.
     pub(super) fn is_predicted(&self, equation: &MomentumEquation<'g>) -> bool {
         let is_known = matches!(equation.solution, Solution::Linear | Solution::FreeRotation);

@@ -8,42 +8,13 @@ mod steps;
 use clebsch_symbolic::{Expr, Property};
 
 use super::increments::inverse_by;
-use super::{Formula, Formulas, Id};
-use crate::model::{Factor, Kinetic, LeafSpace};
+use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
+use crate::model::{Factor, LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
 
-impl<'g> Formulas<'g> {
-    /// All formulas, in the order of the derivation.
-    pub fn table(&self) -> &[Formula<'g>] {
-        self.table.get_or_init(|| self.rows())
-    }
-
-    /// The formulas that prints and `DERIVATION` show: those that are listed, unless they say that something vanishes.
-    pub fn listing(&self) -> impl Iterator<Item = &Formula<'g>> {
-        let is_shown = |id: Id| id.substep().is_none_or(|index| index < self.stepped);
-        self.table().iter().filter(move |row| row.id.entry().is_listed && is_shown(row.id) && !row.is_trivial())
-    }
-
-    /// The formula with an id, or none where a system does not have it.
-    pub fn titled(&self, id: Id) -> &[Formula<'g>] {
-        self.titled_all(|other| other == id)
-    }
-
-    /// The right sides of a formula; `None` where a system does not have it.
-    pub fn value(&self, id: Id) -> Option<&[Expr<'g>]> {
-        self.titled(id).first().map(|row| row.value.as_slice())
-    }
-
-    /// The formulas whose ids are of a kind; they stand together in the table.
-    pub fn titled_all(&self, is_meant: impl Fn(Id) -> bool) -> &[Formula<'g>] {
-        let (table, is_meant) = (self.table(), |row: &Formula<'g>| is_meant(row.id));
-        let Some(first) = table.iter().position(&is_meant) else { return &[] };
-        let count = table[first..].iter().take_while(|row| is_meant(row)).count();
-        &table[first..first + count]
-    }
-
+impl<'g> SystemFormulas<'g> {
     /// The user's name for the configuration: `q`, or `(p, q)`.
     pub fn q(&self) -> String {
         tuple(self.model.configurations.iter().map(|leaf| leaf.name.clone()))
@@ -62,49 +33,6 @@ impl<'g> Formulas<'g> {
             .unwrap_or_default()
     }
 
-    fn rows(&self) -> Vec<Formula<'g>> {
-        if self.model.is_steered() {
-            return self.rows_of_steered();
-        }
-        let mut rows = self.rows_of_action();
-        rows.extend(self.rows_of_momenta());
-        rows.extend(self.rows_of_energy());
-        rows.extend(self.rows_of_lagrangian());
-        rows.extend(self.rows_of_terms());
-        rows.extend(self.rows_of_choice());
-        rows.extend(self.rows_of_conserved());
-        for index in 0..self.substeps.len() {
-            rows.extend(self.rows_of_substep(index));
-        }
-        rows.extend(self.rows_of_move());
-        rows.extend(self.row_of_stagger());
-        rows.extend(self.rows_of_splitting());
-        rows.extend(self.rows_of_collocation());
-        rows.extend(self.rows_of_motions());
-        rows.retain(|row| !row.value.is_empty());
-        rows
-    }
-
-    /// What inputs move, what they cost, and what binds them.
-    fn rows_of_steered(&self) -> Vec<Formula<'g>> {
-        let (q, u) = (self.q(), self.u());
-        let mut rows = self.rows_of_action();
-        rows.truncate(2);
-        rows.push(self.row_of_membership());
-        rows.extend(self.rows_of_motions());
-        match &self.model.kinetic {
-            Kinetic::Controls { velocity, .. } => {
-                let symbol = format!("{}({u})", self.letter(&self.symbols.algebra));
-                rows.push(Formula::new(Id::Controls, symbol, velocity));
-            }
-            Kinetic::Dynamics(next) => rows.push(Formula::new(Id::Controls, format!("{q}⁺"), next)),
-            Kinetic::Cost(_) | Kinetic::Lagrangian { .. } => {}
-        }
-        rows.extend(self.rows_of_choice());
-        rows.retain(|row| !row.value.is_empty());
-        rows
-    }
-
     /// The user's name for the input.
     fn u(&self) -> String {
         tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone()))
@@ -114,16 +42,10 @@ impl<'g> Formulas<'g> {
     fn rows_of_action(&self) -> Vec<Formula<'g>> {
         let (q, f) = (self.q(), self.f());
         let xi = self.letter(&self.symbols.algebra);
-        let mu = self.letter(&self.symbols.momenta);
-        let p = self.letter(&self.symbols.covectors);
         let action = Formula::new(Id::Action, format!("Φ_{f}({q})"), &self.model.action);
-        let coadjoint = Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), &self.coadjoint);
         vec![
             action.computed_as(self.with_inverses(&self.model.action)),
             Formula::new(Id::Generator, format!("{xi}_Q({q})"), &self.generator),
-            Formula::new(Id::MomentumMap, format!("J({q}, {p})"), &self.momentum_map),
-            coadjoint.computed_as(self.with_inverses(&self.coadjoint)),
-            Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), &self.cotangent_lift),
         ]
     }
 
@@ -145,6 +67,98 @@ impl<'g> Formulas<'g> {
             _ => Vec::new(),
         });
         Formula::new(Id::Membership, "0", &equations.collect::<Vec<_>>())
+    }
+
+    /// Price, bounds and the price of the end.
+    fn rows_of_choice(&self) -> Vec<Formula<'g>> {
+        let price_of_end = |price| Formula::new(Id::PriceOfEnd, format!("φ({})", self.q()), &[price]);
+        let mut rows = Vec::new();
+        if let Some(control) = &self.model.control {
+            let bounds: Vec<Expr<'g>> = control.bounds.iter().map(|bound| bound.value).collect();
+            rows.push(Formula::new(Id::Price, format!("ℓ(h, {})", self.u()), &[control.price]));
+            rows.push(Formula::new(Id::Bounds, "0 ≥ a", &bounds));
+        }
+        rows.extend(self.model.endpoint.map(price_of_end));
+        rows
+    }
+}
+
+impl<'g> SteeredFormulas<'g> {
+    /// All formulas.
+    pub fn table(&self) -> &FormulaTable<'g> {
+        self.table.get_or_init(|| FormulaTable::new(self.rows()))
+    }
+
+    /// What inputs move, what they cost, and what binds them.
+    fn rows(&self) -> Vec<Formula<'g>> {
+        let (q, u, d) = (self.q(), self.u(), self.letter(&self.symbols.increments));
+        let mut rows = self.rows_of_action();
+        rows.push(self.row_of_membership());
+        rows.push(self.row_of_orbit_metric());
+        rows.push(Formula::new(Id::Increment, d, &self.step.increment));
+        rows.push(Formula::new(Id::Advance, format!("{q}⁺"), &self.at_increments(&self.model.action)));
+        rows.push(match &self.model.motion {
+            Motion::Controls { velocity, .. } => {
+                let symbol = format!("{}({u})", self.letter(&self.symbols.algebra));
+                Formula::new(Id::Controls, symbol, velocity)
+            }
+            Motion::Dynamics(next) => Formula::new(Id::Controls, format!("{q}⁺"), next),
+        });
+        rows.extend(self.rows_of_choice());
+        rows
+    }
+}
+
+impl<'g> MechanicsFormulas<'g> {
+    /// All formulas.
+    pub fn table(&self) -> &FormulaTable<'g> {
+        self.table.get_or_init(|| FormulaTable::new(self.rows()))
+    }
+
+    /// The formula with an id, or none where a system does not have it.
+    pub fn titled(&self, id: Id) -> &[Formula<'g>] {
+        self.table().titled(id)
+    }
+
+    /// The right sides of a formula; `None` where a system does not have it.
+    pub fn value(&self, id: Id) -> Option<&[Expr<'g>]> {
+        self.table().value(id)
+    }
+
+    fn rows(&self) -> Vec<Formula<'g>> {
+        let mut rows = self.rows_of_action();
+        rows.extend(self.rows_of_momentum_map());
+        rows.extend(self.rows_of_momenta());
+        rows.extend(self.rows_of_energy());
+        rows.extend(self.rows_of_lagrangian());
+        rows.extend(self.rows_of_terms());
+        rows.extend(self.rows_of_choice());
+        rows.extend(self.rows_of_conserved());
+        for index in 0..self.substeps.len() {
+            rows.extend(self.rows_of_substep(index));
+        }
+        rows.extend(self.rows_of_move());
+        rows.extend(self.row_of_stagger());
+        rows.extend(self.rows_of_splitting());
+        rows.extend(self.rows_of_collocation());
+        rows.extend(self.rows_of_motions());
+        let stepped = self.stepped;
+        let serves_inversion = |row: &&mut Formula<'g>| row.id.substep().is_some_and(|index| index >= stepped);
+        rows.iter_mut().filter(serves_inversion).for_each(|row| row.is_listed = false);
+        rows
+    }
+
+    /// How momenta are made of covectors, and how both are carried along.
+    fn rows_of_momentum_map(&self) -> Vec<Formula<'g>> {
+        let (q, f) = (self.q(), self.f());
+        let mu = self.letter(&self.symbols.momenta);
+        let p = self.letter(&self.symbols.covectors);
+        let coadjoint = Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), &self.coadjoint);
+        vec![
+            Formula::new(Id::MomentumMap, format!("J({q}, {p})"), &self.momentum_map),
+            coadjoint.computed_as(self.with_inverses(&self.coadjoint)),
+            Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), &self.cotangent_lift),
+        ]
     }
 
     /// Momenta as matrices, and what lies on a group.
@@ -177,19 +191,6 @@ impl<'g> Formulas<'g> {
         };
         let terms = self.links.iter().enumerate().map(term);
         terms.chain(self.links.iter().enumerate().flat_map(gradients)).collect()
-    }
-
-    /// Price, bounds and the price of the end.
-    fn rows_of_choice(&self) -> Vec<Formula<'g>> {
-        let price_of_end = |price| Formula::new(Id::PriceOfEnd, format!("φ({})", self.q()), &[price]);
-        let mut rows = Vec::new();
-        if let Some(control) = &self.model.control {
-            let bounds: Vec<Expr<'g>> = control.bounds.iter().map(|bound| bound.value).collect();
-            rows.push(Formula::new(Id::Price, format!("ℓ(h, {})", self.u()), &[control.price]));
-            rows.push(Formula::new(Id::Bounds, "0 ≥ a", &bounds));
-        }
-        rows.extend(self.model.endpoint.map(price_of_end));
-        rows
     }
 
     /// The conserved momenta by their names.

@@ -10,12 +10,12 @@
 
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
-use super::{Formulas, Substep, increments, inverse_by};
+use super::{MechanicsFormulas, Substep, increments, inverse_by};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Factor, Located, Model, Summation};
+use crate::model::{Factor, Located, Mechanics, Summation};
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// Whether the sums of a step keep the rests of their rounding.
     pub fn is_compensated(&self) -> bool {
         is_compensated(&self.model)
@@ -98,12 +98,12 @@ impl<'g> Formulas<'g> {
 }
 
 /// Whether the sums of a step keep the rests of their rounding.
-pub(super) fn is_compensated(model: &Model<'_>) -> bool {
+pub(super) fn is_compensated(model: &Mechanics<'_>) -> bool {
     place(model).is_some()
 }
 
 /// Where compensated summation is asked for.
-fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
+fn place<'m>(model: &'m Mechanics<'_>) -> Option<&'m Located<Summation>> {
     model.dials.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
 }
 
@@ -111,7 +111,7 @@ fn place<'m>(model: &'m Model<'_>) -> Option<&'m Located<Summation>> {
 ///
 /// # Errors
 /// A step in which q or N is no sum.
-pub(super) fn check(formulas: &Formulas<'_>) -> Result<(), Diagnostics> {
+pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics> {
     // collocation adds changes to q and N whatever they are
     let Some(summation) = place(&formulas.model).filter(|_| formulas.collocation.is_none()) else { return Ok(()) };
     features::check((Feature::Summation, Found::at(summation.span)), |feature| match feature {

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use crate::model::{ChartChoice, Discretization, Kinetic, Model};
+use crate::model::{ChartChoice, Discretization, System};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
 pub struct Symbols<'g> {
@@ -121,18 +121,18 @@ impl<'g> Symbols<'g> {
     }
 
     /// The element of a factor in its chart.
-    pub(super) fn chart_element(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+    pub(super) fn chart_element(&self, model: &System<'g>, factor: usize) -> Expr<'g> {
         self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))
     }
 
     /// The increment F − I of a factor in its chart, without cancellation.
-    pub(super) fn chart_increment(&self, model: &Model<'g>, factor: usize) -> Expr<'g> {
+    pub(super) fn chart_increment(&self, model: &System<'g>, factor: usize) -> Expr<'g> {
         let (numerator, denominator) =
             self.charts[factor].increment(model.factors[factor].group, &self.coordinates(factor));
         numerator / denominator
     }
 
-    pub(super) fn new(model: &Model<'g>) -> Symbols<'g> {
+    pub(super) fn new(model: &System<'g>, discretization: Option<Discretization>) -> Symbols<'g> {
         let graph = model.graph;
         let taken = taken(model);
         let covector = fresh(&["p", "α", "β"], &taken);
@@ -158,7 +158,7 @@ impl<'g> Symbols<'g> {
                 Role::Multiplier,
                 Property::General,
             ),
-            charts: model.factors.iter().map(|factor| chart(model, factor)).collect(),
+            charts: model.factors.iter().map(|factor| chart(model, factor, discretization)).collect(),
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
             logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
             increments: factor(&["D", "Δ", "B"], Role::Increment, true),
@@ -170,13 +170,13 @@ impl<'g> Symbols<'g> {
 }
 
 /// The symbol of a leaf of q⁺, which lies in the same space as that of q.
-fn image<'g>(model: &Model<'g>, i: usize, leaf: &crate::model::Configuration<'g>) -> Expr<'g> {
+fn image<'g>(model: &System<'g>, i: usize, leaf: &crate::model::Configuration<'g>) -> Expr<'g> {
     let property = leaf.symbol.as_symbol().map_or(Property::General, |symbol| symbol.property);
     model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), property)
 }
 
 /// The symbol of the coordinates of log F.
-pub(super) fn logarithm<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
+pub(super) fn logarithm<'g>(model: &System<'g>, k: usize) -> Expr<'g> {
     let factor = &model.factors[k];
     let name = format!("log({})", factor.name);
     let shape = Shape::vector(factor.group.dimension());
@@ -185,14 +185,10 @@ pub(super) fn logarithm<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
 
 /// The chart of a factor: what the velocity is made with, for then ξ is a multiple of x; else the user's choice, or that of the
 /// group.
-fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
+fn chart(model: &System<'_>, factor: &crate::model::Factor<'_>, discretization: Option<Discretization>) -> Chart {
     if factor.group.is_translation() {
         return Chart::Identity;
     }
-    let discretization = match &model.kinetic {
-        Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
-        Kinetic::Cost(_) | Kinetic::Controls { .. } | Kinetic::Dynamics(_) => None,
-    };
     match (discretization, model.dials.chart.as_ref().map(|chart| chart.value)) {
         (Some(Discretization::Exponential), _) | (_, Some(ChartChoice::Exponential)) => Chart::Exponential,
         (_, Some(ChartChoice::Cayley)) => Chart::Cayley,
@@ -202,7 +198,7 @@ fn chart(model: &Model<'_>, factor: &crate::model::Factor<'_>) -> Chart {
 }
 
 /// The chart coordinates and their directions, numbered through all factors.
-fn blocks<'g>(model: &Model<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'g>> {
+fn blocks<'g>(model: &System<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'g>> {
     let graph = model.graph;
     let shapes: Vec<(usize, usize, usize)> = model
         .factors
@@ -229,7 +225,7 @@ fn blocks<'g>(model: &Model<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'
 }
 
 /// The first letters of the user's own names, which the derivation does not take.
-fn taken(model: &Model<'_>) -> Vec<String> {
+fn taken(model: &System<'_>) -> Vec<String> {
     let base = |name: &str| name.split('[').next().unwrap_or(name).to_string();
     let leaves = model.configurations.iter().map(|leaf| base(&leaf.name));
     let factors = model.factors.iter().map(|factor| base(&factor.name));

@@ -2,13 +2,13 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::{ConservedMomentum, Formulas, Solution, Substep};
+use super::{ConservedMomentum, MechanicsFormulas, Solution, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Model, Side};
+use crate::model::{Mechanics, Side};
 
 /// A tolerance ends an iteration, or the series of the free rotations between kicks; a number of iterations limits one.
-pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
+pub(super) fn check(model: &Mechanics<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
     let solutions: Vec<Solution> =
         substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
     let is_iterated = collocates || solutions.contains(&Solution::Newton);
@@ -28,7 +28,7 @@ pub(super) fn check(model: &Model<'_>, substeps: &[Substep<'_>], collocates: boo
     })
 }
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// Ad*_{F⁻¹} μ for a left action, Ad*_F μ for a right one: M⁺ of a factor whose momentum the drift carries along, of M = μ.
     pub(super) fn carried(&self, k: usize, mu: Expr<'g>) -> Expr<'g> {
         let factor = &self.model.factors[k];

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Group, Property, Role, identity};
 
 use super::cayley;
 use super::symbols::logarithm;
-use crate::model::{Model, Side};
+use crate::model::{Mechanics, Side};
 
 /// A trivialised derivative T* ∂_F K of a factor.
 #[derive(Copy, Clone)]
@@ -33,7 +33,7 @@ impl<'g> Covector<'g> {
 }
 
 /// T* ∂_F K before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
-pub(super) fn trivialisations<'g>(model: &Model<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
+pub(super) fn trivialisations<'g>(model: &Mechanics<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
     let factor = &model.factors[k];
     let gradient = kinetic.gradient(factor.symbol);
     let y = logarithm(model, k);
@@ -58,7 +58,7 @@ pub(super) fn trivialisations<'g>(model: &Model<'g>, kinetic: Expr<'g>, k: usize
 }
 
 /// For each factor, whether both trivialisations have the same components.
-pub(super) fn agreement<'g>(model: &Model<'g>, before: &[Covector<'g>], after: &[Covector<'g>]) -> Vec<bool> {
+pub(super) fn agreement<'g>(model: &Mechanics<'g>, before: &[Covector<'g>], after: &[Covector<'g>]) -> Vec<bool> {
     let same = |k: usize| {
         let group = model.factors[k].group;
         identity::equal(&[before[k].components(group)], &[after[k].components(group)])

@@ -7,7 +7,7 @@ use super::trivialisation::Covector;
 use super::{Bend, DiscreteLagrangian, EdgeForce, Symbols, action, cayley, control};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Factor, Model, Side};
+use crate::model::{Factor, Mechanics, Side};
 
 /// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors.
 pub struct EdgeDerivatives<'g> {
@@ -61,7 +61,7 @@ pub struct Quantity<'g> {
 }
 
 /// The parameters, entry by entry, the step size, the time where it matters, and the input. Both entries of a symmetric matrix are one.
-pub(super) fn quantities<'g>(model: &Model<'g>, is_timed: bool) -> Vec<Quantity<'g>> {
+pub(super) fn quantities<'g>(model: &Mechanics<'g>, is_timed: bool) -> Vec<Quantity<'g>> {
     let one = model.graph.integer(1);
     let of_leaf = |name: String, symbol: Expr<'g>, is_scalar: bool| {
         let entries = symbol.shape().positions().filter(move |&entry| is_free(symbol, entry));
@@ -108,7 +108,7 @@ fn is_free(symbol: Expr<'_>, (i, j): (usize, usize)) -> bool {
 }
 
 /// Second derivatives need a potential that can be differentiated twice.
-pub(super) fn check(model: &Model<'_>) -> Result<(), Diagnostics> {
+pub(super) fn check(model: &Mechanics<'_>) -> Result<(), Diagnostics> {
     let Some(opaque) = model.opaque.as_ref().filter(|_| model.has_variations()) else { return Ok(()) };
     features::check((Feature::OpaquePotential, Found::at(opaque.place)), |feature| match feature {
         Feature::Effort => Found::when(model.control.is_some()),
@@ -120,7 +120,7 @@ pub(super) fn check(model: &Model<'_>) -> Result<(), Diagnostics> {
 
 /// What variations are made for.
 pub(super) struct Source<'a, 'g> {
-    pub model: &'a Model<'g>,
+    pub model: &'a Mechanics<'g>,
     pub symbols: &'a Symbols<'g>,
     pub generator: &'a [Expr<'g>],
     pub momentum_map: &'a [Expr<'g>],
@@ -282,7 +282,7 @@ impl<'g> Source<'_, 'g> {
 }
 
 /// The chart in which small motions are written: Cayley's where it stays in the group, for it has no end, else the chart of the solve.
-pub(super) fn retraction(model: &Model<'_>, symbols: &Symbols<'_>, k: usize) -> Chart {
+pub(super) fn retraction(model: &Mechanics<'_>, symbols: &Symbols<'_>, k: usize) -> Chart {
     let group = model.factors[k].group;
     match group.has_cayley_chart(model.graph) {
         true => Chart::Cayley,

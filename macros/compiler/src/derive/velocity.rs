@@ -5,10 +5,10 @@ use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 use super::symbols::logarithm;
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Factor, Model};
+use crate::model::{Discretization, Factor, Mechanics};
 
 /// The velocity ξ(F)/h of a factor.
-pub(super) fn of_element<'g>(model: &Model<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
+pub(super) fn of_element<'g>(model: &Mechanics<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
     match discretization {
         Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
         _ => discrete_velocity(&model.factors[k], h, discretization),
@@ -34,7 +34,7 @@ fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discr
 
 /// h times ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h), with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ) − ℓ(0), and ℓ(0).
 pub(super) fn moser_veselov<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     energy: Expr<'g>,
     velocities: &[Expr<'g>],
 ) -> Result<Expr<'g>, Diagnostics> {
@@ -115,7 +115,7 @@ fn independent<'g>(units: Vec<(Expr<'g>, Vec<Expr<'g>>)>) -> (Vec<Expr<'g>>, Vec
 }
 
 /// The error for a Lagrangian that Moser and Veselov's discretisation cannot have.
-fn refused(model: &Model<'_>, feature: Feature, name: impl ToString) -> Diagnostics {
+fn refused(model: &Mechanics<'_>, feature: Feature, name: impl ToString) -> Diagnostics {
     let beside = Found::somewhere().named(name);
     features::refusal((Feature::MoserVeselov, Found::at(model.spans.kinetic.place)), (feature, beside)).into()
 }

@@ -31,7 +31,7 @@ impl Scope<'_, '_> {
     /// The path of the value or of the gradient of an opaque potential, `Self` replaced by the struct.
     pub(super) fn method(&self, callee: &Callee) -> TokenStream {
         // by construction: only an opaque potential makes such calls
-        let Some(opaque) = &self.model.opaque else { return TokenStream::new() };
+        let Some(opaque) = self.opaque else { return TokenStream::new() };
         let path = if matches!(callee, Callee::Gradient(_)) { &opaque.gradient } else { &opaque.value };
         let item = &self.item;
         let is_self = path.leading_colon.is_none() && path.segments.len() > 1 && path.segments[0].ident == "Self";
@@ -46,7 +46,7 @@ impl Scope<'_, '_> {
 
     /// The time, if the methods take it, and the configuration.
     fn arguments_of_method(&self, arguments: &[(Shape, Vec<Code>)]) -> TokenStream {
-        let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+        let timed = self.opaque.is_some_and(|opaque| opaque.takes_time);
         let time = timed.then(|| self.code(&arguments[0].1[0], false)).map(|time| quote!(#time,));
         let leaves = &arguments[usize::from(timed)..];
         let configuration = nested(&self.model.configuration, &mut |leaf| {
@@ -63,7 +63,7 @@ impl Scope<'_, '_> {
         match callee {
             Callee::Value(_) => quote!(#name),
             Callee::Gradient(_) => {
-                let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+                let timed = self.opaque.is_some_and(|opaque| opaque.takes_time);
                 let access = accessor(&self.model.configurations[output.leaf - usize::from(timed)].accessor);
                 quote!(#name #access #index)
             }

@@ -8,12 +8,16 @@ use quote::{TokenStreamExt, format_ident, quote};
 
 use super::path::Paths;
 use crate::lower::{Code, Input, Kernel, is_in_brackets};
-use crate::model::{Access, Layout, Model, Part, ScalarType};
+use crate::model::{Access, Layout, Opaque, Part, Power, ScalarType, System};
 
 /// Where a function finds its inputs.
 pub struct Scope<'a, 'g> {
     /// The model, for the fields and accessors.
-    pub model: &'a Model<'g>,
+    pub model: &'a System<'g>,
+    /// What ties the sites of a power to each other.
+    pub power: Option<&'a Power<'g>>,
+    /// The methods behind an opaque potential.
+    pub opaque: Option<&'a Opaque>,
     /// The paths of the runtime.
     pub paths: &'a Paths,
     /// The user's struct: `self` or `self.system`.
@@ -118,7 +122,7 @@ impl Scope<'_, '_> {
             }
             Role::Sites => {
                 let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-                let length = self.model.power.as_ref().map(|power| &power.length);
+                let length = self.power.map(|power| &power.length);
                 quote!(<#scalar as #private::Scalar>::from_f64(#length as ::core::primitive::f64))
             }
             Role::Covector(i) => leaf("p", &self.model.configurations[i].accessor),
@@ -153,7 +157,7 @@ impl Scope<'_, '_> {
     }
 
     pub(super) fn parameter(&self, leaf: usize, index: TokenStream) -> TokenStream {
-        let of_terms = self.model.power.iter().flat_map(|power| &power.parameters);
+        let of_terms = self.power.into_iter().flat_map(|power| &power.parameters);
         let all = self
             .model
             .parameters
@@ -538,7 +542,7 @@ pub fn nested(structure: &Layout, leaf: &mut impl FnMut(usize) -> TokenStream) -
 
 /// A sum or difference of two configurations, leaf by leaf. Quaternions over a type parameter add through their coordinates alone.
 pub fn combined(
-    model: &Model<'_>,
+    model: &System<'_>,
     a: &TokenStream,
     operator: TokenStream,
     b: &TokenStream,

@@ -4,7 +4,7 @@ use clebsch_symbolic::Role;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, code, docs, matrices};
+use super::{Emitter, SystemEmitter, code, docs, matrices};
 use crate::derive::{Id, Solution};
 use crate::lower::Solve;
 use crate::model::{Promise, Side};
@@ -223,7 +223,9 @@ impl Emitter<'_, '_> {
             }
         }
     }
+}
 
+impl SystemEmitter<'_, '_> {
     /// Checks of every field that a closure reads: finite, and what the user promises.
     pub(super) fn checks(&self) -> TokenStream {
         let (private, system) = (&self.paths.private, self.receiver());

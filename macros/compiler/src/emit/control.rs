@@ -4,11 +4,11 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::code::Nesting;
-use super::{Emitter, Generics, code, docs};
+use super::{Generics, SystemEmitter, code, docs};
 use crate::derive::Id;
 use crate::lower::Kernel;
 
-impl Emitter<'_, '_> {
+impl SystemEmitter<'_, '_> {
     /// The impl block, where something is chosen.
     pub(super) fn controlled(&self) -> TokenStream {
         let Some(control) = &self.model.control else { return TokenStream::new() };
@@ -18,8 +18,7 @@ impl Emitter<'_, '_> {
         let [d, u, c, motions] = [self.place_dimension(), self.inputs(), control.bounds.len(), self.dimension()]
             .map(Literal::usize_unsuffixed);
         let texts = control.bounds.iter().map(|bound| bound.text.as_str());
-        // inputs move the configuration, or are those of forces
-        let motion = if self.model.is_steered() { self.steered() } else { self.forced() };
+        let motion = if self.is_steered() { self.steered() } else { self.forced() };
         let prices = self.prices();
         quote! {
             #[automatically_derived]
@@ -37,9 +36,9 @@ impl Emitter<'_, '_> {
     }
 
     /// The constant `DERIVATION` of a system that has no steps in time.
-    pub(super) fn derivation_of_control(&self) -> TokenStream {
+    pub(super) fn derivation_of_control(&self, text: &str) -> TokenStream {
         let Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, text) = (&self.model.item.ident, super::derivation(self.program));
+        let ident = &self.model.item.ident;
         quote! {
             #[automatically_derived]
             impl<#parameters> #ident<#arguments> #predicates {
@@ -54,14 +53,19 @@ impl Emitter<'_, '_> {
         self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum()
     }
 
+    /// Whether inputs move the configuration by themselves, and are not those of forces.
+    fn is_steered(&self) -> bool {
+        self.kernels.find(Id::StepExpanded).is_some()
+    }
+
     /// The dimension of what is steered: a configuration, or a state.
     fn place_dimension(&self) -> usize {
-        if self.model.is_steered() { self.dimension() } else { 2 * self.dimension() }
+        if self.is_steered() { self.dimension() } else { 2 * self.dimension() }
     }
 
     /// The only output of a kernel, a scalar.
     fn scalar(&self, id: Id) -> TokenStream {
-        let kernel = self.program.kernel(id);
+        let kernel = self.kernels.kernel(id);
         let scope = self.scope_of_system();
         let (locals, value) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
         quote!({ #locals #value })
@@ -69,7 +73,7 @@ impl Emitter<'_, '_> {
 
     /// The only output of a kernel, a matrix even where it has one entry.
     fn matrix(&self, id: Id) -> TokenStream {
-        let kernel = self.program.kernel(id);
+        let kernel = self.kernels.kernel(id);
         let scope = self.scope_of_system();
         let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
         let value = code::grid(&scope, *shape, entries, false);
@@ -94,19 +98,19 @@ impl Emitter<'_, '_> {
         let (configuration, checks, defect) = (self.configuration_type(), self.checks(), self.orbit_defect());
         let (m, u) = (Literal::usize_unsuffixed(self.dimension()), Literal::usize_unsuffixed(self.inputs()));
         let scope = self.scope_of_system();
-        let of_step = self.program.kernel(Id::Increment);
+        let of_step = self.kernels.kernel(Id::Increment);
         let increment = code::body(&scope, of_step, Some(Nesting::Element));
-        let advance = code::body(&scope, self.program.kernel(Id::Advance), Some(Nesting::Configuration));
+        let advance = code::body(&scope, self.kernels.kernel(Id::Advance), Some(Nesting::Configuration));
         let moved = quote! {
             let (h, q) = (*constants, x);
             let d = { #increment };
             let next = { #advance };
         };
-        let expand = self.tuple(self.program.kernel(Id::StepExpanded), &[2]);
+        let expand = self.tuple(self.kernels.kernel(Id::StepExpanded), &[2]);
         let of_time = self.matrix(Id::PriceOfTime);
         let (metric, approach) = (self.matrix(Id::OrbitMetric), self.matrix(Id::Approach));
         let documentation =
-            docs::formulas("The step that an input makes.", self.program.formulas.titled(Id::Controls), Some(of_step));
+            docs::formulas("The step that an input makes.", self.rows.titled(Id::Controls), Some(of_step));
         let costate = quote!(#private::SVector<#scalar, #m>);
         let input = quote!(#private::SVector<#scalar, #u>);
         quote! {
@@ -188,7 +192,7 @@ impl Emitter<'_, '_> {
         let place = quote!((#configuration, #private::SVector<#scalar, #m>));
         let constants = quote!((#constants_name #constants_arguments, #scalar));
         let (costate, input) = (quote!(#private::SVector<#scalar, #d>), quote!(#private::SVector<#scalar, #u>));
-        let by_input = self.tuple(self.program.kernel(Id::ByInput), &[]);
+        let by_input = self.tuple(self.kernels.kernel(Id::ByInput), &[]);
         let passed = quote! {
             let (constants, h) = (&constants.0, constants.1);
             let (q, n) = x;
@@ -201,7 +205,7 @@ impl Emitter<'_, '_> {
         };
         let (curvature, bracket) = (self.matrix(Id::Bend), self.matrix(Id::Bracket));
         let of_time = self.matrix(Id::PriceOfTime);
-        let price = self.tuple(self.program.kernel(Id::PriceExpanded), &[0]);
+        let price = self.tuple(self.kernels.kernel(Id::PriceExpanded), &[0]);
         quote! {
             type Place = #place;
             type Constants = #constants;
@@ -267,7 +271,7 @@ impl Emitter<'_, '_> {
     /// φ with its derivatives, at `q` and `t`.
     pub(super) fn endpoint_expanded(&self) -> Option<TokenStream> {
         let private = &self.paths.private;
-        let tuple = self.tuple(self.program.find(Id::PriceOfEndExpanded)?, &[0, 1]);
+        let tuple = self.tuple(self.kernels.find(Id::PriceOfEndExpanded)?, &[0, 1]);
         Some(quote! {
             let (price, by_time, slope, curvature) = #tuple;
             #private::endpoint(price, by_time, &slope, &curvature)
@@ -283,22 +287,21 @@ impl Emitter<'_, '_> {
             self.model.control.as_ref().map_or(0, |control| control.bounds.len()),
         ]
         .map(Literal::usize_unsuffixed);
-        let (h, q) = match self.model.is_steered() {
+        let (h, q) = match self.is_steered() {
             true => (quote!(*constants), quote!(x)),
             false => (quote!(constants.1), quote!(&x.0)),
         };
         let price = self.scalar(Id::Price);
-        let (bounds, expanded) = (self.matrix(Id::Bounds), self.tuple(self.program.kernel(Id::BoundsExpanded), &[]));
-        let endpoint = match self.program.find(Id::PriceOfEnd) {
+        let (bounds, expanded) = (self.matrix(Id::Bounds), self.tuple(self.kernels.kernel(Id::BoundsExpanded), &[]));
+        let endpoint = match self.kernels.find(Id::PriceOfEnd) {
             Some(_) => self.scalar(Id::PriceOfEnd),
             None => quote!(<#scalar as #private::Zero>::zero()),
         };
         let endpoint_expanded = self.endpoint_expanded().unwrap_or(quote!(#private::no_endpoint()));
-        let formulas = &self.program.formulas;
         let documentation =
-            docs::formulas("The price of a step.", formulas.titled(Id::Price), self.program.find(Id::Price));
-        let of_end = docs::formulas("The price of the end.", formulas.titled(Id::PriceOfEnd), None);
-        let of_bounds = docs::formulas("The bounds.", formulas.titled(Id::Bounds), self.program.find(Id::Bounds));
+            docs::formulas("The price of a step.", self.rows.titled(Id::Price), self.kernels.find(Id::Price));
+        let of_end = docs::formulas("The price of the end.", self.rows.titled(Id::PriceOfEnd), None);
+        let of_bounds = docs::formulas("The bounds.", self.rows.titled(Id::Bounds), self.kernels.find(Id::Bounds));
         quote! {
             #documentation
             #[inline]

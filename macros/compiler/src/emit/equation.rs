@@ -87,7 +87,7 @@ impl<'g> Emitter<'_, 'g> {
         let (vector, target) = (self.vector_type(solve.dimension), self.vector_type(solve.momenta.len()));
         let structure = self.equation_structure(&name, Id::Equation(index, number), solve);
         let (solution, predictor) = (Id::Solution(index, number), Id::Predictor(index, number));
-        let solved = self.program.formulas.titled_all(|id| id == solution || id == predictor);
+        let solved = self.program.formulas.table().titled_all(|id| id == solution || id == predictor);
         let is_closed = solve.solution == Solution::ClosedForm;
         let kernel = self.program.find(solve.id(if is_closed { Id::ClosedForm } else { Id::Explicit }));
         let body = kernel.map(|kernel| code::body(&scope, kernel, None));
@@ -277,7 +277,7 @@ impl<'g> Emitter<'_, 'g> {
             }
             _ => id == equation || id == Id::Jacobian(index, number),
         };
-        let formulas = self.program.formulas.titled_all(is_shown);
+        let formulas = self.program.formulas.table().titled_all(is_shown);
         let structure = self.equation_structure(&name, equation, solve);
         let linearized =
             docs::formulas("The residual and its Jacobian.", formulas, Some(self.program.linearization(solve)));

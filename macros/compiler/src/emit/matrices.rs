@@ -235,7 +235,7 @@ impl Scope<'_, '_> {
     /// The value of an opaque potential, or its gradient.
     fn opaque(&self, callee: &Callee, operands: &[Code]) -> TokenStream {
         let (method, system) = (self.method(callee), &self.system);
-        let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+        let timed = self.opaque.is_some_and(|opaque| opaque.takes_time);
         let time = timed.then(|| self.code(&operands[0], false)).map(|time| quote!(#time,));
         let leaves = &operands[usize::from(timed)..];
         let configuration = match &self.model.configuration {
@@ -249,7 +249,7 @@ impl Scope<'_, '_> {
     }
 
     fn opaque_gradient(&self, argument: usize, operands: &[Code]) -> TokenStream {
-        let timed = self.model.opaque.as_ref().is_some_and(|opaque| opaque.takes_time);
+        let timed = self.opaque.is_some_and(|opaque| opaque.takes_time);
         let gradient = self.opaque(&Callee::Gradient(String::new()), operands);
         let access = accessor(&self.model.configurations[argument - usize::from(timed)].accessor);
         quote!(#gradient #access)

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, Generics};
+use super::{Emitter, Generics, SystemEmitter};
 use crate::MethodProgram;
 
 impl<'g> Emitter<'_, 'g> {
@@ -49,17 +49,6 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// How the system is called where it is stepped: `self`, but in the implementation of `Method`.
-    pub(super) fn receiver(&self) -> TokenStream {
-        if self.method.is_some() { quote!(system) } else { quote!(self) }
-    }
-
-    /// The same as a parameter.
-    pub(super) fn receiver_parameter(&self) -> TokenStream {
-        let system = self.item_type();
-        if self.method.is_some() { quote!(system: &#system) } else { quote!(&self) }
-    }
-
     /// A trait of the parts of a step, as a type names it. That of the declared dials is its default.
     pub(super) fn trait_of_parts(&self, name: &str, sizes: &[&Literal]) -> TokenStream {
         let (private, name) = (&self.paths.private, format_ident!("{name}"));
@@ -79,6 +68,19 @@ impl<'g> Emitter<'_, 'g> {
             None if sizes.is_empty() => quote!(#private::#name),
             None => quote!(#private::#name::<#(#sizes),*>),
         }
+    }
+}
+
+impl SystemEmitter<'_, '_> {
+    /// How the system is called where it is stepped: `self`, but in the implementation of `Method`.
+    pub(super) fn receiver(&self) -> TokenStream {
+        if self.method.is_some() { quote!(system) } else { quote!(self) }
+    }
+
+    /// The same as a parameter.
+    pub(super) fn receiver_parameter(&self) -> TokenStream {
+        let system = self.item_type();
+        if self.method.is_some() { quote!(system: &#system) } else { quote!(&self) }
     }
 }
 

@@ -21,14 +21,16 @@ mod stub;
 mod system;
 mod variation;
 
+use std::ops::Deref;
+
 use clebsch_symbolic::Group;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::MethodProgram;
-use crate::derive::Id;
-use crate::lower::Program;
-use crate::model::{Item, Model};
+use crate::derive::{FormulaTable, Id, Symbols, SystemFormulas};
+use crate::lower::{KernelTable, MechanicsProgram, Program, SteeredProgram};
+use crate::model::{Item, Mechanics, Opaque, Power, System};
 use code::{Scope, Spelled, nested_type};
 use names::Names;
 use path::Paths;
@@ -37,16 +39,15 @@ pub use stub::stub;
 
 /// The integrator of a program.
 pub fn emit(program: &Program<'_>) -> TokenStream {
-    let emitter = Emitter::new(program);
-    let items = emitter.items();
-    let asked = program.formulas.model.emit;
+    let (emitter, items) = expanded(program);
+    let asked = emitter.model.emit;
     let generated = asked.generated.then(|| {
         let documentation = "The code that `derive(Clebsch)` has generated for this struct.";
         emitter.constant("GENERATED", documentation, &pretty(&items))
     });
     let latex = asked.latex.then(|| {
         let documentation = "The formulas of the derivation of this struct in LaTeX, an `align*` of its own.";
-        emitter.constant("DERIVATION_LATEX", documentation, &program.formulas.latex())
+        emitter.constant("DERIVATION_LATEX", documentation, &emitter.rows.latex())
     });
     quote! {
         // the lints of straight-line code are ours to mind, not the user's; signatures are the same for every system, and
@@ -60,21 +61,32 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
     }
 }
 
-/// The text of `DERIVATION`.
-pub fn derivation(program: &Program<'_>) -> String {
-    program.derivation()
+/// All items, with what emits those that every system has.
+fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenStream) {
+    match program {
+        Program::Mechanics(program) => {
+            let emitter = Emitter::new(program);
+            let items = emitter.items();
+            (emitter.system, items)
+        }
+        Program::Steered(program) => {
+            let emitter = SystemEmitter::of_steered(program);
+            let items = emitter.items_of_control(&program.derivation());
+            (emitter, items)
+        }
+    }
 }
 
 /// The texts of `DERIVATION` of a program and of its methods, one after the other.
 pub fn derivations(program: &Program<'_>) -> String {
-    let methods = program.methods.iter();
+    let methods = program.mechanics().into_iter().flat_map(|program| &program.methods);
     let methods = methods.map(|method| format!("\n{}", method.program.derivation_by(&method.name)));
     methods.fold(program.derivation(), |text, method| text + &method)
 }
 
 /// The generated code of a program as text.
 pub fn generated(program: &Program<'_>) -> String {
-    pretty(&Emitter::new(program).items())
+    pretty(&expanded(program).1)
 }
 
 fn pretty(items: &TokenStream) -> String {
@@ -87,8 +99,20 @@ fn pretty(items: &TokenStream) -> String {
 
 /// What every part of the expansion needs.
 struct Emitter<'a, 'g> {
-    program: &'a Program<'g>,
-    model: &'a Model<'g>,
+    system: SystemEmitter<'a, 'g>,
+    program: &'a MechanicsProgram<'g>,
+    model: &'a Mechanics<'g>,
+}
+
+/// What the parts need that mechanics and control have in common.
+struct SystemEmitter<'a, 'g> {
+    model: &'a System<'g>,
+    symbols: &'a Symbols<'g>,
+    rows: &'a FormulaTable<'g>,
+    kernels: &'a KernelTable,
+    keeps_matrices: bool,
+    power: Option<&'a Power<'g>>,
+    opaque: Option<&'a Opaque>,
     /// The method that is emitted, where it is not that of the declared dials.
     method: Option<&'a Ident>,
     /// Paths of the runtime, as they are spelled where no name of the expansion is in scope.
@@ -96,6 +120,14 @@ struct Emitter<'a, 'g> {
     paths: Paths,
     generics: Generics,
     names: Names,
+}
+
+impl<'a, 'g> Deref for Emitter<'a, 'g> {
+    type Target = SystemEmitter<'a, 'g>;
+
+    fn deref(&self) -> &SystemEmitter<'a, 'g> {
+        &self.system
+    }
 }
 
 /// The user's generics in the forms that impls need.
@@ -147,27 +179,21 @@ impl Generics {
 }
 
 impl<'a, 'g> Emitter<'a, 'g> {
-    fn new(program: &'a Program<'g>) -> Emitter<'a, 'g> {
-        let model = &program.formulas.model;
-        let (spelled, names) = (Paths::new(&model.item), Names::new(model, methods::names(&program.methods)));
-        let paths = spelled.named(&model.item, &names);
-        let generics = Generics::of(&model.item, &spelled);
-        Emitter { program, model, method: None, spelled, paths, generics, names }
+    fn new(program: &'a MechanicsProgram<'g>) -> Emitter<'a, 'g> {
+        Emitter { system: SystemEmitter::of_mechanics(program), program, model: &program.formulas.model }
     }
 
     /// The emitter of a method, which has the names of that of the declared dials.
-    fn of_method(declared: &'a Program<'g>, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
-        let model = &method.program.formulas.model;
-        Emitter { program: &method.program, model, method: Some(&method.name), ..Emitter::new(declared) }
+    fn of_method(declared: &'a MechanicsProgram<'g>, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
+        let program = &method.program;
+        let SystemEmitter { spelled, paths, generics, names, .. } = SystemEmitter::of_mechanics(declared);
+        let method = Some(&method.name);
+        let system = SystemEmitter { method, spelled, paths, generics, names, ..SystemEmitter::of_mechanics(program) };
+        Emitter { system, program, model: &program.formulas.model }
     }
 
     fn items(&self) -> TokenStream {
         let groups = self.groups();
-        if self.model.is_steered() {
-            let (controlled, derivation) = (self.controlled(), self.derivation_of_control());
-            let aliases = self.aliases();
-            return quote!(#groups #aliases #controlled #derivation);
-        }
         let power = self.power();
         let constants = self.constants_type();
         let system = self.system();
@@ -177,6 +203,84 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
         let (aliases, methods) = (self.aliases(), self.methods());
         quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
+    }
+
+    /// Whether the cost or the potential depends on the time, so that steps are told it.
+    fn is_timed(&self) -> bool {
+        self.program.formulas.is_timed()
+    }
+
+    /// Whether the end kick of a step serves as the start kick of the next.
+    fn shares_impulse(&self) -> bool {
+        let formulas = &self.program.formulas;
+        let last = formulas.stepped - 1;
+        formulas.substeps[0].start == formulas.substeps[last].end
+            && self.program.find(Id::StartKick(0)).is_some()
+            && self.program.find(Id::EndKick(last)).is_some()
+            && formulas.splitting.is_none()
+            && formulas.collocation.is_none()
+    }
+
+    /// Whether steps are made in (q, w).
+    fn follows_great_circles(&self) -> bool {
+        self.program.turns_in_plane()
+    }
+
+    /// Whether sums are compensated.
+    fn is_compensated(&self) -> bool {
+        self.program.formulas.is_compensated()
+    }
+
+    /// Whether steps are made in (q, w) and nothing pushes.
+    fn is_free_on_great_circles(&self) -> bool {
+        let is_free = |id: Id| self.program.find(id).is_none();
+        self.follows_great_circles() && is_free(Id::StartGradient(0)) && is_free(Id::EndGradient(0))
+    }
+}
+
+impl<'a, 'g> SystemEmitter<'a, 'g> {
+    fn of_mechanics(program: &'a MechanicsProgram<'g>) -> SystemEmitter<'a, 'g> {
+        let model = &program.formulas.model;
+        let (power, opaque) = (model.power.as_ref(), model.opaque.as_ref());
+        let names = Names::new(model, (power, opaque), methods::names(&program.methods));
+        let emitter = SystemEmitter::new(&program.formulas, program.formulas.table(), &program.table, names);
+        SystemEmitter { keeps_matrices: program.form.keeps_matrices(), power, opaque, ..emitter }
+    }
+
+    fn of_steered(program: &'a SteeredProgram<'g>) -> SystemEmitter<'a, 'g> {
+        let names = Names::new(&program.formulas.model, (None, None), std::iter::empty());
+        SystemEmitter::new(&program.formulas, program.formulas.table(), &program.table, names)
+    }
+
+    fn new(
+        formulas: &'a SystemFormulas<'g>,
+        rows: &'a FormulaTable<'g>,
+        kernels: &'a KernelTable,
+        names: Names,
+    ) -> SystemEmitter<'a, 'g> {
+        let model = &*formulas.model;
+        let spelled = Paths::new(&model.item);
+        SystemEmitter {
+            model,
+            symbols: &formulas.symbols,
+            rows,
+            kernels,
+            keeps_matrices: false,
+            power: None,
+            opaque: None,
+            method: None,
+            paths: spelled.named(&model.item, &names),
+            generics: Generics::of(&model.item, &spelled),
+            spelled,
+            names,
+        }
+    }
+
+    /// What is emitted of a configuration that inputs move.
+    fn items_of_control(&self, derivation: &str) -> TokenStream {
+        let (groups, aliases) = (self.groups(), self.aliases());
+        let (controlled, derivation) = (self.controlled(), self.derivation_of_control(derivation));
+        quote!(#groups #aliases #controlled #derivation)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -194,7 +298,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
-        let item = self.model.power.as_ref().map_or(&self.model.item, |power| &power.item);
+        let item = self.power.map_or(&self.model.item, |power| &power.item);
         let Generics { parameters, arguments, predicates } = Generics::of(item, &self.spelled);
         let (ident, name) = (&item.ident, format_ident!("{name}"));
         let documentation = docs::lines(&[documentation.to_string()]);
@@ -226,16 +330,18 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let dimension = self.dimension();
         Scope {
             model: self.model,
+            power: self.power,
+            opaque: self.opaque,
             paths: &self.paths,
             system,
             constants,
-            constant_names: &self.program.constant_names,
+            constant_names: &self.kernels.constant_names,
             momenta: (0..dimension).collect(),
             coordinates: (0..dimension).collect(),
-            blocks: self.program.formulas.symbols.blocks.iter().map(|block| block.offset).collect(),
+            blocks: self.symbols.blocks.iter().map(|block| block.offset).collect(),
             momentum: "mu",
             item: self.item_type(),
-            keeps_matrices: self.program.form.keeps_matrices(),
+            keeps_matrices: self.keeps_matrices,
             spelled: Spelled::default(),
         }
     }
@@ -246,18 +352,13 @@ impl<'a, 'g> Emitter<'a, 'g> {
         if arguments.is_empty() { quote!(#ident) } else { quote!(#ident<#arguments>) }
     }
 
-    /// Whether the cost or the potential depends on the time, so that steps are told it.
-    fn is_timed(&self) -> bool {
-        self.program.formulas.is_timed()
-    }
-
     fn input_type(&self) -> TokenStream {
         nested_type(&self.model.input, &|leaf| self.paths.leaf(self.model.inputs[leaf].shape, false))
     }
 
     /// The number of components of a momentum.
     fn dimension(&self) -> usize {
-        self.model.factors.iter().map(|factor| factor.group.dimension()).sum()
+        self.model.dimension()
     }
 
     /// Short names for what signatures are made of.
@@ -318,33 +419,6 @@ impl<'a, 'g> Emitter<'a, 'g> {
     fn alias(&self, name: &Ident) -> TokenStream {
         let (_, arguments) = self.constants_generics();
         quote!(#name #arguments)
-    }
-
-    /// Whether the end kick of a step serves as the start kick of the next.
-    fn shares_impulse(&self) -> bool {
-        let formulas = &self.program.formulas;
-        let last = formulas.stepped - 1;
-        formulas.substeps[0].start == formulas.substeps[last].end
-            && self.program.find(Id::StartKick(0)).is_some()
-            && self.program.find(Id::EndKick(last)).is_some()
-            && formulas.splitting.is_none()
-            && formulas.collocation.is_none()
-    }
-
-    /// Whether steps are made in (q, w).
-    fn follows_great_circles(&self) -> bool {
-        self.program.turns_in_plane()
-    }
-
-    /// Whether sums are compensated.
-    fn is_compensated(&self) -> bool {
-        self.program.formulas.is_compensated()
-    }
-
-    /// Whether steps are made in (q, w) and nothing pushes.
-    fn is_free_on_great_circles(&self) -> bool {
-        let is_free = |id: Id| self.program.find(id).is_none();
-        self.follows_great_circles() && is_free(Id::StartGradient(0)) && is_free(Id::EndGradient(0))
     }
 
     fn constants_generics(&self) -> (TokenStream, TokenStream) {

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident};
 use syn::Lifetime;
 
-use crate::model::{Model, ScalarType};
+use crate::model::{Opaque, Power, ScalarType, System};
 
 /// Names of generated types and of their lifetime.
 pub struct Names {
@@ -31,17 +31,21 @@ pub struct Names {
 
 impl Names {
     /// The names for a model and its methods.
-    pub fn new<'a>(model: &Model<'_>, methods: impl Iterator<Item = &'a Ident>) -> Names {
+    pub fn new<'a>(
+        model: &System<'_>,
+        (power, opaque): (Option<&Power<'_>>, Option<&Opaque>),
+        methods: impl Iterator<Item = &'a Ident>,
+    ) -> Names {
         let mut taken = BTreeSet::new();
         // of a power the user's struct is another item than that of a site
-        for item in [&model.item].into_iter().chain(model.power.as_ref().map(|power| &power.item)) {
+        for item in [&model.item].into_iter().chain(power.map(|power| &power.item)) {
             collect(item.ident.to_token_stream(), &mut taken);
             collect(item.generics.to_token_stream(), &mut taken);
             collect(item.generics.where_clause.to_token_stream(), &mut taken);
         }
         taken.extend(methods.map(Ident::to_string));
         model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
-        if let Some(opaque) = &model.opaque {
+        if let Some(opaque) = opaque {
             collect(opaque.value.to_token_stream(), &mut taken);
             collect(opaque.gradient.to_token_stream(), &mut taken);
         }

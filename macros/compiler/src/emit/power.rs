@@ -77,7 +77,7 @@ impl<'g> Emitter<'_, 'g> {
             Some(stencil) => self.gathered_gradient(power, stencil, &point),
             None => self.added_gradient(power, &point),
         };
-        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Term(_)));
+        let formulas = self.program.formulas.table().titled_all(|id| matches!(id, Id::Term(_)));
         let of_potential = docs::formulas("The potential energy, a sum over sites.", formulas, None);
         quote! {
             #[automatically_derived]
@@ -120,7 +120,7 @@ impl<'g> Emitter<'_, 'g> {
         let is_timed = self.is_timed();
         let time = if is_timed { quote!(#private::Clock<#scalar>) } else { quote!(()) };
         let order = self.model.order.number();
-        let derivation = super::derivation(self.program);
+        let derivation = self.program.derivation();
         let checks = self.checks_of_terms(power);
         let scheme = match (power.terms.is_empty(), is_second) {
             (true, _) => quote!(FreeSites),
@@ -173,7 +173,7 @@ impl<'g> Emitter<'_, 'g> {
             let (k, value) = (Literal::usize_unsuffixed(k), scope.code(entry, false));
             quote!(sum[#k] += #value;)
         });
-        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Conserved(_)));
+        let formulas = self.program.formulas.table().titled_all(|id| matches!(id, Id::Conserved(_)));
         let documentation = docs::formulas("The momenta that no step changes, sums over all sites.", formulas, None);
         quote! {
             #[automatically_derived]

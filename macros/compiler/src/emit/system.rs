@@ -6,7 +6,7 @@ use quote::quote;
 
 use super::code::Nesting;
 use super::names::Names;
-use super::{Emitter, Generics, code, docs};
+use super::{Emitter, Generics, SystemEmitter, code, docs};
 use crate::derive::{Formula, Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
 use crate::model::LeafSpace;
@@ -24,7 +24,7 @@ impl Emitter<'_, '_> {
         let order = self.model.order.number();
         let free_motion = self.is_free_motion();
         let (constants_type, scheme) = (self.constants_of_step(), self.scheme());
-        let derivation = super::derivation(self.program);
+        let derivation = self.program.derivation();
         let (constants, formulas, checks) = (self.constants(), self.formulas(), self.space_checks());
         quote! {
             #[automatically_derived]
@@ -85,7 +85,7 @@ impl Emitter<'_, '_> {
                 quote!([#(#entries),*])
             }
         };
-        let formulas = self.program.formulas.titled_all(|id| matches!(id, Id::Conserved(_)));
+        let formulas = self.program.formulas.table().titled_all(|id| matches!(id, Id::Conserved(_)));
         let documentation = docs::formulas("The momenta that no step changes.", formulas, Some(kernel));
         quote! {
             #[automatically_derived]
@@ -366,36 +366,6 @@ impl Emitter<'_, '_> {
         ))
     }
 
-    /// By how much q violates what the declaration promises.
-    pub(super) fn orbit_defect(&self) -> TokenStream {
-        let private = &self.paths.private;
-        let defects = self.model.configurations.iter().filter_map(|leaf| {
-            let access = code::accessor(&leaf.accessor);
-            match leaf.space {
-                LeafSpace::Group(group) if group.element_property() == Property::Orthogonal => {
-                    Some(quote!(#private::orthogonality_defect(&q #access)))
-                }
-                LeafSpace::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
-                    Some(quote!(#private::orientation_defect(&q #access)))
-                }
-                LeafSpace::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
-                LeafSpace::Unit => Some(quote!(#private::length_defect(&q #access))),
-                LeafSpace::Vectors | LeafSpace::Group(_) => None,
-            }
-        });
-        let mut defects: Vec<_> = defects.collect();
-        let scope = self.scope_of_system();
-        let membership = self.program.find(Id::Membership).map(|kernel| {
-            let (locals, (_, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
-            defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
-            locals
-        });
-        quote! {
-            #membership
-            #private::largest([#(#defects),*])
-        }
-    }
-
     /// `orbit_defect`, `isotropy_defect` and `project_momentum`, where they are not those of vectors and free actions.
     fn space_checks(&self) -> TokenStream {
         let (orbit, isotropy) = (self.check_of_orbit(), self.checks_of_isotropy());
@@ -442,5 +412,37 @@ impl Emitter<'_, '_> {
                 #projection
             }
         })
+    }
+}
+
+impl SystemEmitter<'_, '_> {
+    /// By how much q violates what the declaration promises.
+    pub(super) fn orbit_defect(&self) -> TokenStream {
+        let private = &self.paths.private;
+        let defects = self.model.configurations.iter().filter_map(|leaf| {
+            let access = code::accessor(&leaf.accessor);
+            match leaf.space {
+                LeafSpace::Group(group) if group.element_property() == Property::Orthogonal => {
+                    Some(quote!(#private::orthogonality_defect(&q #access)))
+                }
+                LeafSpace::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
+                    Some(quote!(#private::orientation_defect(&q #access)))
+                }
+                LeafSpace::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
+                LeafSpace::Unit => Some(quote!(#private::length_defect(&q #access))),
+                LeafSpace::Vectors | LeafSpace::Group(_) => None,
+            }
+        });
+        let mut defects: Vec<_> = defects.collect();
+        let scope = self.scope_of_system();
+        let membership = self.kernels.find(Id::Membership).map(|kernel| {
+            let (locals, (_, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
+            defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
+            locals
+        });
+        quote! {
+            #membership
+            #private::largest([#(#defects),*])
+        }
     }
 }

@@ -2,28 +2,27 @@
 
 use super::Hoisting;
 use super::made::{Maker, stack};
-use crate::derive::Id;
+use crate::derive::{Choice, Id, StepOfChoice};
 
-impl Maker<'_, '_> {
-    /// The kernels of a choice, where there is one: with the step that inputs make by themselves, or what they do to an edge as those of forces.
-    pub(super) fn choice(&mut self) {
-        let Some(choice) = self.formulas.choice() else { return };
-        let steering = choice.steering;
-        if let Some(step) = &steering.step {
-            self.matrices(Id::StepExpanded, &choice.step_expanded(step));
-            self.rows([Id::Increment, Id::Advance]);
+impl<'g> Maker<'_, 'g> {
+    /// The kernels of a choice: with the step that inputs make by themselves, or what they do to an edge as those of forces.
+    pub(super) fn choice(&mut self, choice: &Choice<'_, 'g>) {
+        match choice.step {
+            StepOfChoice::Steered(step) => {
+                self.matrices(Id::StepExpanded, &choice.step_expanded(step));
+                self.rows([Id::Increment, Id::Advance]);
+                self.orbit_metric();
+            }
+            StepOfChoice::Forced(bend) => {
+                self.matrices(Id::ByInput, &choice.by_input(bend));
+                self.matrices(Id::Bend, &[choice.bend_curvature(bend)]);
+                self.matrices(Id::Bracket, &[choice.bracket(bend)]);
+            }
         }
-        if let Some(bend) = choice.bend {
-            self.matrices(Id::ByInput, &choice.by_input(bend));
-            self.matrices(Id::Bend, &[choice.bend_curvature(bend)]);
-            self.matrices(Id::Bracket, &[choice.bracket(bend)]);
-        } else {
-            self.orbit_metric();
-        }
-        let approach = stack(&mut self.scalars, &steering.approach, Hoisting::Nothing);
+        let approach = stack(&mut self.scalars, &choice.steering.approach, Hoisting::Nothing);
         self.add(Id::Approach, approach);
         self.rows([Id::Price]);
-        if choice.bend.is_some() {
+        if let StepOfChoice::Forced(_) = choice.step {
             self.matrices(Id::PriceExpanded, &choice.price_expanded());
         }
         self.matrices(Id::PriceOfTime, &[choice.price_of_time()]);
@@ -33,9 +32,8 @@ impl Maker<'_, '_> {
 
     /// The kernels of the price of the end, where there is one.
     pub(super) fn price_of_end(&mut self) {
-        let formulas = self.formulas;
-        if let Some(endpoint) = &formulas.endpoint {
-            self.matrices(Id::PriceOfEndExpanded, &formulas.endpoint_expanded(endpoint));
+        if let Some(endpoint) = &self.system.endpoint {
+            self.matrices(Id::PriceOfEndExpanded, &self.system.endpoint_expanded(endpoint));
             self.rows([Id::PriceOfEnd]);
         }
     }

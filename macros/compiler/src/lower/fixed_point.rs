@@ -5,7 +5,7 @@
 
 use super::made::separate;
 use super::{Code, Hoisted, Hoisting, Kernel, Scalars, matrices};
-use crate::derive::{Formulas, MomentumEquation, Solution};
+use crate::derive::{MechanicsFormulas, MomentumEquation, Solution};
 use crate::model::Solver;
 
 /// A linearisation with its linear system has to cost as many residuals, or Newton's method is taken.
@@ -22,7 +22,7 @@ pub(super) struct Newton<'a> {
 
 /// The kernel of ρ(x) alone, where an equation is solved with it: asked for, or by the number of operations.
 pub(super) fn residual<'g>(
-    formulas: &Formulas<'g>,
+    formulas: &MechanicsFormulas<'g>,
     equation: &MomentumEquation<'g>,
     newton: &Newton<'_>,
     scalars: &mut Scalars,
@@ -50,7 +50,7 @@ pub(super) fn residual<'g>(
 
 /// The same where whole matrices are kept: its own terms, as nothing is taken out.
 pub(super) fn residual_of_matrices<'g>(
-    formulas: &Formulas<'g>,
+    formulas: &MechanicsFormulas<'g>,
     equation: &MomentumEquation<'g>,
     predict: Option<&Kernel>,
 ) -> Option<Kernel> {

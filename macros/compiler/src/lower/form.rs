@@ -2,11 +2,11 @@
 
 use clebsch_symbolic::{Expr, Group, Table, View};
 
-use super::too_large;
-use crate::derive::{Formulas, Solution};
+use super::{too_large, written_out_too_large};
+use crate::derive::{MechanicsFormulas, Solution};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{CodeForm, Isotropy};
+use crate::model::{CodeForm, Isotropy, Steered, System};
 
 /// The most multiplications of a linearisation that is written out, by estimate.
 ///
@@ -53,7 +53,7 @@ impl Form {
 ///
 /// # Errors
 /// A system too large for the only form that it has, or a form that is asked for and not there.
-pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
+pub(super) fn choose(formulas: &MechanicsFormulas<'_>) -> Result<Form, Diagnostics> {
     let estimate = estimate(formulas);
     let asked = formulas.model.dials.code.as_ref();
     let dimension = formulas.inertia.shape().rows;
@@ -72,29 +72,42 @@ pub(super) fn choose(formulas: &Formulas<'_>) -> Result<Form, Diagnostics> {
             let asked = (Feature::Matrices, Found::at(asked.span));
             return Err(features::refusal(asked, (missing, Found::somewhere())).into());
         }
-        (CodeForm::Unrolled, ..) if dimension > MOST_UNKNOWNS => {
-            return Err(too_large(
-                formulas,
-                code,
-                format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most that is written out"),
-            ));
-        }
+        (CodeForm::Unrolled, ..) => check_unknowns(&formulas.model, missing)?,
         _ => {}
     }
     let largest = largest_system(formulas);
     if code == CodeForm::Matrices && largest > MOST_UNKNOWNS {
-        return Err(too_large(
-            formulas,
-            code,
-            format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most"),
-        ));
+        let size = format!("a linear system of {largest} unknowns, {MOST_UNKNOWNS} is the most");
+        return Err(too_large(&formulas.model, size).into());
     }
     let missing = missing.map(Feature::words);
     Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
 }
 
+/// Steps of inputs are written out.
+///
+/// # Errors
+/// A system too large for that, or whole matrices where they are asked for.
+pub(super) fn check_steered(model: &Steered<'_>) -> Result<(), Diagnostics> {
+    if let Some(asked) = model.dials.code.as_ref().filter(|asked| asked.value == CodeForm::Matrices) {
+        let asked = (Feature::Matrices, Found::at(asked.span));
+        return Err(features::refusal(asked, (Feature::Inputs, Found::somewhere())).into());
+    }
+    check_unknowns(model, Some(Feature::Inputs))
+}
+
+/// Code that is written out has few unknowns.
+fn check_unknowns(model: &System<'_>, missing: Option<Feature>) -> Result<(), Diagnostics> {
+    let dimension = model.dimension();
+    if dimension <= MOST_UNKNOWNS {
+        return Ok(());
+    }
+    let size = format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most that is written out");
+    Err(written_out_too_large(model, missing, size))
+}
+
 /// Whether an equation is that of a body on SO(n), whose Jacobian is Sylvester's map.
-fn is_body(formulas: &Formulas<'_>) -> bool {
+fn is_body(formulas: &MechanicsFormulas<'_>) -> bool {
     let mut equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     equations.any(|equation| {
         let is_iterated = equation.solution == Solution::Newton && equation.components.len() >= FEWEST_OF_BODIES;
@@ -103,7 +116,7 @@ fn is_body(formulas: &Formulas<'_>) -> bool {
 }
 
 /// The largest linear system that a step or a set-up solves.
-fn largest_system(formulas: &Formulas<'_>) -> usize {
+fn largest_system(formulas: &MechanicsFormulas<'_>) -> usize {
     let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     let solved = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));
     let inertia = if formulas.uniform_inertia.is_some() { 0 } else { formulas.inertia.shape().rows };
@@ -111,12 +124,12 @@ fn largest_system(formulas: &Formulas<'_>) -> usize {
 }
 
 /// What of a system has no code with whole matrices.
-pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<Feature> {
+pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Feature> {
     let model = &formulas.model;
-    let is_quaternion = has_quaternions(formulas);
+    let is_quaternion = has_quaternions(model);
     let is_held = !formulas.is_free && model.isotropy == Isotropy::Fixed;
     let has = |feature: &Feature| match feature {
-        Feature::Inputs => model.is_steered() || model.control.is_some(),
+        Feature::Inputs => model.control.is_some(),
         Feature::Power => model.power.is_some(),
         Feature::Quaternions => is_quaternion,
         Feature::ExactDrifts => formulas.splitting.is_some() || formulas.turns_whole(),
@@ -130,15 +143,14 @@ pub(super) fn without_matrices(formulas: &Formulas<'_>) -> Option<Feature> {
 }
 
 /// Whether configurations or group elements are quaternions, which are no matrices.
-pub(super) fn has_quaternions(formulas: &Formulas<'_>) -> bool {
-    let model = &formulas.model;
+pub(super) fn has_quaternions(model: &System<'_>) -> bool {
     model.configurations.iter().any(|leaf| leaf.is_quaternion)
         || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions)
 }
 
 /// About the multiplications of a linearisation of each momentum equation, written out: each column of the Jacobian is a directional
 /// derivative.
-fn estimate(formulas: &Formulas<'_>) -> usize {
+fn estimate(formulas: &MechanicsFormulas<'_>) -> usize {
     let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     let iterated = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));
     let solves: usize = iterated.map(|equation| products(&[equation.directional]) * equation.components.len()).sum();

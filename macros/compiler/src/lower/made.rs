@@ -5,18 +5,26 @@ use clebsch_symbolic::{Expr, Shape};
 use super::form::has_quaternions;
 use super::kernel::kernel;
 use super::{Hoisted, Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
-use crate::derive::{Formulas, Heat, Id, MatrixForm};
+use crate::derive::{FormulaTable, Heat, Id, MatrixForm, SystemFormulas};
 
 /// Makes the kernels of formulas. Their order counts: it is that in which scalars are numbered.
 pub(super) struct Maker<'a, 'g> {
-    pub(super) formulas: &'a Formulas<'g>,
+    pub(super) system: &'a SystemFormulas<'g>,
+    pub(super) rows: &'a FormulaTable<'g>,
+    /// Formulas that steps of this system compute, and those of other systems do not.
+    pub(super) of_steps: Vec<Id>,
     pub(super) scalars: Scalars,
     /// What steppers compute once.
     pub(super) hoisted: Hoisted,
     pub(super) table: Vec<(Id, Kernel)>,
 }
 
-impl<'g> Maker<'_, 'g> {
+impl<'a, 'g> Maker<'a, 'g> {
+    pub(super) fn new(system: &'a SystemFormulas<'g>, rows: &'a FormulaTable<'g>) -> Maker<'a, 'g> {
+        let (scalars, hoisted) = (Scalars::default(), Hoisted::default());
+        Maker { system, rows, of_steps: Vec::new(), scalars, hoisted, table: Vec::new() }
+    }
+
     /// Takes in a kernel.
     pub(super) fn add(&mut self, id: Id, kernel: Kernel) {
         self.table.push((id, kernel));
@@ -36,13 +44,13 @@ impl<'g> Maker<'_, 'g> {
 
     /// The same of those formulas that a system has.
     pub(super) fn known_rows(&mut self, ids: impl IntoIterator<Item = Id>) {
-        let formulas = self.formulas;
-        self.rows(ids.into_iter().filter(|id| formulas.value(*id).is_some()));
+        let rows = self.rows;
+        self.rows(ids.into_iter().filter(|id| rows.value(*id).is_some()));
     }
 
     /// The kernel of a formula: numbers in one list, momenta in one vector, anything else in an output for each expression.
     fn of_row(&mut self, id: Id) -> Kernel {
-        let value = self.formulas.value(id).unwrap_or_default();
+        let value = self.rows.value(id).unwrap_or_default();
         if self.is_for_people(id) {
             return match id {
                 Id::ConservedMomenta => matrices::short_list(value),
@@ -52,7 +60,7 @@ impl<'g> Maker<'_, 'g> {
         }
         // what a method of the constants computes
         let is_of_step = match id {
-            Id::MomentumAfter(index) => self.formulas.substeps[index].other.is_some(),
+            Id::MomentumAfter(_) => self.of_steps.contains(&id),
             Id::SplittingKick | Id::SplittingGradient | Id::Guess => true,
             _ => id.substep().is_some(),
         };
@@ -66,13 +74,8 @@ impl<'g> Maker<'_, 'g> {
 
     /// Whether the kernel of a formula is matrix code in one expression or a few, which a person can read.
     fn is_for_people(&self, id: Id) -> bool {
-        let is_asked_for = match id {
-            // steps of order 16 carry covectors along, and those of sites map them
-            Id::Lift => self.formulas.collocation.is_none(),
-            Id::MomentumMap => self.formulas.model.power.is_none(),
-            _ => id.entry().heat == Heat::Cold,
-        };
-        is_asked_for && !has_quaternions(self.formulas)
+        let is_asked_for = id.entry().heat == Heat::Cold && !self.of_steps.contains(&id);
+        is_asked_for && !has_quaternions(&self.system.model)
     }
 
     /// The kernel of momenta of a step.

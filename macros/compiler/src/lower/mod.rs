@@ -28,9 +28,10 @@ mod variation;
 
 use clebsch_symbolic::{Expr, Shape};
 
-use crate::derive::{self, Formulas, Id, Stencil};
+use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{CodeForm, Isotropy};
+use crate::model::features::Feature;
+use crate::model::{Isotropy, System};
 
 use made::{Maker, entries, grids, plain, stack};
 
@@ -41,7 +42,7 @@ pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
 pub use grid::Lowering;
 pub use kernel::{Hoisted, Hoisting};
 pub(crate) use matrices::is_direction;
-pub use program::{Program, Step};
+pub use program::{KernelTable, MechanicsProgram, Program, SteeredProgram, Step};
 pub use scalar::{Callee, Input, Output, Rate, ScalarNode, Scalars};
 pub use stepping::Solve;
 
@@ -56,82 +57,110 @@ const LARGEST_KERNEL: usize = 20_000;
 /// # Errors
 /// A system whose unrolled code would be too large.
 pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
-    let form = form::choose(&formulas)?;
-    let mut maker =
-        Maker { formulas: &formulas, scalars: Scalars::default(), hoisted: Hoisted::default(), table: Vec::new() };
-    // rounding decides where plans go that start from a saddle: what they are made of is computed as it is written
-    maker.scalars.keeps_sums = formulas.model.is_steered();
-    maker.scalars.keeps_matrices = form.keeps_matrices();
-    let steps = maker.steps();
-    if !formulas.model.is_steered() {
-        maker.splitting();
-        maker.collocation();
-        maker.rows([Id::Lift]);
+    match formulas {
+        Formulas::Mechanics(formulas) => Ok(Program::Mechanics(Box::new(mechanics(*formulas)?))),
+        Formulas::Steered(formulas) => Ok(Program::Steered(Box::new(steered(*formulas)?))),
     }
-    maker.variations();
-    maker.choice();
+}
+
+fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnostics> {
+    form::check_steered(&formulas.model)?;
+    let mut maker = Maker::new(&formulas, formulas.table());
+    // rounding decides where plans go that start from a saddle: what they are made of is computed as it is written
+    maker.scalars.keeps_sums = true;
+    formulas.choice().iter().for_each(|choice| maker.choice(choice));
+    maker.price_of_end();
+    maker.membership();
+    let table = KernelTable { kernels: maker.table, constant_names: Vec::new() };
+    let program = SteeredProgram { formulas, table };
+    check_size(program.kernels(), &program.formulas.model, Some(Feature::Inputs))?;
+    Ok(program)
+}
+
+fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Diagnostics> {
+    let form = form::choose(&formulas)?;
+    let mut maker = Maker::new(&formulas, formulas.table());
+    maker.of_steps = of_steps(&formulas);
+    maker.scalars.keeps_matrices = form.keeps_matrices();
+    let steps = maker.steps(&formulas);
+    maker.known_rows([Id::SplittingKick, Id::SplittingGradient]);
+    maker.collocation(&formulas);
+    maker.rows([Id::Lift]);
+    maker.variations(&formulas);
+    formulas.choice().iter().for_each(|choice| maker.choice(choice));
     maker.price_of_end();
     let constant_names = names::constants(&maker.scalars, &maker.hoisted);
-    let gathered = if formulas.model.is_steered() { None } else { maker.system() };
+    let gathered = maker.system(&formulas);
     maker.membership();
-    if !formulas.model.is_steered() {
-        maker.isotropy();
-    }
-    let table = maker.table;
-    let program = Program { formulas, form, table, steps, gathered, constant_names, methods: Vec::new() };
-    if program.form.keeps_matrices() {
-        return Ok(program);
-    }
-    let lengths: Vec<usize> = program.kernels().into_iter().map(|(_, kernel)| kernel.length()).collect();
-    let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
-    for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
-        if operations > most {
-            return Err(too_large(
-                &program.formulas,
-                program.form.code,
-                format!("{operations} scalar operations{of} when it is written out, {most} is the most"),
-            ));
-        }
+    maker.isotropy(&formulas);
+    let table = KernelTable { kernels: maker.table, constant_names };
+    let program = MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() };
+    if !program.form.keeps_matrices() {
+        check_size(program.kernels(), &program.formulas.model, form::without_matrices(&program.formulas))?;
     }
     Ok(program)
 }
 
-/// The error for a system whose code would be too large in a form, with what is too large of it.
-fn too_large(formulas: &Formulas<'_>, code: CodeForm, size: String) -> Diagnostics {
-    let groups: Vec<String> =
-        formulas.model.factors.iter().map(|factor| factor.group.name(formulas.model.graph)).collect();
-    let error = Diagnostic::new(
-        formulas.model.spans.action.place,
-        format!("`{}` is too large: {size}", groups.join(" × ")),
-    )
-    .help(
-        "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
-    );
-    match (code, form::without_matrices(formulas)) {
-        (CodeForm::Matrices, _) => error,
-        (CodeForm::Unrolled, None) => error.help("or write `code = matrices`, whose code grows less with the size"),
-        (CodeForm::Unrolled, Some(what)) => {
+/// Steps of order 16 carry covectors along, those of sites map them, and the momentum after a step of a coupled cost is made anew.
+fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
+    let lift = formulas.collocation.as_ref().map(|_| Id::Lift);
+    let map = formulas.model.power.as_ref().map(|_| Id::MomentumMap);
+    let coupled = (0..formulas.substeps.len()).filter(|&index| formulas.substeps[index].other.is_some());
+    lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).collect()
+}
+
+/// Code that is written out has a limit, as a whole and in one function.
+fn check_size(
+    kernels: Vec<(String, &Kernel)>,
+    model: &System<'_>,
+    missing: Option<Feature>,
+) -> Result<(), Diagnostics> {
+    let lengths: Vec<usize> = kernels.into_iter().map(|(_, kernel)| kernel.length()).collect();
+    let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
+    for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
+        if operations > most {
+            let size = format!("{operations} scalar operations{of} when it is written out, {most} is the most");
+            return Err(written_out_too_large(model, missing, size));
+        }
+    }
+    Ok(())
+}
+
+/// The error for a system whose code would be too large where it is written out, with what of it has no other.
+fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: String) -> Diagnostics {
+    let error = too_large(model, size);
+    match missing {
+        None => error.help("or write `code = matrices`, whose code grows less with the size"),
+        Some(what) => {
             error.note(format!("{} has no code with whole matrices yet, which grows less with the size", what.words()))
         }
     }
     .into()
 }
 
+/// The error for a system whose code would be too large, with what is too large of it.
+fn too_large(model: &System<'_>, size: String) -> Diagnostic {
+    let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(model.graph)).collect();
+    Diagnostic::new(model.spans.action.place, format!("`{}` is too large: {size}", groups.join(" × "))).help(
+        "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
+    )
+}
+
 impl<'g> Maker<'_, 'g> {
     /// The kernels of a system that is stepped, apart from its steps, and how the gradient of a site is gathered.
-    fn system(&mut self) -> Option<Stencil<'g>> {
+    fn system(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
         let constants = self.hoisted.kernel(&mut self.scalars, Hoisting::Nothing);
         self.add(Id::Constants, constants);
-        let gathered = self.terms();
+        let gathered = self.terms(formulas);
         self.rows([Id::Action, Id::MomentumMap]);
-        if self.formulas.collocation.is_some() {
-            let map = stack(&mut self.scalars, &self.formulas.momentum_map, Hoisting::Nothing);
+        if formulas.collocation.is_some() {
+            let map = stack(&mut self.scalars, &formulas.momentum_map, Hoisting::Nothing);
             self.add(Id::MomentumOfStep, map);
         }
         self.rows([Id::Coadjoint, Id::Legendre, Id::LegendreNext]);
         self.known_rows([Id::SynchronizedMomentum]);
         self.rows([Id::PotentialEnergy]);
-        self.inertia();
+        self.inertia(formulas);
         self.rows([Id::MomentumMatrix, Id::MomentumComponents]);
         self.velocity();
         self.known_rows([Id::Gyroscopic, Id::ConservedMomenta]);
@@ -140,8 +169,7 @@ impl<'g> Maker<'_, 'g> {
 
     /// The terms of a power with their gradients. These are gathered where each site is read by few terms, and that takes no more operations than
     /// adding up what each term has for its sites.
-    fn terms(&mut self) -> Option<Stencil<'g>> {
-        let formulas = self.formulas;
+    fn terms(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
         let mut gradients = Vec::new();
         for (number, link) in formulas.links.iter().enumerate() {
             self.rows([Id::Term(number)]);
@@ -149,7 +177,7 @@ impl<'g> Maker<'_, 'g> {
             gradients.push((Id::TermGradients(number), plain(&mut self.scalars, &slopes)));
         }
         let stencil = derive::stencil(&formulas.model, &formulas.links);
-        let gathered = stencil.as_ref().map_or(Vec::new(), |stencil| self.gathered(stencil));
+        let gathered = stencil.as_ref().map_or(Vec::new(), |stencil| self.gathered(formulas, stencil));
         let total = |kernels: &[(Id, Kernel)]| kernels.iter().map(|(_, kernel)| kernel.cost().total()).sum::<usize>();
         // what is added up is read and written once more for each place of a term
         let entries = |kernel: &Kernel| kernel.outputs.iter().map(|(_, entries)| entries.len()).sum::<usize>();
@@ -161,10 +189,10 @@ impl<'g> Maker<'_, 'g> {
     }
 
     /// The gradient of one site: what every site has, and a kernel for each other place of a term.
-    fn gathered(&mut self, stencil: &Stencil<'g>) -> Vec<(Id, Kernel)> {
+    fn gathered(&mut self, formulas: &MechanicsFormulas<'g>, stencil: &Stencil<'g>) -> Vec<(Id, Kernel)> {
         let common = plain(&mut self.scalars, &stencil.gradient);
         let other = |&(term, number): &(usize, usize)| {
-            let (place, slopes) = &self.formulas.links[term].gradient[number];
+            let (place, slopes) = &formulas.links[term].gradient[number];
             (Id::TermGradient(term, *place), plain(&mut self.scalars, slopes))
         };
         let others = stencil.others.iter().map(other).collect::<Vec<_>>();
@@ -172,8 +200,7 @@ impl<'g> Maker<'_, 'g> {
     }
 
     /// κ of an inertia κI, else Σ, with half of its diagonal for prints; where matrices are kept Σξ.
-    fn inertia(&mut self) {
-        let formulas = self.formulas;
+    fn inertia(&mut self, formulas: &MechanicsFormulas<'g>) {
         match formulas.uniform_inertia {
             None if self.scalars.keeps_matrices => self.rows([Id::Inertia]),
             uniform => {
@@ -189,7 +216,7 @@ impl<'g> Maker<'_, 'g> {
 
     /// ℓ(ξ) with its gradient and its Hessian, where the Lagrangian is not quadratic.
     fn velocity(&mut self) {
-        let parts = [Id::Lagrangian, Id::LagrangianGradient, Id::LagrangianHessian].map(|id| self.formulas.value(id));
+        let parts = [Id::Lagrangian, Id::LagrangianGradient, Id::LagrangianHessian].map(|id| self.rows.value(id));
         let parts: Vec<Expr<'_>> = parts.into_iter().flatten().flatten().copied().collect();
         if !parts.is_empty() {
             let velocity = plain(&mut self.scalars, &parts);
@@ -199,7 +226,7 @@ impl<'g> Maker<'_, 'g> {
 
     /// The equations of the groups that leaves of the configuration are promised to lie on, in one vector, without those that always hold.
     fn membership(&mut self) {
-        let Some(equations) = self.formulas.value(Id::Membership) else { return };
+        let Some(equations) = self.rows.value(Id::Membership) else { return };
         if self.scalars.keeps_matrices {
             return self.add(Id::Membership, matrices::largest(equations));
         }
@@ -213,20 +240,20 @@ impl<'g> Maker<'_, 'g> {
     }
 
     /// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free; where matrices are kept the projection to the momenta of motions.
-    fn isotropy(&mut self) {
-        if self.formulas.is_free || self.formulas.model.isotropy != Isotropy::Fixed {
+    fn isotropy(&mut self, formulas: &MechanicsFormulas<'g>) {
+        if formulas.is_free || formulas.model.isotropy != Isotropy::Fixed {
             return;
         }
-        let kernel = match self.formulas.projection.as_ref().filter(|_| self.scalars.keeps_matrices) {
+        let kernel = match formulas.projection.as_ref().filter(|_| self.scalars.keeps_matrices) {
             Some(projection) => stack(&mut self.scalars, projection, Hoisting::Nothing),
-            None => plain(&mut self.scalars, &[self.formulas.generator_matrix()]),
+            None => plain(&mut self.scalars, &[formulas.generator_matrix()]),
         };
         self.add(Id::Isotropy, kernel);
     }
 }
 
 /// Σ with its diagonal halved.
-fn energy_coefficients(formulas: &Formulas<'_>, scalars: &mut Scalars) -> Kernel {
+fn energy_coefficients(formulas: &MechanicsFormulas<'_>, scalars: &mut Scalars) -> Kernel {
     let (shape, mut entries) = grids(scalars, &[formulas.inertia]).remove(0);
     for i in 0..shape.rows {
         let diagonal = i * shape.columns + i;

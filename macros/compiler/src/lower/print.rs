@@ -4,12 +4,29 @@ use std::fmt;
 
 use clebsch_symbolic::{Analytic, integer};
 
-use super::{Callee, Code, Input, Kernel, MatrixOperation, Program, Whole};
+use super::{Callee, Code, Input, Kernel, KernelTable, MatrixOperation, MechanicsProgram, Program, Whole};
 use crate::derive::Id;
 
 impl fmt::Display for Program<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (name, kernel) in self.kernels() {
+        match self {
+            Program::Mechanics(program) => write!(f, "{program}"),
+            Program::Steered(program) => program.table.print(f, program.kernels()),
+        }
+    }
+}
+
+impl fmt::Display for MechanicsProgram<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.table.print(f, self.kernels())?;
+        self.methods.iter().try_for_each(|method| write!(f, "\nmethod {}\n{}", method.name, method.program))
+    }
+}
+
+impl KernelTable {
+    /// Each kernel with its operation counts and its code.
+    fn print(&self, f: &mut fmt::Formatter<'_>, kernels: Vec<(String, &Kernel)>) -> fmt::Result {
+        for (name, kernel) in kernels {
             writeln!(f, "{name}: {}", kernel.cost())?;
             for (index, local) in kernel.locals.iter().enumerate() {
                 writeln!(f, "    t{index} = {}", self.text(local, 0))?;
@@ -20,11 +37,9 @@ impl fmt::Display for Program<'_> {
                 writeln!(f, "    {target} = {}", self.text(code, 0))?;
             }
         }
-        self.methods.iter().try_for_each(|method| write!(f, "\nmethod {}\n{}", method.name, method.program))
+        Ok(())
     }
-}
 
-impl Program<'_> {
     /// The coefficient of ξ_i ξ_j in the kinetic energy as text; `None` where it is zero.
     pub fn energy_coefficient(&self, i: usize, j: usize) -> Option<String> {
         let kernel = self.find(Id::EnergyCoefficients)?;

@@ -1,23 +1,47 @@
 //! The value of this stage: a table of kernels, each with the id of what it computes.
 
+use std::ops::Deref;
+
 use super::{Cost, Form, Kernel, Solve};
 use crate::MethodProgram;
-use crate::derive::{Formulas, Id, Solution, Stencil};
+use crate::derive::{Id, MechanicsFormulas, Solution, SteeredFormulas, Stencil};
+
+/// The program of a system.
+pub enum Program<'g> {
+    /// Of mechanics.
+    Mechanics(Box<MechanicsProgram<'g>>),
+    /// Of a configuration that inputs move.
+    Steered(Box<SteeredProgram<'g>>),
+}
 
 /// All kernels of a system.
-pub struct Program<'g> {
+pub struct KernelTable {
+    /// The kernels, in the order in which they were made.
+    pub(super) kernels: Vec<(Id, Kernel)>,
+    /// A short name for each constant.
+    pub constant_names: Vec<String>,
+}
+
+/// The program of a configuration that inputs move.
+pub struct SteeredProgram<'g> {
     /// The formulas that it computes.
-    pub formulas: Formulas<'g>,
+    pub formulas: SteeredFormulas<'g>,
+    /// Its kernels.
+    pub table: KernelTable,
+}
+
+/// The program of a mechanical system.
+pub struct MechanicsProgram<'g> {
+    /// The formulas that it computes.
+    pub formulas: MechanicsFormulas<'g>,
+    /// Its kernels.
+    pub table: KernelTable,
     /// Whether kernels are written out or keep whole matrices, and why.
     pub form: Form,
-    /// The kernels, in the order in which they were made.
-    pub(super) table: Vec<(Id, Kernel)>,
     /// What is known of each substep beside its kernels.
     pub steps: Vec<Step>,
     /// How the gradient of one site of a power is gathered from the terms that read it, where it is.
     pub gathered: Option<Stencil<'g>>,
-    /// A short name for each constant.
-    pub constant_names: Vec<String>,
     /// Further ways to step the system, none behind this stage alone.
     pub methods: Vec<MethodProgram<'g>>,
 }
@@ -69,11 +93,15 @@ const OF_MOTIONS: Names<Id> = &[
 const OF_EDGE: Names<fn(usize) -> Id> =
     &[("edge", Id::Edge), ("momenta", Id::EdgeMomenta), ("carried", Id::Carried), ("edge_slopes", Id::EdgeSlopes)];
 
-const OF_CHOICE: Names<Id> = &[
+const OF_STEERING: Names<Id> = &[
+    ("orbit_metric", Id::OrbitMetric),
     ("approach", Id::Approach),
     ("increment", Id::Increment),
     ("advance", Id::Advance),
     ("expand", Id::StepExpanded),
+];
+
+const OF_CHOICE: Names<Id> = &[
     ("by_input", Id::ByInput),
     ("bend", Id::Bend),
     ("bracket", Id::Bracket),
@@ -111,7 +139,7 @@ const OF_SUBSTEP: Names<fn(usize) -> Id> = &[
     ("end_kick", Id::EndKick),
 ];
 
-impl Program<'_> {
+impl KernelTable {
     /// The kernel with an id; one without outputs where a system does not have it.
     pub fn kernel(&self, id: Id) -> &Kernel {
         const NONE: &Kernel = &Kernel { locals: Vec::new(), outputs: Vec::new() };
@@ -120,22 +148,62 @@ impl Program<'_> {
 
     /// The kernel with an id, where a system has it.
     pub fn find(&self, id: Id) -> Option<&Kernel> {
-        self.table.iter().find(|(other, _)| *other == id).map(|(_, kernel)| kernel)
+        self.kernels.iter().find(|(other, _)| *other == id).map(|(_, kernel)| kernel)
+    }
+
+    /// Those that a system has of these kernels.
+    fn named(&self, ids: impl IntoIterator<Item = (String, Id)>) -> Vec<(String, &Kernel)> {
+        ids.into_iter().filter_map(|(name, id)| Some((name, self.find(id)?))).collect()
+    }
+}
+
+impl Deref for MechanicsProgram<'_> {
+    type Target = KernelTable;
+
+    fn deref(&self) -> &KernelTable {
+        &self.table
+    }
+}
+
+impl<'g> Program<'g> {
+    /// The program of a mechanical system; `None` of another one.
+    pub fn mechanics(&self) -> Option<&MechanicsProgram<'g>> {
+        if let Program::Mechanics(program) = self { Some(program) } else { None }
     }
 
     /// The kernels with their names, in the order of prints and of tables of costs.
     pub fn kernels(&self) -> Vec<(String, &Kernel)> {
+        match self {
+            Program::Mechanics(program) => program.kernels(),
+            Program::Steered(program) => program.kernels(),
+        }
+    }
+
+    /// The operations of all kernels together.
+    pub fn cost(&self) -> Cost {
+        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).sum()
+    }
+}
+
+impl SteeredProgram<'_> {
+    /// The kernels with their names, in the order of prints and of tables of costs.
+    pub fn kernels(&self) -> Vec<(String, &Kernel)> {
+        self.table.named(OF_STEERING.iter().chain(OF_CHOICE).map(|&(name, id)| (name.to_string(), id)))
+    }
+}
+
+impl MechanicsProgram<'_> {
+    /// The kernels with their names, in the order of prints and of tables of costs.
+    pub fn kernels(&self) -> Vec<(String, &Kernel)> {
         let named = |&(name, id): &(&str, Id)| (name.to_string(), id);
-        let is_steered = self.formulas.model.is_steered();
         let mut ids: Vec<(String, Id)> = OF_SYSTEM.iter().map(named).collect();
         ids.extend(self.ids_of_terms());
         ids.extend(OF_MOTIONS.iter().map(named));
         for index in 0..self.steps.len() {
             ids.extend(OF_EDGE.iter().map(|(name, id)| (format!("{name}{}", self.suffix(index)), id(index))));
         }
-        // a substep has moves of its own
-        let is_move = |id: &Id| matches!(id, Id::Increment | Id::Advance);
-        ids.extend(OF_CHOICE.iter().filter(|(_, id)| is_steered || !is_move(id)).map(named));
+        ids.push(("approach".to_string(), Id::Approach));
+        ids.extend(OF_CHOICE.iter().map(named));
         for (index, step) in self.steps.iter().enumerate() {
             let suffix = self.suffix(index);
             ids.push((format!("start_kick{suffix}"), Id::StartKick(index)));
@@ -145,8 +213,7 @@ impl Program<'_> {
             }
             ids.extend(OF_SUBSTEP.iter().map(|(name, id)| (format!("{name}{suffix}"), id(index))));
         }
-        let listed = ids.into_iter().filter(|(_, id)| self.is_listed(*id));
-        listed.filter_map(|(name, id)| Some((name, self.find(id)?))).collect()
+        self.named(ids.into_iter().filter(|(_, id)| self.is_listed(*id)))
     }
 
     /// The terms of a power with their gradients.
@@ -169,7 +236,6 @@ impl Program<'_> {
     fn is_listed(&self, id: Id) -> bool {
         let (turns_in_plane, is_displaced) = (self.turns_in_plane(), self.find(Id::Displacement).is_some());
         match id {
-            Id::Membership => !self.formulas.model.is_steered(),
             Id::Lift => !turns_in_plane,
             Id::StartGradient(_) => turns_in_plane,
             Id::Displacement => !turns_in_plane,
@@ -187,11 +253,6 @@ impl Program<'_> {
             (2, 1) => "_adjoint",
             _ => "_whole",
         }
-    }
-
-    /// The operations of all kernels together.
-    pub fn cost(&self) -> Cost {
-        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).sum()
     }
 
     /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use clebsch_symbolic::{Role, Zero};
 
 use super::made::{Maker, of_matrices, plain, separate};
-use super::{Code, Hoisted, Hoisting, Kernel, Program, Step, fixed_point, matrices};
-use crate::derive::{Formulas, Id, Solution, Structure};
+use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, fixed_point, matrices};
+use crate::derive::{Id, MechanicsFormulas, MomentumEquation, Solution, Structure, SystemFormulas};
 
 /// What is known of a momentum equation beside its kernels.
 pub struct Solve {
@@ -38,9 +38,8 @@ pub struct Solve {
 
 impl<'g> Maker<'_, 'g> {
     /// The kernels of all substeps, and of the moves that they have in common.
-    pub(super) fn steps(&mut self) -> Vec<Step> {
-        let formulas = self.formulas;
-        let steps = (0..formulas.substeps.len()).map(|index| self.step(index)).collect();
+    pub(super) fn steps(&mut self, formulas: &MechanicsFormulas<'g>) -> Vec<Step> {
+        let steps = (0..formulas.substeps.len()).map(|index| self.step(formulas, index)).collect();
         // what serves the inverse Legendre transform alone is never stepped
         self.table.retain(|(id, _)| match id {
             Id::StartForce(index) | Id::MovingForce(index) | Id::EndForce(index) | Id::EndKick(index) => {
@@ -53,9 +52,9 @@ impl<'g> Maker<'_, 'g> {
         steps
     }
 
-    fn step(&mut self, index: usize) -> Step {
-        let substep = &self.formulas.substeps[index];
-        let solves = (0..substep.equations.len()).map(|number| self.solve(index, number)).collect();
+    fn step(&mut self, formulas: &MechanicsFormulas<'g>, index: usize) -> Step {
+        let substep = &formulas.substeps[index];
+        let solves = (0..substep.equations.len()).map(|number| self.solve(formulas, index, number)).collect();
         self.known_rows(
             [Id::StartForce, Id::MovingForce, Id::EndForce, Id::StartKick, Id::EndKick].map(|id| id(index)),
         );
@@ -67,15 +66,14 @@ impl<'g> Maker<'_, 'g> {
         }
         self.known_rows([Id::MomentumAfter(index)]);
         if index == 0 {
-            self.displacement();
+            self.displacement(formulas);
         }
-        Step { end_is_start: substep.start == substep.end && !self.formulas.is_timed(), solves }
+        Step { end_is_start: substep.start == substep.end && !formulas.is_timed(), solves }
     }
 
     /// q⁺ by the chart coordinates, where that costs less than by the increments.
-    fn displacement(&mut self) {
-        let formulas = self.formulas;
-        let Some(images) = formulas.value(Id::Displacement) else { return };
+    fn displacement(&mut self, formulas: &MechanicsFormulas<'g>) {
+        let Some(images) = self.rows.value(Id::Displacement) else { return };
         let displacement = plain(&mut self.scalars, images);
         // where the momentum changes, the increments are made in any case
         let makes_increments = self.has(Id::MomentumAfter(0));
@@ -91,14 +89,9 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// The kicks of a splitting, functions of their weights b and g.
-    pub(super) fn splitting(&mut self) {
-        self.known_rows([Id::SplittingKick, Id::SplittingGradient]);
-    }
-
     /// Hamilton's equations, q′ and p′ for each leaf, and the covector of a momentum.
-    pub(super) fn collocation(&mut self) {
-        let Some(collocation) = &self.formulas.collocation else { return };
+    pub(super) fn collocation(&mut self, formulas: &MechanicsFormulas<'g>) {
+        let Some(collocation) = &formulas.collocation else { return };
         let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
         self.known_rows([Id::Guess]);
         for (id, expressions) in [(Id::HamiltonEquations, &slopes), (Id::Covector, &collocation.lift)] {
@@ -107,8 +100,8 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    fn solve(&mut self, index: usize, number: usize) -> Solve {
-        let (formulas, keeps_matrices) = (self.formulas, self.scalars.keeps_matrices);
+    fn solve(&mut self, formulas: &MechanicsFormulas<'g>, index: usize, number: usize) -> Solve {
+        let keeps_matrices = self.scalars.keeps_matrices;
         let equation = &formulas.substeps[index].equations[number];
         let start = match (equation.formula, equation.solution) {
             (Some(formula), _) => Some(vec![formula]),
@@ -134,7 +127,7 @@ impl<'g> Maker<'_, 'g> {
                 kernels.push((Id::System(index, number), system));
             }
             Solution::Newton => {
-                let (prepare, linearize, alone) = self.iteration(index, number, predict.as_ref());
+                let (prepare, linearize, alone) = self.iteration(formulas, equation, predict.as_ref());
                 kernels.push((Id::Preparation(index, number), prepare));
                 kernels.push((Id::Linearization(index, number), linearize));
                 residual = alone;
@@ -171,9 +164,12 @@ impl<'g> Maker<'_, 'g> {
     }
 
     /// What Newton's method computes once and what it linearises, with the residual alone where that is tried first.
-    fn iteration(&mut self, index: usize, number: usize, predict: Option<&Kernel>) -> (Kernel, Kernel, Option<Kernel>) {
-        let formulas = self.formulas;
-        let equation = &formulas.substeps[index].equations[number];
+    fn iteration(
+        &mut self,
+        formulas: &MechanicsFormulas<'g>,
+        equation: &MomentumEquation<'g>,
+        predict: Option<&Kernel>,
+    ) -> (Kernel, Kernel, Option<Kernel>) {
         let system = formulas.newton_system(equation, self.scalars.keeps_matrices);
         if self.scalars.keeps_matrices {
             let linearize = of_matrices(&mut self.scalars, &system, Hoisting::Nothing);
@@ -204,7 +200,7 @@ impl<'g> Maker<'_, 'g> {
 }
 
 /// The components of the momentum and the chart coordinates that some kernels read, by their indices among those of all factors.
-fn read(formulas: &Formulas<'_>, kernels: &[(Id, Kernel)]) -> (BTreeSet<usize>, BTreeSet<usize>) {
+fn read(formulas: &SystemFormulas<'_>, kernels: &[(Id, Kernel)]) -> (BTreeSet<usize>, BTreeSet<usize>) {
     let (mut momenta, mut coordinates) = (BTreeSet::new(), BTreeSet::new());
     for (role, row) in kernels.iter().flat_map(|(_, kernel)| kernel.rows_read()) {
         match role {
@@ -223,7 +219,7 @@ impl Solve {
     }
 }
 
-impl Program<'_> {
+impl MechanicsProgram<'_> {
     /// Whether an entry of the Jacobian of an equation is zero, whatever the numbers are.
     pub fn is_zero(&self, solve: &Solve, i: usize, j: usize) -> bool {
         // of a matrix that is kept as a whole no entry is known

@@ -1,13 +1,30 @@
 //! What the derivation tells of the program: how it is written and iterated, and what it costs.
 
-use super::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS, Program};
-use crate::derive::{Id, Iteration, Lowered};
+use super::{Form, Kernel, LARGEST_UNROLLED, MOST_UNKNOWNS, MechanicsProgram, Program, SteeredProgram};
+use crate::derive::{self, Id, Iteration, Lowered};
 use crate::model::CodeForm;
 
 impl Program<'_> {
     /// The text of `DERIVATION`.
     pub fn derivation(&self) -> String {
-        crate::derive::derivation(&self.formulas, &self.told())
+        match self {
+            Program::Mechanics(program) => program.derivation(),
+            Program::Steered(program) => program.derivation(),
+        }
+    }
+}
+
+impl SteeredProgram<'_> {
+    /// The text of `DERIVATION`.
+    pub fn derivation(&self) -> String {
+        derive::derivation_of_control(&self.formulas, &costs(&self.kernels()))
+    }
+}
+
+impl MechanicsProgram<'_> {
+    /// The text of `DERIVATION`.
+    pub fn derivation(&self) -> String {
+        derive::derivation(&self.formulas, &self.told())
     }
 
     fn told(&self) -> Lowered {
@@ -17,7 +34,7 @@ impl Program<'_> {
             is_gathered: self.gathered.is_some(),
             turns_in_plane: self.turns_in_plane(),
             iterations: self.iterations(),
-            costs: self.costs(),
+            costs: costs(&self.kernels()),
         }
     }
 
@@ -34,13 +51,12 @@ impl Program<'_> {
         };
         self.steps.iter().map(|step| step.solves.iter().map(iteration).collect()).collect()
     }
+}
 
-    /// The operations of each kernel, one line each.
-    fn costs(&self) -> String {
-        let kernels = self.kernels();
-        let width = kernels.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        kernels.iter().map(|(name, kernel)| format!("{name:width$}  {}\n", kernel.cost())).collect()
-    }
+/// The operations of each kernel, one line each.
+fn costs(kernels: &[(String, &Kernel)]) -> String {
+    let width = kernels.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    kernels.iter().map(|(name, kernel)| format!("{name:width$}  {}\n", kernel.cost())).collect()
 }
 
 impl Form {

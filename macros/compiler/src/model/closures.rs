@@ -290,15 +290,8 @@ pub(super) fn tail(body: &Syntax) -> (Location, &Syntax) {
 
 /// The bodies as they were written.
 pub(super) fn spans(declaration: &Declaration) -> Spans {
-    let potential = match &declaration.potential {
-        Some(parse::Potential::Closure(closure)) => Some(written(closure)),
-        Some(parse::Potential::Opaque(opaque)) => {
-            Some(Written { place: opaque.place, text: opaque.spell(), arguments: String::new() })
-        }
-        None => None,
-    };
     let order = declaration.dials.order.as_ref().map(|order| order.span);
-    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), potential, order }
+    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), order }
 }
 
 /// A closure's body as it was written.

@@ -12,7 +12,7 @@ use super::forces::{self, Input};
 use super::leaves::{Expected, leaves, new_value_of};
 use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, Slot};
 use super::value::Value;
-use super::{Bound, Configuration, Discretization, Factor, InputChoice, Kinetic};
+use super::{Bound, Configuration, Discretization, Factor, InputChoice, Motion};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::parse::{self, Closure, Declaration, Located, spell};
 
@@ -21,7 +21,7 @@ pub(super) fn motion<'g>(
     context: &mut Context<'_, 'g>,
     system: &forces::ForcedSystem<'_, '_, 'g>,
     declaration: &Declaration,
-) -> Option<(Kinetic<'g>, Input<'g>)> {
+) -> Option<(Motion<'g>, Input<'g>)> {
     match &declaration.kinetic {
         parse::Kinetic::Controls(closure) => {
             let (input, value) = elaborate(context, system, closure, CONTROLS)?;
@@ -30,14 +30,14 @@ pub(super) fn motion<'g>(
             let discretization =
                 chosen.map_or_else(|| default_discretization(context.graph, Some(system.factors)), |dial| dial.value);
             check_discretization(context, chosen, discretization, system.factors)?;
-            Some((Kinetic::Controls { velocity, discretization }, input))
+            Some((Motion::Controls { velocity, discretization }, input))
         }
         parse::Kinetic::Dynamics(closure) => {
             let (input, value) = elaborate(context, system, closure, DYNAMICS)?;
             let expected: Vec<Expected> = system.configurations.iter().map(Expected::point).collect();
             let is = new_value_of(&system.arguments.names.configuration.spell());
             let next = leaves(context, &closure.body, "dynamics", &value, system.configuration, &expected, &is)?;
-            Some((Kinetic::Dynamics(next), input))
+            Some((Motion::Dynamics(next), input))
         }
         parse::Kinetic::Cost(_) | parse::Kinetic::Lagrangian(_) => None,
     }

@@ -48,6 +48,8 @@ pub use power::{Linear, Power, SiteIndex, Term};
 pub(crate) use sizes::IN_LOOPS;
 pub use types::*;
 
+use std::rc::Rc;
+
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 use self::action_laws::{Action, Law};
@@ -121,7 +123,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         (factor.side, factor.moves) = (law.side, law.moves);
     }
     let dials = &declaration.dials;
-    let model = momentum::alone(Model {
+    let mut system = System {
         graph,
         item: item(declaration, fields.scalar),
         parameters: fields.parameters,
@@ -133,33 +135,51 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         configurations,
         configuration: typed.configuration,
         action: formulas.action,
-        kinetic: formulas.kinetic,
-        potential: formulas.potential,
-        opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
-        force: formulas.forces.force,
         inputs: formulas.forces.inputs,
         input: formulas.forces.input,
         control: formulas.control,
         endpoint: formulas.endpoint,
-        symmetries: formulas.symmetries,
-        isotropy: dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value),
-        order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
         emit: dials.emit,
         dials: dials.of_steps(),
         spans: closures::spans(declaration),
-        power: None,
-    })?;
-    Ok(match power.zip(sites) {
-        Some((power, length)) => sites::power_of(model, power, formulas.terms, length),
-        None => model,
-    })
+    };
+    let kinetic = match formulas.mover {
+        Mover::Momenta(kinetic) => kinetic,
+        Mover::Inputs(motion) => return Ok(Model::Steered(Box::new(Steered { system: Rc::new(system), motion }))),
+    };
+    let force = formulas.forces.force;
+    if dials.emit.momentum {
+        system = momentum::alone(system, kinetic.energy(), force.as_ref())?;
+    }
+    let power = power.zip(sites).map(|(power, length)| {
+        let terms = formulas.terms;
+        sites::power_of(&mut system, kinetic.energy(), power, terms, length)
+    });
+    let isotropy = dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value);
+    Ok(Model::Mechanics(Box::new(Mechanics {
+        system: Rc::new(system),
+        kinetic,
+        potential: formulas.potential,
+        opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
+        force,
+        power,
+        symmetries: formulas.symmetries,
+        isotropy: if dials.emit.momentum { Isotropy::Free } else { isotropy },
+        order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
+    })))
+}
+
+/// What moves the configuration.
+enum Mover<'g> {
+    Momenta(Kinetic<'g>),
+    Inputs(Motion<'g>),
 }
 
 /// What the closures give.
 struct ClosureValues<'g> {
     action: Vec<Expr<'g>>,
     laws: Vec<Law>,
-    kinetic: Kinetic<'g>,
+    mover: Mover<'g>,
     potential: Option<Expr<'g>>,
     /// The potential of a power.
     terms: Vec<Term<'g>>,
@@ -200,15 +220,14 @@ impl<'g> ClosureValues<'g> {
         let endpoint = declaration.endpoint.as_ref().map(|closure| control::endpoint(context, arguments, closure));
         let endpoint = endpoint.map_or(Some(None), |endpoint| endpoint.map(Some));
         let mut forces = forces::read(context, &forced, declaration);
-        let steered = control::motion(context, &forced, declaration);
-        let kinetic = match steered {
-            Some((kinetic, (input, inputs))) => {
+        let mover = match control::motion(context, &forced, declaration) {
+            Some((motion, (input, inputs))) => {
                 forces = Some(Forces { force: None, inputs, input });
-                Some(kinetic)
+                Some(Mover::Inputs(motion))
             }
             // what moves has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
-            None => kinetic,
+            None => kinetic.map(Mover::Momenta),
         };
         let forces = forces?;
         let input = (forces.input.clone(), forces.inputs.clone());
@@ -217,7 +236,7 @@ impl<'g> ClosureValues<'g> {
         Some(ClosureValues {
             action,
             laws: laws?,
-            kinetic: kinetic?,
+            mover: mover?,
             potential,
             terms,
             symmetries,

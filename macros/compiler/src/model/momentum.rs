@@ -3,39 +3,34 @@
 use clebsch_symbolic::Expr;
 
 use super::features::{self, Feature, Found};
-use super::{Isotropy, Kinetic, Layout, Model, Written};
+use super::{Force, Layout, System, Written};
 use crate::diagnostic::Diagnostics;
 
-/// The model without its configuration, where the momentum is stepped alone.
+/// The system without its configuration, where the momentum is stepped alone.
 ///
 /// # Errors
 /// A kinetic energy or a force that depends on the configuration.
-pub(super) fn alone(model: Model<'_>) -> Result<Model<'_>, Diagnostics> {
-    if !model.emit.momentum {
-        return Ok(model);
-    }
+pub(super) fn alone<'g>(
+    system: System<'g>,
+    energy: Expr<'g>,
+    force: Option<&Force<'g>>,
+) -> Result<System<'g>, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
-    let kinetic = match &model.kinetic {
-        Kinetic::Cost(cost) => vec![*cost],
-        Kinetic::Lagrangian { energy, .. } => vec![*energy],
-        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => Vec::new(),
-    };
-    check(&model, &kinetic, &model.spans.kinetic, &mut diagnostics);
-    if let Some(force) = &model.force {
+    check(&system, &[energy], &system.spans.kinetic, &mut diagnostics);
+    if let Some(force) = force {
         let parts = force.of_group.as_deref().unwrap_or_default();
-        force.written.iter().for_each(|written| check(&model, parts, written, &mut diagnostics));
+        force.written.iter().for_each(|written| check(&system, parts, written, &mut diagnostics));
     }
-    diagnostics.propagate(Model {
+    diagnostics.propagate(System {
         configurations: Vec::new(),
         configuration: Layout::Tuple(Vec::new()),
         action: Vec::new(),
-        isotropy: Isotropy::Free,
-        ..model
+        ..system
     })
 }
 
-fn check<'g>(model: &Model<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &mut Diagnostics) {
-    let read = |part: &Expr<'g>| model.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
+fn check<'g>(system: &System<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &mut Diagnostics) {
+    let read = |part: &Expr<'g>| system.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
     let Some(leaf) = parts.iter().find_map(read) else { return };
     let dependent = Found::at(written.place).named(&leaf.name);
     diagnostics

@@ -6,40 +6,35 @@ use clebsch_symbolic::Expr;
 
 use super::scalar::spell_scalar;
 use super::{
-    Configuration, Factor, Isotropy, Kinetic, LeafSpace, Model, OfferedSymmetry, Order, Parameter, Promise, Side,
+    Configuration, Factor, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
+    Promise, Side, Steered, System,
 };
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Model::Mechanics(model) => write!(f, "{model}"),
+            Model::Steered(model) => write!(f, "{model}"),
+        }
+    }
+}
+
+impl fmt::Display for Mechanics<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scalar = spell_scalar(&self.item.scalar);
         match &self.power {
-            Some(power) => {
-                let (ident, length) = (&power.item.ident, &power.length);
-                writeln!(f, "model {ident} over {}, {length} times", spell_scalar(&self.item.scalar))?;
-            }
-            None => writeln!(f, "model {} over {}", self.item.ident, spell_scalar(&self.item.scalar))?,
+            Some(power) => writeln!(f, "model {} over {scalar}, {} times", power.item.ident, power.length)?,
+            None => writeln!(f, "model {} over {scalar}", self.item.ident)?,
         }
-        self.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
-        for constant in &self.constants {
-            writeln!(f, "  constant {}", constant.symbol)?;
-        }
-        self.factors.iter().try_for_each(|factor| writeln!(f, "  {factor}"))?;
-        self.configurations.iter().try_for_each(|leaf| writeln!(f, "  {leaf}"))?;
-        for (leaf, image) in self.configurations.iter().zip(&self.action) {
-            writeln!(f, "  action     {} -> {image}", leaf.name)?;
-        }
+        self.system.print_action(f)?;
         match &self.kinetic {
             Kinetic::Cost(cost) => writeln!(f, "  cost       {cost}")?,
             Kinetic::Lagrangian { energy, name, discretization, .. } => {
                 writeln!(f, "  lagrangian {energy} of {name}, by {discretization}")?;
             }
-            Kinetic::Controls { velocity, discretization } => {
-                velocity.iter().try_for_each(|part| writeln!(f, "  controls   {part}, by {discretization}"))?;
-            }
-            Kinetic::Dynamics(next) => next.iter().try_for_each(|part| writeln!(f, "  dynamics   {part}"))?,
         }
         match self.potential {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
-            None if self.is_steered() => {}
             None if self.power.as_ref().is_some_and(|power| !power.terms.is_empty()) => {}
             None => writeln!(f, "  potential  none")?,
         }
@@ -55,23 +50,52 @@ impl fmt::Display for Model<'_> {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
+        self.system.print_inputs(f)?;
+        self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
+        if self.isotropy == Isotropy::Free {
+            writeln!(f, "  isotropy   {}", self.isotropy)?;
+        }
+        self.system.print_dials(f)?;
+        writeln!(f, "  order      {}", self.order)
+    }
+}
+
+impl fmt::Display for Steered<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "model {} over {}", self.item.ident, spell_scalar(&self.item.scalar))?;
+        self.system.print_action(f)?;
+        match &self.motion {
+            Motion::Controls { velocity, discretization } => {
+                velocity.iter().try_for_each(|part| writeln!(f, "  controls   {part}, by {discretization}"))?;
+            }
+            Motion::Dynamics(next) => next.iter().try_for_each(|part| writeln!(f, "  dynamics   {part}"))?,
+        }
+        self.system.print_inputs(f)?;
+        self.system.print_dials(f)
+    }
+}
+
+impl System<'_> {
+    fn print_action(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
+        self.constants.iter().try_for_each(|constant| writeln!(f, "  constant {}", constant.symbol))?;
+        self.factors.iter().try_for_each(|factor| writeln!(f, "  {factor}"))?;
+        self.configurations.iter().try_for_each(|leaf| writeln!(f, "  {leaf}"))?;
+        let mut images = self.configurations.iter().zip(&self.action);
+        images.try_for_each(|(leaf, image)| writeln!(f, "  action     {} -> {image}", leaf.name))
+    }
+
+    fn print_inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.inputs.iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
         if let Some(control) = &self.control {
             writeln!(f, "  price      {}", control.price)?;
             control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
         }
-        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))?;
-        self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
-        if self.isotropy == Isotropy::Free {
-            writeln!(f, "  isotropy   {}", self.isotropy)?;
-        }
-        for (name, value) in self.dials.given() {
-            writeln!(f, "  {name:<10} {value}")?;
-        }
-        match self.is_steered() {
-            true => Ok(()),
-            false => writeln!(f, "  order      {}", self.order),
-        }
+        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))
+    }
+
+    fn print_dials(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.dials.given().into_iter().try_for_each(|(name, value)| writeln!(f, "  {name:<10} {value}"))
     }
 }
 
@@ -94,10 +118,7 @@ impl fmt::Display for Parameter<'_> {
 impl fmt::Display for Factor<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "factor {}: {}, ", self.name, self.group.name(self.symbol.graph()))?;
-        match self.moves {
-            true => write!(f, "{}", self.side),
-            false => f.write_str("moves nothing"),
-        }
+        if self.moves { write!(f, "{}", self.side) } else { f.write_str("moves nothing") }
     }
 }
 

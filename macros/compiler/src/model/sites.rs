@@ -7,7 +7,7 @@ use syn::Generics;
 use super::features::{self, Feature, Found};
 use super::power::{Power, SiteIndex, Term, bounds, index_name};
 use super::value::Value;
-use super::{Configuration, Item, Kinetic, Layout, Leaf, Model, Order, Parameter, ScalarType};
+use super::{Configuration, Item, Layout, Leaf, Order, Parameter, ScalarType, System};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Closure, Declaration, Potential};
 
@@ -166,26 +166,26 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     refused.for_each(|error| diagnostics.push(error));
 }
 
-/// The model of a site with what ties it to others.
-pub(super) fn power_of<'g>(mut model: Model<'g>, sites: Sites<'g>, terms: Vec<Term<'g>>, length: &Ident) -> Model<'g> {
-    let kinetic = match &model.kinetic {
-        Kinetic::Cost(cost) => *cost,
-        Kinetic::Lagrangian { energy, .. } => *energy,
-        // by construction: `check` has refused them
-        Kinetic::Controls { .. } | Kinetic::Dynamics(_) => model.graph.integer(0),
-    };
+/// What ties sites to each other; the system becomes that of one site.
+pub(super) fn power_of<'g>(
+    system: &mut System<'g>,
+    energy: Expr<'g>,
+    sites: Sites<'g>,
+    terms: Vec<Term<'g>>,
+    length: &Ident,
+) -> Power<'g> {
     let is_read = |leaf: &Leaf<'g>, expr: Expr<'g>| expr.depends_on(leaf.symbol);
     let by_site = |parameter: &&Parameter<'g>| {
         let of_site =
-            |leaf: &Leaf<'g>| is_read(leaf, kinetic) || model.action.iter().any(|image| is_read(leaf, *image));
+            |leaf: &Leaf<'g>| is_read(leaf, energy) || system.action.iter().any(|image| is_read(leaf, *image));
         parameter.leaves.iter().any(of_site)
     };
     let by_terms = |parameter: &&Parameter<'g>| {
         !parameter.per_site && parameter.leaves.iter().any(|leaf| terms.iter().any(|term| is_read(leaf, term.value)))
     };
-    let mut parameters: Vec<Parameter<'g>> = model.parameters.iter().filter(by_terms).cloned().collect();
+    let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().collect();
     for entry in &sites.entries {
-        let field = &model.parameters[entry.field];
+        let field = &system.parameters[entry.field];
         let leaf = |(leaf, symbol): (&Leaf<'g>, &Expr<'g>)| Leaf {
             symbol: *symbol,
             accessor: leaf.accessor.at_site(entry.place),
@@ -194,7 +194,7 @@ pub(super) fn power_of<'g>(mut model: Model<'g>, sites: Sites<'g>, terms: Vec<Te
         let leaves = field.leaves.iter().zip(&entry.leaves).map(leaf).collect();
         parameters.push(Parameter { leaves, ..field.clone() });
     }
-    let mut of_site: Vec<Parameter<'g>> = model.parameters.iter().filter(by_site).cloned().collect();
+    let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().collect();
     let copied = of_site.iter().map(|parameter| parameter.field.clone()).collect();
     for parameter in &mut of_site {
         if let syn::Member::Unnamed(index) = &parameter.field {
@@ -203,18 +203,16 @@ pub(super) fn power_of<'g>(mut model: Model<'g>, sites: Sites<'g>, terms: Vec<Te
     }
     let is_uniform = of_site.iter().all(|parameter| !parameter.per_site);
     let site = Item {
-        ident: quote::format_ident!("{}Site", model.item.ident),
+        ident: quote::format_ident!("{}Site", system.item.ident),
         vis: syn::Visibility::Public(Default::default()),
-        generics: generics_of_site(&model.item),
-        scalar: model.item.scalar.clone(),
-        krate: model.item.krate.clone(),
+        generics: generics_of_site(&system.item),
+        scalar: system.item.scalar.clone(),
+        krate: system.item.krate.clone(),
     };
-    let item = std::mem::replace(&mut model.item, site);
+    let item = std::mem::replace(&mut system.item, site);
     let Sites { count, places, .. } = sites;
-    model.parameters = of_site;
-    model.power =
-        Some(Power { item, length: length.clone(), sites: count, places, terms, parameters, copied, is_uniform });
-    model
+    system.parameters = of_site;
+    Power { item, length: length.clone(), sites: count, places, terms, parameters, copied, is_uniform }
 }
 
 /// The scalar alone.

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Graph;
 
-use super::model;
+use super::{Model, model};
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;
 
@@ -19,7 +19,7 @@ fn sides(action: &str) -> Result<String, Diagnostics> {
     let item = format!("#[clebsch(action = {action}, lagrangian = |{pattern}| {})] struct S;", energy.join(" + "));
     let declaration = parse(item.parse().expect("the table holds Rust"))?;
     let graph = Graph::new();
-    let model = model(&graph, &declaration)?;
+    let Model::Mechanics(model) = model(&graph, &declaration)? else { panic!("a Lagrangian is of mechanics") };
     let side = |factor: &super::Factor| match factor.moves {
         true => factor.side.to_string(),
         false => "moves nothing".to_string(),

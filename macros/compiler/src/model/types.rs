@@ -1,5 +1,8 @@
 //! The value of the stage `model`: typed matrix expressions with names, shapes, groups and sides.
 
+use std::ops::Deref;
+use std::rc::Rc;
+
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
@@ -7,7 +10,15 @@ use super::{Access, Layout, Power};
 use crate::parse::{Dials, Discretization, Emit, Isotropy, Opaque, Order, Promise};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
-pub struct Model<'g> {
+pub enum Model<'g> {
+    /// Momenta move the configuration.
+    Mechanics(Box<Mechanics<'g>>),
+    /// Inputs move the configuration by themselves, without mass, momentum or force.
+    Steered(Box<Steered<'g>>),
+}
+
+/// What mechanics and control have in common: the user's struct, the group with its action, and the inputs.
+pub struct System<'g> {
     /// The owner of all expressions.
     pub graph: &'g Graph,
     /// What generated code needs of the user's struct.
@@ -30,6 +41,26 @@ pub struct Model<'g> {
     pub configuration: Layout,
     /// Φ_F(q), one expression for each leaf of the configuration.
     pub action: Vec<Expr<'g>>,
+    /// The leaves of the input u of a step; empty where nothing takes one.
+    pub inputs: Vec<Configuration<'g>>,
+    /// How the leaves of the input nest.
+    pub input: Layout,
+    /// What the inputs are chosen by; `None` where nothing is chosen.
+    pub control: Option<InputChoice<'g>>,
+    /// φ(t, q), the price of the end; `None` if there is none.
+    pub endpoint: Option<Expr<'g>>,
+    /// The dials that the user turns and that the model is not made of.
+    pub dials: Dials,
+    /// What is emitted beside the integrator.
+    pub emit: Emit,
+    /// The closures' bodies as written, for the errors of later stages.
+    pub spans: Spans,
+}
+
+/// A mechanical system.
+pub struct Mechanics<'g> {
+    /// What it has in common with other models.
+    pub system: Rc<System<'g>>,
     /// The kinetic part of the discrete Lagrangian, or the Lagrangian that it is to be made of.
     pub kinetic: Kinetic<'g>,
     /// V(t, q); a free body has none.
@@ -38,46 +69,25 @@ pub struct Model<'g> {
     pub opaque: Option<Opaque>,
     /// The forces; `None` where nothing but the potential acts.
     pub force: Option<Force<'g>>,
-    /// The leaves of the input u of a step; empty where forces take none.
-    pub inputs: Vec<Configuration<'g>>,
-    /// How the leaves of the input nest.
-    pub input: Layout,
-    /// What the inputs are chosen by; `None` where nothing is chosen.
-    pub control: Option<InputChoice<'g>>,
     /// What ties sites to each other, where the declaration is a power and this is the model of a site.
     pub power: Option<Power<'g>>,
-    /// φ(t, q), the price of the end; `None` if there is none.
-    pub endpoint: Option<Expr<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// What becomes of motions of the group that move no configuration.
     pub isotropy: Isotropy,
-    /// The dials of a step that the user chooses; the others have become what the model is made of.
-    pub dials: Dials,
     /// Where the potential is placed.
     pub order: Order,
-    /// What is emitted beside the integrator.
-    pub emit: Emit,
-    /// The closures' bodies as written, for the errors of later stages.
-    pub spans: Spans,
 }
 
-impl Model<'_> {
-    /// Whether discrete Lagrangians are differentiated twice.
-    pub fn has_variations(&self) -> bool {
-        self.emit.variations() || (self.control.is_some() && !self.is_steered())
-    }
+/// A configuration that inputs move.
+pub struct Steered<'g> {
+    /// What it has in common with other models.
+    pub system: Rc<System<'g>>,
+    /// How the inputs move it.
+    pub motion: Motion<'g>,
+}
 
-    /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.
-    pub fn has_covectors(&self) -> bool {
-        self.force.is_none() && !self.configurations.is_empty()
-    }
-
-    /// Whether inputs move the configuration, without any mechanics.
-    pub fn is_steered(&self) -> bool {
-        matches!(self.kinetic, Kinetic::Controls { .. } | Kinetic::Dynamics(_))
-    }
-
+impl System<'_> {
     /// The number of components of all factors.
     pub fn dimension(&self) -> usize {
         self.offset(self.factors.len())
@@ -86,6 +96,34 @@ impl Model<'_> {
     /// The index of a factor's first component among those of all.
     pub fn offset(&self, k: usize) -> usize {
         self.factors[..k].iter().map(|factor| factor.group.dimension()).sum()
+    }
+}
+
+impl Mechanics<'_> {
+    /// Whether discrete Lagrangians are differentiated twice.
+    pub fn has_variations(&self) -> bool {
+        self.emit.variations() || self.control.is_some()
+    }
+
+    /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.
+    pub fn has_covectors(&self) -> bool {
+        self.force.is_none() && !self.configurations.is_empty()
+    }
+}
+
+impl<'g> Deref for Mechanics<'g> {
+    type Target = System<'g>;
+
+    fn deref(&self) -> &System<'g> {
+        &self.system
+    }
+}
+
+impl<'g> Deref for Steered<'g> {
+    type Target = System<'g>;
+
+    fn deref(&self) -> &System<'g> {
+        &self.system
     }
 }
 
@@ -211,8 +249,8 @@ pub enum LeafSpace {
     Group(Group),
 }
 
-/// What moves the configuration: a kinetic part of the discrete Lagrangian, or inputs.
-pub enum Kinetic<'g> {
+/// How inputs move the configuration.
+pub enum Motion<'g> {
     /// F = τ(h ξ(t, q, u)).
     Controls {
         /// ξ in the components of each factor.
@@ -222,6 +260,10 @@ pub enum Kinetic<'g> {
     },
     /// q⁺ = f(t, h, q, u), for each leaf of the configuration: translations by f − q.
     Dynamics(Vec<Expr<'g>>),
+}
+
+/// The kinetic part of the discrete Lagrangian.
+pub enum Kinetic<'g> {
     /// K(t, h, q, F) as declared.
     Cost(Expr<'g>),
     /// To be made from a Lagrangian.
@@ -235,6 +277,23 @@ pub enum Kinetic<'g> {
         /// How ξ is made from F and h.
         discretization: Discretization,
     },
+}
+
+impl<'g> Kinetic<'g> {
+    /// The cost, or the Lagrangian.
+    pub(super) fn energy(&self) -> Expr<'g> {
+        match self {
+            Kinetic::Cost(energy) | Kinetic::Lagrangian { energy, .. } => *energy,
+        }
+    }
+
+    /// How a Lagrangian becomes a cost; `None` for what is one.
+    pub fn discretization(&self) -> Option<Discretization> {
+        match self {
+            Kinetic::Cost(_) => None,
+            Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
+        }
+    }
 }
 
 /// What acts beside the potential, as functions of t, q, ξ and the input u.
@@ -292,8 +351,6 @@ pub struct Spans {
     pub action: Written,
     /// The cost's or the Lagrangian's.
     pub kinetic: Written,
-    /// The potential's.
-    pub potential: Option<Written>,
     /// The order's, where it is written.
     pub order: Option<Span>,
 }

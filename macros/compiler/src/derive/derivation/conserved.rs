@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::derive::{Formulas, MOST_LISTED, Substep};
+use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
 use crate::model::{Isotropy, Order};
 
 /// What forces take away.
-pub(super) fn forces(formulas: &Formulas<'_>) -> String {
+pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
     if model.force.is_none() {
         return String::new();
@@ -44,7 +44,7 @@ pub(super) fn forces(formulas: &Formulas<'_>) -> String {
 }
 
 /// What is conserved, and what is not known to be.
-pub(super) fn conserved(formulas: &Formulas<'_>) -> String {
+pub(super) fn conserved(formulas: &MechanicsFormulas<'_>) -> String {
     let symmetries = &formulas.symmetries;
     let mut text = String::new();
     let summed = if formulas.model.power.is_some() { ", summed over all sites" } else { "" };
@@ -86,7 +86,7 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
 }
 
 /// What this problem does not need, and what was not proved.
-pub(super) fn left_out(formulas: &Formulas<'_>) -> String {
+pub(super) fn left_out(formulas: &MechanicsFormulas<'_>) -> String {
     let mut text = String::new();
     if formulas.potential_energy.is_zero() && formulas.links.is_empty() {
         text += "Left out: the kick, as there is no potential.\n";

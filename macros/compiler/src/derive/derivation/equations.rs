@@ -3,10 +3,10 @@
 use clebsch_symbolic::Chart;
 
 use super::Iteration;
-use crate::derive::{Formulas, MomentumEquation, Solution, Structure};
+use crate::derive::{MechanicsFormulas, MomentumEquation, Solution, Structure};
 
 /// The factors of an equation, with the components that are meant where it holds not all of them.
-pub(super) fn part<'g>(formulas: &Formulas<'g>, equation: &MomentumEquation<'g>) -> String {
+pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEquation<'g>) -> String {
     let whole: usize = equation.factors.iter().map(|&k| formulas.model.factors[k].group.dimension()).sum();
     let names: Vec<&str> = equation.factors.iter().map(|&k| formulas.model.factors[k].name.as_str()).collect();
     let names = names.join(", ");
@@ -17,7 +17,7 @@ pub(super) fn part<'g>(formulas: &Formulas<'g>, equation: &MomentumEquation<'g>)
 }
 
 /// How an equation is solved, and in which chart.
-pub(super) fn how(formulas: &Formulas<'_>, equation: &MomentumEquation<'_>, iteration: &Iteration) -> String {
+pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<'_>, iteration: &Iteration) -> String {
     let cleared = equation.cleared;
     let chart = match formulas.symbols.charts[equation.factors[0]] {
         Chart::Cayley if cleared => {

@@ -4,14 +4,14 @@ use clebsch_symbolic::Group;
 
 use super::Lowered;
 use super::equations::{how, part};
-use crate::derive::{Collocation, Formulas, Solution};
+use crate::derive::{Collocation, MechanicsFormulas, Solution};
 use crate::model::{LeafSpace, Order};
 
 /// How sums are compensated.
 const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
 
 /// How a step goes and how accurate it is.
-pub(super) fn scheme(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let mut text = format!("{}\n{}", order(formulas), stagger(formulas));
     if let Some(stages) = formulas.stages() {
@@ -40,7 +40,7 @@ pub(super) fn scheme(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 }
 
 /// How the momentum equations of a step are solved; both halves of a composed step tell the same, once.
-fn equations(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
+fn equations(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let mut told: Vec<String> = Vec::new();
     for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.stepped) {
         for (equation, iteration) in substep.equations.iter().zip(iterations) {
@@ -57,7 +57,7 @@ fn equations(formulas: &Formulas<'_>, lowered: &Lowered) -> String {
 }
 
 /// The order of a step of the discrete Lagrangian, and why.
-fn order(formulas: &Formulas<'_>) -> &'static str {
+fn order(formulas: &MechanicsFormulas<'_>) -> &'static str {
     let second = if formulas.model.order == Order::First { Order::First } else { Order::Second };
     match (second, formulas.stepped) {
         (Order::First, _) => "First order as asked for: drift, then kick, −h·V at the end of the step.",
@@ -77,7 +77,7 @@ fn order(formulas: &Formulas<'_>) -> &'static str {
 }
 
 /// By how much the momentum of a step of first order is ahead of its configuration.
-fn stagger(formulas: &Formulas<'_>) -> &'static str {
+fn stagger(formulas: &MechanicsFormulas<'_>) -> &'static str {
     if formulas.stagger.is_none() {
         return "";
     }
@@ -96,7 +96,7 @@ fn stagger(formulas: &Formulas<'_>) -> &'static str {
 }
 
 /// What keeps configurations on their spaces.
-fn spaces(formulas: &Formulas<'_>) -> String {
+fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
     let is = |which: fn(&LeafSpace) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
     let rotations = is(|space| matches!(space, LeafSpace::Group(group) if group.is_orthogonal()));
     let lengths = is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions)));
@@ -113,7 +113,7 @@ fn spaces(formulas: &Formulas<'_>) -> String {
 }
 
 /// How much work a step may be.
-fn iterations(formulas: &Formulas<'_>) -> String {
+fn iterations(formulas: &MechanicsFormulas<'_>) -> String {
     let Some(iterations) = &formulas.model.dials.iterations else { return String::new() };
     format!(
         "At most {} iterations for each momentum equation, as asked for; a step that needs more is an error.\n",
@@ -122,7 +122,7 @@ fn iterations(formulas: &Formulas<'_>) -> String {
 }
 
 /// What an iteration that ends early leaves as it is, and what it does not.
-fn tolerance(formulas: &Formulas<'_>) -> String {
+fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
     let Some(tolerance) = &formulas.model.dials.tolerance else { return String::new() };
     let kept = formulas.conserved_by_any_element();
     let kept: Vec<&str> = kept.into_iter().map(|momentum| momentum.name.as_str()).collect();
@@ -144,7 +144,7 @@ fn tolerance(formulas: &Formulas<'_>) -> String {
 }
 
 /// How a step of order 16 goes.
-fn collocated(formulas: &Formulas<'_>, collocation: &Collocation<'_>) -> String {
+fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -> String {
     let mut text = String::from(
         "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic, and \
          what is quadratic in (q, p) is kept, the momenta of symmetries and the orbit of q among it. A step starts from a covector p with J(q, p) = N; N⁺ − N = J(q⁺, p⁺) − J(q, p).\n",

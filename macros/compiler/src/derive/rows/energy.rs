@@ -2,9 +2,9 @@
 
 use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
-use crate::derive::{Formula, Formulas, Id};
+use crate::derive::{Formula, Id, MechanicsFormulas};
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// The energies, as functions of the velocity and of the momentum.
     pub(super) fn rows_of_energy(&self) -> Vec<Formula<'g>> {
         let xi = self.letter(&self.symbols.algebra);

@@ -3,9 +3,9 @@
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::tuple;
-use crate::derive::{Formula, Formulas, Id};
+use crate::derive::{Formula, Id, MechanicsFormulas};
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// The discrete Lagrangian, part by part, and its Legendre transforms.
     pub(super) fn rows_of_lagrangian(&self) -> Vec<Formula<'g>> {
         let (q, f, end) = (self.q(), self.f(), self.end_of_step(self.lagrangian.end));

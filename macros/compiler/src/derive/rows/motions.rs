@@ -2,28 +2,14 @@
 
 use clebsch_symbolic::{Block, Expr};
 
-use crate::derive::{Formula, Formulas, Id, MatrixForm, action, from_increment};
+use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas, action, from_increment};
 use crate::model::Side;
 
-impl<'g> Formulas<'g> {
-    /// What variations and the choice of inputs need of motions.
-    pub(super) fn rows_of_motions(&self) -> Vec<Formula<'g>> {
-        let is_steered = self.model.is_steered();
-        if !is_steered && !self.model.has_variations() && self.steering.is_none() {
-            return Vec::new();
-        }
-        let (q, xi) = (self.q(), self.letter(&self.symbols.algebra));
-        let (metric, d) = (self.momenta_of(&self.generator), self.letter(&self.symbols.increments));
-        let mut rows = vec![Formula::new(Id::OrbitMetric, format!("J({q}, {xi}_Q({q}))"), &metric)];
-        if self.model.has_variations() {
-            rows.push(Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", &self.retractions()));
-            rows.push(Formula::new(Id::Composition, format!("{d}, then {d}⁺"), &self.compositions()));
-        }
-        if let Some(step) = self.steering.as_ref().and_then(|steering| steering.step.as_ref()) {
-            rows.push(Formula::new(Id::Increment, d, &step.increment));
-            rows.push(Formula::new(Id::Advance, format!("{q}⁺"), &self.at_increments(&self.model.action)));
-        }
-        rows
+impl<'g> SystemFormulas<'g> {
+    /// J(q, ξ_Q(q)).
+    pub(super) fn row_of_orbit_metric(&self) -> Formula<'g> {
+        let symbol = format!("J({}, {}_Q({0}))", self.q(), self.letter(&self.symbols.algebra));
+        Formula::new(Id::OrbitMetric, symbol, &self.momenta_of(&self.generator))
     }
 
     /// J(q, v) of velocities.
@@ -39,6 +25,21 @@ impl<'g> Formulas<'g> {
             self.momenta_of(&velocities).into_iter().map(Expr::expand).collect()
         };
         MatrixForm::Columns(self.symbols.basis().iter().map(column).collect())
+    }
+}
+
+impl<'g> MechanicsFormulas<'g> {
+    /// What variations and the choice of inputs need of motions.
+    pub(super) fn rows_of_motions(&self) -> Vec<Formula<'g>> {
+        if !self.model.has_variations() {
+            return Vec::new();
+        }
+        let d = self.letter(&self.symbols.increments);
+        vec![
+            self.row_of_orbit_metric(),
+            Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", &self.retractions()),
+            Formula::new(Id::Composition, format!("{d}, then {d}⁺"), &self.compositions()),
+        ]
     }
 
     /// τ(x) − I of each factor, then τ(−x) − I of each.

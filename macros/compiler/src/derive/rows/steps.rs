@@ -2,9 +2,9 @@
 
 use clebsch_symbolic::Expr;
 
-use crate::derive::{Formula, Formulas, Id, MomentumEquation, Solution, Substep};
+use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution, Substep};
 
-impl<'g> Formulas<'g> {
+impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
     pub(super) fn rows_of_substep(&self, index: usize) -> Vec<Formula<'g>> {
         let (substep, q) = (&self.substeps[index], self.q());

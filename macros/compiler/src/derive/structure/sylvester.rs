@@ -3,8 +3,8 @@
 use clebsch_symbolic::{Expr, Group, Shape, View};
 
 use crate::derive::equation::MomentumEquation;
-use crate::derive::{Formulas, Solution, Symbols};
-use crate::model::Model;
+use crate::derive::{MechanicsFormulas, Solution, Symbols};
+use crate::model::Mechanics;
 
 /// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
 /// there, half as long for SO(10), and less memory in all.
@@ -12,7 +12,7 @@ const FEWEST_OF_SYLVESTER: usize = 21;
 
 impl<'g> MomentumEquation<'g> {
     /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
-    pub(in crate::derive) fn large_jacobian_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
+    pub(in crate::derive) fn large_jacobian_factor(&self, formulas: &MechanicsFormulas<'g>) -> Option<Expr<'g>> {
         let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;
         if is_large { self.sylvester_factor(formulas) } else { None }
     }
@@ -20,8 +20,8 @@ impl<'g> MomentumEquation<'g> {
     /// B with Dρ(x)·δ = ⟨δ^·B, E⟩ for all δ in so(n), which is ΔB + BᵀΔ for Δ = δ^.
     ///
     /// ⟨A, E⟩ is the skew part of A, so that a term uΔ counts as Δuᵀ. `None` where Δ stands between two matrices, and for other groups.
-    pub fn sylvester_factor(&self, formulas: &Formulas<'g>) -> Option<Expr<'g>> {
-        let Formulas { model, symbols, .. } = formulas;
+    pub fn sylvester_factor(&self, formulas: &MechanicsFormulas<'g>) -> Option<Expr<'g>> {
+        let (model, symbols) = (&formulas.model, &formulas.symbols);
         let (n, direction) = self.whole_rotation(model, symbols)?;
         let mut factor = model.graph.zero(Shape::square(n));
         for outer in self.directional.word_terms() {
@@ -50,7 +50,7 @@ impl<'g> MomentumEquation<'g> {
     }
 
     /// n and δ, where the unknowns are all those of one SO(n).
-    fn whole_rotation(&self, model: &Model<'g>, symbols: &Symbols<'g>) -> Option<(usize, Expr<'g>)> {
+    fn whole_rotation(&self, model: &Mechanics<'g>, symbols: &Symbols<'g>) -> Option<(usize, Expr<'g>)> {
         let [block] = symbols.blocks_of(&self.components)[..] else { return None };
         let block = &symbols.blocks[block];
         let Group::SpecialOrthogonal(n) = model.factors[block.factor].group else { return None };

@@ -5,11 +5,11 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 use super::{Direction, Family};
 use crate::derive::Symbols;
 use crate::derive::action::generator_columns;
-use crate::model::{LeafSpace, Model, Side};
+use crate::model::{LeafSpace, Mechanics, Side};
 
 /// All directions, family by family.
 pub(super) fn directions<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
 ) -> (Vec<Family>, Vec<Direction<'g>>) {
@@ -39,7 +39,7 @@ pub(super) fn directions<'g>(
     (families, all)
 }
 
-fn unit_vector<'g>(model: &Model<'g>, group: Group, index: usize) -> Expr<'g> {
+fn unit_vector<'g>(model: &Mechanics<'g>, group: Group, index: usize) -> Expr<'g> {
     model.graph.unit(Shape::vector(group.dimension()), index, 0)
 }
 
@@ -55,13 +55,13 @@ pub(super) fn generated<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>], veloc
     generator.iter().map(|motion| motion.substitute(&replaced)).collect()
 }
 
-fn no_motion<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+fn no_motion<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
     model.factors.iter().map(|factor| model.graph.zero(factor.group.element_shape())).collect()
 }
 
 /// q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right).
 fn own_directions<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     k: usize,
@@ -90,7 +90,7 @@ fn own_directions<'g>(
 
 /// The factor of the leaf's own group for which q ↦ gq (or qg) commutes with the action: then ξ = q⁻¹wq (or qwq⁻¹).
 fn commuting_factor<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     j: usize,
@@ -128,7 +128,7 @@ fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, from_left: bool) -> E
 }
 
 /// Whether a motion of leaf j is carried along by the action: DΦ_F(q)·δq = δq at Φ_F(q).
-fn commutes<'g>(model: &Model<'g>, j: usize, motion: Expr<'g>) -> bool {
+fn commutes<'g>(model: &Mechanics<'g>, j: usize, motion: Expr<'g>) -> bool {
     let leaf = model.configurations[j].symbol;
     let moved: Vec<_> = model.action.iter().map(|image| image.differential(&[(leaf, motion)])).collect();
     let images: Vec<_> =
@@ -139,7 +139,7 @@ fn commutes<'g>(model: &Model<'g>, j: usize, motion: Expr<'g>) -> bool {
 }
 
 fn other_directions<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     j: usize,
     k: usize,
@@ -162,7 +162,7 @@ fn other_directions<'g>(
 
 /// The directions of an offered symmetry whose motions of q are motions of the group: ξ_Q(q) = δq.
 fn offered_directions<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     offer: usize,
@@ -189,7 +189,7 @@ fn offered_directions<'g>(
 
 /// ξ with ξ_Q(q) = δq, by least squares in the entries of q; `None` where the group cannot move q so.
 fn velocity_of<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     motion: &[Expr<'g>],

@@ -10,14 +10,14 @@ use clebsch_symbolic::{Expr, Number, integer};
 use super::directions::{generated, in_factor};
 use super::{ConservedMomentum, Symmetries};
 use crate::derive::{DiscreteLagrangian, Symbols, naming};
-use crate::model::{Model, Side};
+use crate::model::{Mechanics, Side};
 
 /// As many points decide whether a component vanishes: one does but for a chance of about 10⁻¹⁴.
 const POINTS: u64 = 1;
 
 /// The momenta of the basis elements of the group along which the discrete Lagrangian is invariant.
 pub(super) fn find<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,
@@ -42,7 +42,7 @@ pub(super) fn find<'g>(
 
 /// The variations of K, U₀ and U₁ along ξ in factor k, q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right), as their slopes in ξ.
 fn slopes<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,

@@ -13,7 +13,7 @@ use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
 use super::power::{self, SiteTerm};
 use super::{DiscreteLagrangian, Symbols, naming};
-use crate::model::{Isotropy, Model, is_large};
+use crate::model::{Isotropy, Mechanics, is_large};
 use directions::directions;
 
 /// A conserved momentum.
@@ -66,7 +66,7 @@ struct Family {
 
 /// Finds the symmetries of a discrete Lagrangian.
 pub(super) fn find<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     generator: &[Expr<'g>],
     lagrangian: &DiscreteLagrangian<'g>,
@@ -99,7 +99,7 @@ pub(super) fn find<'g>(
 /// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, what the force changes of its
 /// momentum, ⟨f, ξ⟩, and the variation of each term of a power where all sites move alike.
 fn variations<'g>(
-    model: &Model<'g>,
+    model: &Mechanics<'g>,
     symbols: &Symbols<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
     directions: &[Direction<'g>],
@@ -147,7 +147,7 @@ fn variations<'g>(
 
 /// Everything that names and checks directions.
 struct Finder<'a, 'g> {
-    model: &'a Model<'g>,
+    model: &'a Mechanics<'g>,
     symbols: &'a Symbols<'g>,
     families: Vec<Family>,
     directions: Vec<Direction<'g>>,
