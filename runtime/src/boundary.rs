@@ -31,8 +31,8 @@ pub use guess::Guess;
 pub use several::Way;
 
 use crate::newton::{Bracket, Sample, Trial};
+use crate::parameters::check_finite;
 use crate::scheme::{Constants, Scheme};
-use crate::stepper::check_time;
 use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
 use core::iter::once;
 use core::ops::RangeInclusive;
@@ -72,7 +72,7 @@ impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>, Scalar: Real>, cons
     /// # Errors
     /// [`Error::NotFinite`].
     pub fn starting_at(self, t: S::Scalar) -> Result<Self, Error> {
-        check_time(t)?;
+        check_finite("the time", &t)?;
         Ok(Self { time: t, ..self })
     }
 }

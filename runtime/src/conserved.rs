@@ -1,5 +1,6 @@
 //! Momenta that no step changes, with their names.
 
+use crate::fields::getters;
 use crate::{Clebsch, Scalar};
 use core::fmt::{self, Debug, Display, Formatter};
 use core::iter::Zip;
@@ -44,16 +45,12 @@ impl<T: Copy, const K: usize> Conserved<T, K> {
         Self { names, values }
     }
 
-    /// The names.
-    #[inline]
-    pub fn names(&self) -> &[&'static str; K] {
-        &self.names
-    }
+    getters! {
+        /// The names.
+        ref names: [&'static str; K];
 
-    /// The values, in the units of the momentum.
-    #[inline]
-    pub fn values(&self) -> &[T; K] {
-        &self.values
+        /// The values, in the units of the momentum.
+        ref values: [T; K];
     }
 
     /// The value with this name.

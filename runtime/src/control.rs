@@ -34,7 +34,7 @@ pub use optimum::{Optimum, Stage};
 
 use crate::fields::getters;
 use crate::newton::{Bracket, Sample, Trial};
-use crate::stepper::check_time;
+use crate::parameters::check_finite;
 use crate::{Controlled, Error, Real, Scalar, Space};
 use core::ops::RangeInclusive;
 use end::Goal;
@@ -86,7 +86,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// # Errors
     /// [`Error::NotFinite`].
     pub fn starting_at(self, t: S::Scalar) -> Result<Self, Error> {
-        check_time(t)?;
+        check_finite("the time", &t)?;
         Ok(Self { time: t, ..self })
     }
 

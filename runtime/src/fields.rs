@@ -34,9 +34,9 @@ macro_rules! debug {
     };
 }
 
-/// `Copy` and `Clone` of a type whose fields are, and `Debug` as by [`debug`]. Derived ones would ask the same of its parameters.
-macro_rules! copied {
-    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]: $($field:ident),*) => {
+/// `Copy` and `Clone` of a type whose fields are. Derived ones would ask the same of its parameters.
+macro_rules! copy {
+    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]) => {
         impl<$($generics)*> Copy for $name<$($argument),*> {}
 
         impl<$($generics)*> Clone for $name<$($argument),*> {
@@ -45,9 +45,15 @@ macro_rules! copied {
                 *self
             }
         }
+    };
+}
 
+/// As [`copy`], and `Debug` as by [`debug`].
+macro_rules! copied {
+    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]: $($field:ident),*) => {
+        $crate::fields::copy!($name<$($argument),*> where [$($generics)*]);
         $crate::fields::debug!($name<$($argument),*> where [$($generics)*]: $($field),*);
     };
 }
 
-pub(crate) use {copied, debug, getters};
+pub(crate) use {copied, copy, debug, getters};

@@ -8,6 +8,9 @@ use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
+/// An inertia without an inverse.
+const SINGULAR: Error = Error::SingularKineticEnergy { condition: f64::INFINITY };
+
 /// Fails with the name of the field if a number in it is NaN or infinite.
 ///
 /// # Errors
@@ -52,10 +55,10 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
     check_lanes::<T>(|lane| {
         let entries: [T::Lane; N] = from_fn(|i| vector[i].lane(lane));
         let length = length(&entries);
-        match (length - T::Lane::one()).abs() > T::Lane::EPSILON.sqrt() {
-            true => Err(Error::NotUnit { field: name, length: length.to_f64() }),
-            false => Ok(()),
+        if (length - T::Lane::one()).abs() > T::Lane::EPSILON.sqrt() {
+            return Err(Error::NotUnit { field: name, length: length.to_f64() });
         }
+        Ok(())
     })
 }
 
@@ -121,10 +124,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
 /// [`Error::SingularKineticEnergy`].
 pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
     let inverse = T::one() / *kappa;
-    check_lanes::<T>(|lane| match inverse.lane(lane).is_finite() {
-        true => Ok(()),
-        false => Err(Error::SingularKineticEnergy { condition: f64::INFINITY }),
-    })?;
+    check_lanes::<T>(|lane| if inverse.lane(lane).is_finite() { Ok(()) } else { Err(SINGULAR) })?;
     Ok(inverse)
 }
 
@@ -136,8 +136,7 @@ pub fn orientation_of_inertia<T: Scalar, const N: usize>(
     inertia: &SMatrix<T, N, N>,
     h: T,
 ) -> Result<Orientation, Error> {
-    let scaled = inertia.map(|entry| entry / h);
-    Orientation::of(rows(&scaled)).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
+    Orientation::of(rows(&inertia.map(|entry| entry / h))).ok_or(SINGULAR)
 }
 
 /// The sign of κⁿ.
@@ -146,7 +145,7 @@ pub fn orientation_of_inertia<T: Scalar, const N: usize>(
 /// [`Error::SingularKineticEnergy`].
 pub fn orientation_of_uniform<T: Scalar>(kappa: T, n: usize) -> Result<Orientation, Error> {
     let kappa = if n.is_multiple_of(2) { kappa * kappa } else { kappa };
-    Orientation::of([[kappa]]).ok_or(Error::SingularKineticEnergy { condition: f64::INFINITY })
+    Orientation::of([[kappa]]).ok_or(SINGULAR)
 }
 
 /// A linear projection of μ, made in units in which the largest component is of ordinary size.
@@ -172,17 +171,11 @@ pub fn distance_of_projection<T: Scalar, const M: usize>(
 fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse: [[T; N]; N] = multiple_of_identity(T::one());
     let rows = rows(matrix);
-    if eliminate(rows, &mut inverse).is_none() {
-        return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
-    }
+    eliminate(rows, &mut inverse).ok_or(SINGULAR)?;
     let mut condition = T::zero();
     for row in &inverse {
-        let mut sum = T::zero();
-        for (factor, entries) in row.iter().zip(&rows) {
-            for entry in entries {
-                sum += (*factor * *entry).abs();
-            }
-        }
+        let terms = row.iter().zip(&rows).flat_map(|(&factor, entries)| entries.map(|entry| (factor * entry).abs()));
+        let sum = terms.fold(T::zero(), |sum, term| sum + term);
         // Written so that NaN is infinite.
         condition = larger(condition, if sum.is_finite() { sum } else { T::one() / T::zero() });
     }
@@ -194,12 +187,7 @@ fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMat
 
 /// The distance of `mu` from the span of `rows`, the momenta that motions of a configuration can have.
 pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> T {
-    T::from_lanes(|lane| length(&rest(orthonormal(&rows_of(rows, lane)).as_slice(), &lane_of(mu, lane))))
-}
-
-/// One lane of some rows.
-fn rows_of<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], lane: usize) -> [[T::Lane; M]; D] {
-    rows.map(|row| row.map(|entry| entry.lane(lane)))
+    T::from_lanes(|lane| length(&rest(&orthonormal(rows.lane(lane)), &lane_of(mu, lane))))
 }
 
 /// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly.
@@ -209,38 +197,23 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     rows: &[[T; M]; D],
     mu: &SVector<T, M>,
 ) -> SVector<T, M> {
-    let mut projection = *mu;
-    for lane in 0..T::LANES {
-        set_lane(&mut projection, lane, &projection_of_one(&rows_of(rows, lane), &lane_of(mu, lane)));
-    }
-    projection
-}
-
-fn projection_of_one<T: Real, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> SVector<T, M> {
-    let basis = orthonormal(rows);
-    let mut projection = *mu;
-    for _ in 0..2 {
-        let outside = rest(basis.as_slice(), &projection);
-        projection.iter_mut().zip(outside).for_each(|(entry, outside)| *entry -= outside);
-    }
-    projection
+    Space::side_by_side(|lane| {
+        let basis = orthonormal(rows.lane(lane));
+        let once = |mu: SVector<T::Lane, M>| mu - SVector::from(rest(&basis, &mu));
+        once(once(lane_of(mu, lane)))
+    })
 }
 
 /// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them.
 ///
 /// Modified Gram–Schmidt, each row made orthogonal twice (once more than round-off needs); a row of which less than √ε is left
 /// is taken for dependent.
-fn orthonormal<T: Real, const M: usize, const D: usize>(rows: &[[T; M]; D]) -> [[T; M]; D] {
-    let mut basis = *rows;
+fn orthonormal<T: Real, const M: usize, const D: usize>(mut basis: [[T; M]; D]) -> [[T; M]; D] {
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);
         let Some(row) = others.first_mut() else { break };
         let given = length(row);
-        for _ in 0..2 {
-            for unit in before.iter() {
-                remove(row, unit);
-            }
-        }
+        before.iter().chain(before.iter()).for_each(|unit| remove(row, unit));
         let left = length(row);
         if left > T::EPSILON.sqrt() * given {
             row.iter_mut().for_each(|entry| *entry /= left);

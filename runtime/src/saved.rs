@@ -1,8 +1,10 @@
 //! States that are written and read back, with the feature `serde`.
 
+use crate::fields::copy;
+use crate::parameters::check_finite;
 use crate::scheme::{Held, Left};
 use crate::stepper::{check_configuration, check_momentum};
-use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper, Time};
+use crate::{Clebsch, Declared, Error, Method, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -49,13 +51,7 @@ where
     }
 }
 
-impl<S: Clebsch, M: Method<S>> Clone for SavedState<S, M> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S: Clebsch, M: Method<S>> Copy for SavedState<S, M> {}
+copy!(SavedState<S, M> where [S: Clebsch, M: Method<S>]);
 
 impl<S: Clebsch, M: Method<S>> Debug for SavedState<S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -96,12 +92,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let SavedState(state) = saved;
         check_configuration(&self.system, &state.configuration)?;
         check_momentum(&self.system, &state.configuration, &state.momentum())?;
-        if !state.time.now().is_finite() {
-            return Err(Error::NotFinite { name: "the time" });
-        }
-        if !(state.left.is_finite() && state.h.is_finite()) {
-            return Err(Error::NotFinite { name: "what is left of the last step" });
-        }
+        check_finite("the time", &state.time.now())?;
+        check_finite("what is left of the last step", &(state.left, state.h))?;
         Ok(state)
     }
 }

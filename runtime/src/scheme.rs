@@ -12,6 +12,33 @@
 //! ```
 //! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
+/// Of a scheme with one set of constants, whose states hold N itself.
+macro_rules! momentum_is_held {
+    ($method:ty) => {
+        type Held = S::Momentum;
+        type Constants = <$method as crate::Method<S>>::Constants;
+
+        fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error> {
+            <$method as crate::Method<S>>::constants(system, h)
+        }
+
+        #[inline(always)]
+        fn whole(constants: &Self::Constants) -> &Self::Constants {
+            constants
+        }
+
+        #[inline(always)]
+        fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
+            *mu
+        }
+
+        #[inline(always)]
+        fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
+            *held
+        }
+    };
+}
+
 mod adjoint_pair;
 mod collocated;
 mod composed;
@@ -25,7 +52,8 @@ mod split;
 mod substep;
 mod unstepped;
 
-use crate::parts::{F, Mu, Q, T, U};
+use crate::fields::copy;
+use crate::parts::{Mu, Q};
 use crate::{Clebsch, Clock, Declared, Error, Method, Space, Time};
 use core::fmt::Debug;
 use core::marker::PhantomData;
@@ -81,15 +109,7 @@ impl<'a, S: Clebsch + ?Sized, M: Method<S>, C> At<'a, S, M, C> {
     }
 }
 
-// derived ones would ask for systems that are `Copy`
-impl<S: Clebsch + ?Sized, M: Method<S>, C> Copy for At<'_, S, M, C> {}
-
-impl<S: Clebsch + ?Sized, M: Method<S>, C> Clone for At<'_, S, M, C> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
+copy!(At<'_, S, M, C> where [S: Clebsch + ?Sized, M: Method<S>, C]);
 
 /// How a system S is stepped by the method M.
 pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
@@ -200,52 +220,3 @@ fn one_by_one<S: Clebsch + ?Sized, P: Scheme<S, M> + ?Sized, M: Method<S>>(
     }
     Ok(state)
 }
-
-/// The methods of a system's scheme as methods of the system: for tests.
-#[allow(clippy::missing_errors_doc, clippy::too_many_arguments, reason = "all as those of the scheme")]
-pub trait Stepping: Clebsch {
-    /// As [`Scheme::constants`].
-    fn step_constants(&self, h: Self::Scalar) -> Result<Constants<Self>, Error> {
-        Self::Scheme::constants(self, h)
-    }
-
-    /// As [`Scheme::held`].
-    fn held(q: &Q<Self>, mu: &Mu<Self>) -> Held<Self> {
-        Self::Scheme::held(q, mu)
-    }
-
-    /// As [`Scheme::momentum`].
-    fn momentum_held(q: &Q<Self>, held: &Held<Self>) -> Mu<Self> {
-        Self::Scheme::momentum(q, held)
-    }
-
-    /// As [`Scheme::left`].
-    fn impulse(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Left<Self> {
-        Self::Scheme::left(At::new(self, c, t), q, mu)
-    }
-
-    /// As [`Scheme::step`].
-    fn step(
-        &self,
-        c: &Constants<Self>,
-        t: T<Self>,
-        q: &Q<Self>,
-        held: &Held<Self>,
-        left: &Left<Self>,
-        u: &U<Self>,
-    ) -> Result<Parted<Self, Self::Scheme>, Error> {
-        Self::Scheme::step(At::new(self, c, t), (q, held, left), u)
-    }
-
-    /// As [`Scheme::step_symmetric`].
-    fn step_symmetric(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, p: &Q<Self>) -> Result<Pair<Self>, Error> {
-        Self::Scheme::step_symmetric(At::new(self, c, t), q, p)
-    }
-
-    /// As [`Scheme::inverse_legendre`].
-    fn inverse_legendre(&self, c: &Constants<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Result<F<Self>, Error> {
-        Self::Scheme::inverse_legendre(At::new(self, c, t), q, mu)
-    }
-}
-
-impl<S: Clebsch + ?Sized> Stepping for S {}

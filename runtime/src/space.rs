@@ -12,14 +12,32 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// What one lane of it is; the space itself where scalars are single numbers.
     type Lane: Space<T::Lane>;
 
-    /// Combines `visit(x)` of all scalars x by `and`, without leaving early: on small arrays branches cost more than comparisons.
-    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool;
-
-    /// The largest |x| of all scalars x, 0 for `()`. NaN are passed over.
-    fn max_abs(&self) -> T;
+    /// Joins `visit(x)` of all scalars x, `unit` where there are none: from left to right, those of each part before parts are joined.
+    fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V;
 
     /// Where all scalars are `value`.
     fn filled(value: T) -> Self;
+
+    /// f(a, b) of all scalars a of it and b of another, in their places.
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self;
+
+    /// The value in lane `lane` of all scalars; the value itself where they are single numbers.
+    fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// Puts `value` into lane `lane` of all scalars.
+    fn set_lane(&mut self, lane: usize, value: &Self::Lane);
+
+    /// Combines `visit(x)` of all scalars x by `and`, without leaving early: on small arrays branches cost more than comparisons.
+    #[inline]
+    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
+        self.reduce(true, visit, |a, b| a & b)
+    }
+
+    /// The largest |x| of all scalars x, 0 for `()`. NaN are passed over.
+    #[inline]
+    fn max_abs(&self) -> T {
+        larger(T::zero(), self.reduce(T::zero(), |x| x.abs(), larger))
+    }
 
     /// Where all scalars are 0.
     #[inline]
@@ -28,16 +46,16 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     }
 
     /// |self − other|², the sum over all scalars, 0 for `()`.
-    fn distance_squared(&self, other: &Self) -> T;
+    #[inline]
+    fn distance_squared(&self, other: &Self) -> T {
+        self.zip_map(other, |a, b| (a - b) * (a - b)).sum()
+    }
 
     /// The sum of all scalars, 0 for `()`: where it is finite, all of them are.
-    fn sum(&self) -> T;
-
-    /// f(a, b) of all scalars a of it and b of another, in their places.
-    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self;
-
-    /// The value in lane `lane` of all scalars; the value itself where they are single numbers.
-    fn lane(&self, lane: usize) -> Self::Lane;
+    #[inline]
+    fn sum(&self) -> T {
+        self.reduce(T::zero(), |x| x, |a, b| a + b)
+    }
 
     /// What has `value(i)` in lane i.
     #[inline]
@@ -47,11 +65,11 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
         all
     }
 
-    /// Puts `value` into lane `lane` of all scalars.
-    fn set_lane(&mut self, lane: usize, value: &Self::Lane);
-
     /// The lanes in which no scalar is NaN or infinite.
-    fn finite(&self) -> T::Mask;
+    #[inline]
+    fn finite(&self) -> T::Mask {
+        self.reduce(T::Mask::everywhere(), |x| x.finite(), |a, b| a & b)
+    }
 
     /// Whether no scalar is NaN or infinite in any lane.
     #[inline]
@@ -95,24 +113,12 @@ impl<T: Scalar> Space<T> for T {
     type Lane = T::Lane;
 
     #[inline]
-    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
+    fn reduce<V: Copy>(&self, _: V, visit: impl Fn(T) -> V + Copy, _: impl Fn(V, V) -> V + Copy) -> V {
         visit(*self)
-    }
-    #[inline]
-    fn max_abs(&self) -> T {
-        larger(T::zero(), self.abs())
     }
     #[inline]
     fn filled(value: T) -> Self {
         value
-    }
-    #[inline]
-    fn distance_squared(&self, other: &Self) -> T {
-        (*self - *other) * (*self - *other)
-    }
-    #[inline]
-    fn sum(&self) -> T {
-        *self
     }
     #[inline]
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
@@ -126,35 +132,19 @@ impl<T: Scalar> Space<T> for T {
     fn set_lane(&mut self, lane: usize, value: &T::Lane) {
         *self = with_lane(*self, lane, *value);
     }
-    #[inline]
-    fn finite(&self) -> T::Mask {
-        Scalar::finite(*self)
-    }
 }
 
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     type Lane = SMatrix<T::Lane, R, C>;
 
     #[inline]
-    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
+    fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
         // a slice, for the compiler does not see that the entries of a matrix stand side by side
-        self.as_slice().iter().fold(true, |all, &x| all & visit(x))
-    }
-    #[inline]
-    fn max_abs(&self) -> T {
-        self.iter().fold(T::zero(), |max, x| larger(max, x.abs()))
+        self.as_slice().iter().fold(unit, |all, &x| join(all, visit(x)))
     }
     #[inline]
     fn filled(value: T) -> Self {
         SMatrix::from_element(value)
-    }
-    #[inline]
-    fn distance_squared(&self, other: &Self) -> T {
-        self.iter().zip(other.iter()).fold(T::zero(), |sum, (x, y)| sum + (*x - *y) * (*x - *y))
-    }
-    #[inline]
-    fn sum(&self) -> T {
-        self.iter().fold(T::zero(), |sum, &x| sum + x)
     }
     #[inline]
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
@@ -168,34 +158,18 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
         set_lane(self, lane, value);
     }
-    #[inline]
-    fn finite(&self) -> T::Mask {
-        self.as_slice().iter().fold(T::Mask::everywhere(), |finite, x| finite & x.finite())
-    }
 }
 
 impl<T: Scalar> Space<T> for Quaternion<T> {
     type Lane = Quaternion<T::Lane>;
 
     #[inline]
-    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
-        self.coords.all(visit)
-    }
-    #[inline]
-    fn max_abs(&self) -> T {
-        self.coords.max_abs()
+    fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
+        self.coords.reduce(unit, visit, join)
     }
     #[inline]
     fn filled(value: T) -> Self {
         Quaternion { coords: SMatrix::filled(value) }
-    }
-    #[inline]
-    fn distance_squared(&self, other: &Self) -> T {
-        self.coords.distance_squared(&other.coords)
-    }
-    #[inline]
-    fn sum(&self) -> T {
-        Space::sum(&self.coords)
     }
     #[inline]
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
@@ -209,34 +183,18 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
         set_lane(&mut self.coords, lane, &value.coords);
     }
-    #[inline]
-    fn finite(&self) -> T::Mask {
-        self.coords.finite()
-    }
 }
 
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     type Lane = [S::Lane; N];
 
     #[inline]
-    fn all(&self, visit: impl Fn(T) -> bool + Copy) -> bool {
-        self.iter().fold(true, |all, part| all & part.all(visit))
-    }
-    #[inline]
-    fn max_abs(&self) -> T {
-        self.iter().fold(T::zero(), |max, part| larger(max, part.max_abs()))
+    fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
+        self.iter().fold(unit, |all, part| join(all, part.reduce(unit, visit, join)))
     }
     #[inline]
     fn filled(value: T) -> Self {
         [S::filled(value); N]
-    }
-    #[inline]
-    fn distance_squared(&self, other: &Self) -> T {
-        self.iter().zip(other).fold(T::zero(), |sum, (part, other)| sum + part.distance_squared(other))
-    }
-    #[inline]
-    fn sum(&self) -> T {
-        self.iter().fold(T::zero(), |sum, part| sum + part.sum())
     }
     #[inline]
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
@@ -250,58 +208,35 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
         self.iter_mut().zip(value).for_each(|(part, value)| part.set_lane(lane, value));
     }
-    #[inline]
-    fn finite(&self) -> T::Mask {
-        self.iter().fold(T::Mask::everywhere(), |finite, part| finite & part.finite())
-    }
 }
 
-/// A tuple is as finite and as large as its parts.
 macro_rules! tuple {
     ($($name:ident . $index:tt),*) => {
+        #[allow(clippy::unused_unit, unused_variables, reason = "the tuple without parts")]
         impl<T: Scalar, $($name: Space<T>),*> Space<T> for ($($name,)*) {
             type Lane = ($($name::Lane,)*);
 
             #[inline]
-            fn all(&self, _visit: impl Fn(T) -> bool + Copy) -> bool {
-                true $(& self.$index.all(_visit))*
+            fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
+                let all = unit;
+                $(let all = join(all, self.$index.reduce(unit, visit, join));)*
+                all
             }
             #[inline]
-            fn max_abs(&self) -> T {
-                let max = T::zero();
-                $(let max = larger(max, self.$index.max_abs());)*
-                max
+            fn filled(value: T) -> Self {
+                ($($name::filled(value),)*)
             }
             #[inline]
-            #[allow(clippy::unused_unit)] // of the tuple without parts
-            fn filled(_value: T) -> Self {
-                ($($name::filled(_value),)*)
+            fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
+                ($(self.$index.zip_map(&other.$index, f),)*)
             }
             #[inline]
-            fn distance_squared(&self, _other: &Self) -> T {
-                T::zero() $(+ self.$index.distance_squared(&_other.$index))*
+            fn lane(&self, lane: usize) -> Self::Lane {
+                ($(self.$index.lane(lane),)*)
             }
             #[inline]
-            fn sum(&self) -> T {
-                T::zero() $(+ self.$index.sum())*
-            }
-            #[inline]
-            #[allow(clippy::unused_unit)] // of the tuple without parts
-            fn zip_map(&self, _other: &Self, _f: impl Fn(T, T) -> T + Copy) -> Self {
-                ($(self.$index.zip_map(&_other.$index, _f),)*)
-            }
-            #[inline]
-            #[allow(clippy::unused_unit)] // of the tuple without parts
-            fn lane(&self, _lane: usize) -> Self::Lane {
-                ($(self.$index.lane(_lane),)*)
-            }
-            #[inline]
-            fn set_lane(&mut self, _lane: usize, _value: &Self::Lane) {
-                $(self.$index.set_lane(_lane, &_value.$index);)*
-            }
-            #[inline]
-            fn finite(&self) -> T::Mask {
-                T::Mask::everywhere() $(& self.$index.finite())*
+            fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
+                $(self.$index.set_lane(lane, &value.$index);)*
             }
         }
     };

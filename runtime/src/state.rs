@@ -1,5 +1,6 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
+use crate::fields::{copy, getters};
 use crate::scheme::{Held, Left, Scheme};
 use crate::{Clebsch, Clock, Declared, Mask, Method, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
@@ -22,10 +23,9 @@ pub struct State<S: Clebsch, M: Method<S> = Declared> {
 }
 
 impl<S: Clebsch, M: Method<S>> State<S, M> {
-    /// The configuration q.
-    #[inline]
-    pub fn configuration(&self) -> &S::Configuration {
-        &self.configuration
+    getters! {
+        /// The configuration q.
+        ref configuration: S::Configuration;
     }
 
     /// The momentum N in the basis that [`group`](crate::group) documents.
@@ -84,14 +84,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> State<S, M>
     }
 }
 
-impl<S: Clebsch, M: Method<S>> Copy for State<S, M> {}
-
-impl<S: Clebsch, M: Method<S>> Clone for State<S, M> {
-    #[inline]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
+copy!(State<S, M> where [S: Clebsch, M: Method<S>]);
 
 impl<S: Clebsch, M: Method<S>> PartialEq for State<S, M> {
     fn eq(&self, other: &Self) -> bool {
@@ -118,16 +111,12 @@ pub struct CotangentState<S: Clebsch> {
 }
 
 impl<S: Clebsch> CotangentState<S> {
-    /// The configuration q.
-    #[inline]
-    pub fn configuration(&self) -> &S::Configuration {
-        &self.configuration
-    }
+    getters! {
+        /// The configuration q.
+        ref configuration: S::Configuration;
 
-    /// The covector p.
-    #[inline]
-    pub fn covector(&self) -> &S::Configuration {
-        &self.covector
+        /// The covector p.
+        ref covector: S::Configuration;
     }
 
     /// The lanes in which all of it is finite.
@@ -162,14 +151,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> CotangentState<S> {
     }
 }
 
-impl<S: Clebsch> Copy for CotangentState<S> {}
-
-impl<S: Clebsch> Clone for CotangentState<S> {
-    #[inline]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
+copy!(CotangentState<S> where [S: Clebsch]);
 
 impl<S: Clebsch> PartialEq for CotangentState<S> {
     fn eq(&self, other: &Self) -> bool {

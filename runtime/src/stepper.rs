@@ -13,9 +13,10 @@ mod staggered;
 mod step_size;
 mod symmetric;
 
+use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
 use crate::space::check_lanes;
-use crate::{Clebsch, Declared, Error, Method, Scalar, Space};
+use crate::{Clebsch, Declared, Error, Mask, Method, Scalar, Space};
 use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
 
@@ -72,9 +73,7 @@ pub(crate) fn check_configuration<S: Clebsch>(system: &S, q: &S::Configuration) 
 
 /// The same with the defect of q.
 pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
-    if !q.is_finite() {
-        return Err(Error::NotFinite { name: "the configuration" });
-    }
+    check_finite("the configuration", q)?;
     let tolerance = T::Lane::EPSILON.sqrt();
     check_lanes::<T>(|lane| {
         let defect = defect.lane(lane);
@@ -91,9 +90,7 @@ pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result
 
 /// N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
 pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
-    if !mu.is_finite() {
-        return Err(Error::NotFinite { name: "the momentum" });
-    }
+    check_finite("the momentum", mu)?;
     let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
     let violation = system.isotropy_defect(q, mu);
     check_lanes::<S::Scalar>(|lane| {
@@ -111,12 +108,9 @@ pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &
 /// What is not finite where a kick is not.
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
-fn check_gradient<T: Scalar, I: Space<T>>(kick: &I) -> Result<(), Error> {
-    if kick.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: GRADIENT }) }
-}
-
-pub(crate) fn check_time<T: Scalar>(t: T) -> Result<(), Error> {
-    if t.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the time" }) }
+/// The first lane that is not in a mask; 0 where all are.
+fn first_without<T: Scalar>(mask: T::Mask) -> usize {
+    (0..T::LANES).find(|&lane| !mask.lane(lane)).unwrap_or(0)
 }
 
 /// The error itself where the scalar is a single number, else the lane.

@@ -19,6 +19,7 @@ use num_traits::Zero;
 /// here; the same of other methods is in [`Method`].
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
+#[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Clebsch {
     /// The number type.
     type Scalar: Scalar;
@@ -87,14 +88,12 @@ pub trait Clebsch {
     /// The time is that of the configuration. −h/2 J(q, ∂V) with `order = 1`, half of the kick; 0 with every other order, where N is π. See
     /// [`Stepper::synchronized`](crate::Stepper::synchronized).
     fn stagger(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration) -> Self::Momentum {
-        let _ = (h, t, q);
         Self::Momentum::origin()
     }
 
     /// The potential V(t, q), 0 for a free system.
     #[inline]
     fn potential(&self, t: Self::Scalar, q: &Self::Configuration) -> Self::Scalar {
-        let _ = (t, q);
         Zero::zero()
     }
 
@@ -121,7 +120,6 @@ pub trait Clebsch {
     /// 0 for plain vectors and matrices, +∞ on the wrong component of a group (det < 0).
     #[inline]
     fn orbit_defect(&self, q: &Self::Configuration) -> Self::Scalar {
-        let _ = q;
         Zero::zero()
     }
 
@@ -130,7 +128,6 @@ pub trait Clebsch {
     /// 0 where the action is free, and where the motions that fix q are declared to be motions (`isotropy = free`).
     #[inline]
     fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Scalar {
-        let _ = (q, mu);
         Zero::zero()
     }
 
@@ -139,7 +136,6 @@ pub trait Clebsch {
     /// μ itself where [`isotropy_defect`](Self::isotropy_defect) is 0 for every momentum.
     #[inline]
     fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
-        let _ = q;
         *mu
     }
 

@@ -1,9 +1,8 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
-use crate::linear::{eliminate, rows};
+use crate::linear::{eliminate, multiple_of_identity, rows};
 use crate::scheme::Scheme;
 use crate::{Carried, Clebsch, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
-use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
 /// A variation of a state: the motion η of q ↦ Φ_{exp η}(q), in the basis of 𝔤, and the change ν of the momentum.
@@ -45,7 +44,8 @@ pub struct Sensitivity<T, const M: usize, const P: usize> {
 impl<T: Scalar, const M: usize> Tangent<T, M> {
     /// The identity, the derivative of no step at all.
     pub fn identity() -> Self {
-        let (one, zero) = (unit(), SMatrix::from_element(T::zero()));
+        let one = SMatrix::identity();
+        let zero = Space::origin();
         Self { motion_by_motion: one, motion_by_momentum: zero, momentum_by_motion: zero, momentum_by_momentum: one }
     }
 
@@ -87,7 +87,7 @@ impl<T: Scalar, const M: usize> Tangent<T, M> {
 impl<T: Scalar, const M: usize, const P: usize> Sensitivity<T, M, P> {
     /// Nothing: the sensitivity of a state that depends on no quantity.
     pub fn zero() -> Self {
-        Self { motion: SMatrix::from_element(T::zero()), momentum: SMatrix::from_element(T::zero()) }
+        Self { motion: Space::origin(), momentum: Space::origin() }
     }
 
     /// The sensitivity after a step with the tangent map `tangent`, whose own sensitivity is `of_step`.
@@ -110,15 +110,13 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
     SMatrix::from_fn(|i, j| (0..M).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
 }
 
-fn unit<T: Scalar, const M: usize>() -> SMatrix<T, M, M> {
-    SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() })
-}
-
 /// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N: with η′ = Ad η + ζ, ζ = (∂F⁻ℓd/∂η′)⁻¹ (ν − ∂F⁻ℓd η), the
 /// derivatives along η at fixed F. `None` where ∂F⁻ℓd/∂η′ is singular.
 #[inline]
 pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
-    let inverse = solve(&edge.before_by_end, &unit())?;
+    let mut rows_of_inverse = multiple_of_identity(T::one());
+    eliminate(rows(&edge.before_by_end), &mut rows_of_inverse)?;
+    let inverse = SMatrix::from_fn(|i, j| rows_of_inverse[i][j]);
     let turned = times(&inverse, &edge.before);
     Some(Tangent {
         motion_by_motion: edge.adjoint - turned,
@@ -134,21 +132,8 @@ const DERIVATIVE: Error = Error::NotFinite { name: "the derivative of the step" 
 /// The tangent map of a step if it is finite.
 fn finite_tangent<T: Scalar, const M: usize>(tangent: Tangent<T, M>) -> Result<Tangent<T, M>, Error> {
     let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
-        &tangent;
-    match [a, b, c, d].into_iter().all(Space::is_finite) {
-        true => Ok(tangent),
-        false => Err(DERIVATIVE),
-    }
-}
-
-/// A⁻¹B
-fn solve<T: Scalar, const M: usize, const K: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SMatrix<T, M, K>,
-) -> Option<SMatrix<T, M, K>> {
-    let mut unknowns: [[T; K]; M] = from_fn(|i| from_fn(|j| b[(i, j)]));
-    eliminate(rows(a), &mut unknowns)?;
-    Some(SMatrix::from_fn(|i, j| unknowns[i][j]))
+        tangent;
+    if [a, b, c, d].is_finite() { Ok(tangent) } else { Err(DERIVATIVE) }
 }
 
 /// One edge of a step: where it leads, and what it is there.
@@ -159,6 +144,7 @@ struct Passed<S: Clebsch, const M: usize> {
     tangent: Tangent<S::Scalar, M>,
 }
 
+#[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
 impl<S, T: Scalar, const M: usize> Stepper<S>
 where
     S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
@@ -179,14 +165,26 @@ where
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent), and [`Error::NotFinite`] where the input is not.
     pub fn step_tangent_with(&self, state: &State<S>, u: &S::Input) -> Result<(State<S>, Tangent<T, M>), Error> {
+        let (q, mu, tangent) = self.pass_all(state, u, |_, _, _| {})?;
+        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
+    }
+
+    /// (q⁺, N⁺), edge by edge, with the tangent map. `seen` is told each edge with its number and the configuration where it starts.
+    fn pass_all(
+        &self,
+        state: &State<S>,
+        u: &S::Input,
+        mut seen: impl FnMut(usize, &S::Configuration, &Passed<S, M>),
+    ) -> Result<(S::Configuration, SVector<T, M>, Tangent<T, M>), Error> {
         let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let mut tangent = Tangent::identity();
         for number in 0..S::EDGES {
             let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(|error| self.told(state, u, error))?;
+            seen(number, &q, &passed);
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.momentum);
         }
-        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
+        Ok((q, mu, tangent))
     }
 
     fn pass(
@@ -205,10 +203,9 @@ where
         let next = system.advance(q, &increment);
         let edge = system.carried(constants, number, t, q, &increment, &next, u);
         let Some(tangent) = of_edge(&edge) else {
-            return Err(match edge.before_by_end.is_finite() {
-                true => Error::SingularTangent { step_size: self.step_size().to_f64() },
-                false => DERIVATIVE,
-            });
+            let is_finite = edge.before_by_end.is_finite();
+            let step_size = self.step_size().to_f64();
+            return Err(if is_finite { Error::SingularTangent { step_size } } else { DERIVATIVE });
         };
         Ok(Passed { increment, next, edge, tangent })
     }
@@ -233,7 +230,6 @@ where
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent).
-    #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
     pub fn step_sensitivity<const P: usize>(
         &self,
         state: &State<S>,
@@ -248,7 +244,6 @@ where
     ///
     /// # Errors
     /// As [`step_tangent_with`](Self::step_tangent_with).
-    #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
     pub fn step_sensitivity_with<const P: usize>(
         &self,
         state: &State<S>,
@@ -257,20 +252,14 @@ where
     where
         S: Sensitive<M, P>,
     {
-        let (mut q, mut mu) = (*state.configuration(), state.momentum());
-        let (mut tangent, mut sensitivity) = (Tangent::identity(), Sensitivity::zero());
-        for number in 0..S::EDGES {
-            let t = state.time.now();
-            let passed = self.pass(number, t, &q, &mu, u).map_err(|error| self.told(state, u, error))?;
-            let (before, after) =
-                self.system().edge_slopes(self.constants(), number, t, &q, &passed.increment, &passed.next, u);
-            let motion = -times(&passed.tangent.motion_by_momentum, &before);
-            let of_edge = Sensitivity { motion, momentum: after + times(&passed.edge.after_by_end, &motion) };
-            sensitivity = sensitivity.after(&passed.tangent, &of_edge);
-            tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
-            (q, mu) = (passed.next, passed.edge.momentum);
-        }
-        if !(sensitivity.motion.is_finite() && sensitivity.momentum.is_finite()) {
+        let mut sensitivity = Sensitivity::zero();
+        let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
+            let slopes = self.system().edge_slopes(self.constants(), number, state.time.now(), q, increment, next, u);
+            let motion = -times(&tangent.motion_by_momentum, &slopes.0);
+            let of_edge = Sensitivity { motion, momentum: slopes.1 + times(&edge.after_by_end, &motion) };
+            sensitivity = sensitivity.after(tangent, &of_edge);
+        })?;
+        if !(sensitivity.motion, sensitivity.momentum).is_finite() {
             return Err(Error::NotFinite { name: "the sensitivity of the step" });
         }
         Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?, sensitivity))

@@ -9,20 +9,15 @@ use core::iter::FusedIterator;
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
 pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
     stepper: &'a Stepper<S, M>,
-    cursor: Cursor<S, M>,
-}
-
-/// Where the iterator stands.
-enum Cursor<S: Clebsch, M: Method<S>> {
-    Start(State<S, M>),
-    After(State<S, M>),
-    End,
+    /// The start, or the state that has been asked for last; `None` after an error.
+    state: Option<State<S, M>>,
+    has_started: bool,
 }
 
 impl<'a, S: Clebsch, M: Method<S>> Trajectory<'a, S, M> {
     #[inline]
     pub(crate) fn new(stepper: &'a Stepper<S, M>, start: State<S, M>) -> Self {
-        Self { stepper, cursor: Cursor::Start(start) }
+        Self { stepper, state: Some(start), has_started: false }
     }
 }
 
@@ -31,15 +26,9 @@ impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let item = match &self.cursor {
-            Cursor::Start(start) => Ok(*start),
-            Cursor::After(state) => self.stepper.step(state),
-            Cursor::End => return None,
-        };
-        self.cursor = match item {
-            Ok(state) => Cursor::After(state),
-            Err(_) => Cursor::End,
-        };
+        let state = self.state.as_ref()?;
+        let item = if self.has_started { self.stepper.step(state) } else { Ok(*state) };
+        (self.state, self.has_started) = (item.ok(), true);
         Some(item)
     }
 }
@@ -48,21 +37,16 @@ impl<S: Clebsch, M: Method<S>> FusedIterator for Trajectory<'_, S, M> {}
 
 impl<S: Clebsch, M: Method<S>> Clone for Trajectory<'_, S, M> {
     fn clone(&self) -> Self {
-        let cursor = match &self.cursor {
-            Cursor::Start(state) => Cursor::Start(*state),
-            Cursor::After(state) => Cursor::After(*state),
-            Cursor::End => Cursor::End,
-        };
-        Self { stepper: self.stepper, cursor }
+        Self { ..*self }
     }
 }
 
 impl<S: Clebsch, M: Method<S>> Debug for Trajectory<'_, S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match &self.cursor {
-            Cursor::Start(state) => f.debug_tuple("Trajectory from").field(state).finish(),
-            Cursor::After(state) => f.debug_tuple("Trajectory after").field(state).finish(),
-            Cursor::End => f.write_str("Trajectory ended"),
+        let name = if self.has_started { "Trajectory after" } else { "Trajectory from" };
+        match &self.state {
+            Some(state) => f.debug_tuple(name).field(state).finish(),
+            None => f.write_str("Trajectory ended"),
         }
     }
 }

@@ -15,6 +15,7 @@ use nalgebra::{SMatrix, SVector};
 /// increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
+#[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
 pub trait Variational<const M: usize>:
     Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>, Scheme: Edges<Self, M>>
 {
@@ -56,7 +57,6 @@ pub trait Variational<const M: usize>:
     }
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
-    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     #[inline]
     fn edge(
         &self,
@@ -72,7 +72,6 @@ pub trait Variational<const M: usize>:
     }
 
     /// [`edge`](Self::edge) without derivatives of the momenta.
-    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     #[inline]
     fn momenta(
         &self,
@@ -89,7 +88,6 @@ pub trait Variational<const M: usize>:
 
     /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
     /// Together they say everything, and nothing of the size of inertia/h cancels.
-    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     #[inline]
     fn carried(
         &self,

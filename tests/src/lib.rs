@@ -23,3 +23,4 @@ pub mod fixtures {
 
 pub mod oracle;
 pub mod scenes;
+pub mod stepping;

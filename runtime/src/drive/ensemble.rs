@@ -5,7 +5,7 @@ mod chunk;
 mod threads;
 
 use super::Drive;
-use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Stepper, Time};
+use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, State, Stepper, Time};
 use alloc::vec::Vec;
 use chunk::Chunk;
 use core::convert::Infallible;
@@ -47,7 +47,7 @@ use core::fmt::{self, Debug, Display, Formatter};
 pub struct Ensemble<S: Clebsch, M: Method<S> = Declared> {
     /// One for all chunks, or one for each.
     steppers: Vec<Stepper<S, M>>,
-    chunks: Vec<Chunk<S, M>>,
+    chunks: Vec<Chunk<State<S, M>>>,
     bodies: usize,
     steps: u64,
 }
@@ -225,7 +225,7 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
 }
 
 /// The stepper, the chunk and the lane of a body.
-type Place<'a, S, M> = (&'a Stepper<S, M>, &'a Chunk<S, M>, usize);
+type Place<'a, S, M> = (&'a Stepper<S, M>, &'a Chunk<State<S, M>>, usize);
 
 /// The bodies of an [`Ensemble`], each by (q, N).
 pub struct Bodies<'a, S: Clebsch, M: Method<S> = Declared> {

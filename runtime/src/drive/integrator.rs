@@ -1,6 +1,7 @@
 //! A stepper with one state.
 
 use super::Drive;
+use crate::fields::getters;
 use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 
@@ -68,16 +69,12 @@ impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
         *(if self.is_second { second } else { first }) = state;
     }
 
-    /// The system with its step size.
-    #[inline]
-    pub fn stepper(&self) -> &Stepper<S, M> {
-        &self.stepper
-    }
+    getters! {
+        /// The system with its step size.
+        ref stepper: Stepper<S, M>;
 
-    /// The number of steps that it has made, at most 2⁶⁴ − 1.
-    #[inline]
-    pub fn steps(&self) -> u64 {
-        self.steps
+        /// The number of steps that it has made, at most 2⁶⁴ − 1.
+        copy steps: u64;
     }
 
     /// One step, as [`Stepper::step`] makes it.

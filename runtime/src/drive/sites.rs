@@ -1,10 +1,12 @@
 //! The state of a power in storage of the user's choice.
 
 use super::Drive;
+use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
-use crate::scheme::Scheme;
+use crate::scheme::{At, Scheme};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
+use num_traits::Zero;
 
 /// Where [`Sites`] keep what they need: for each site a configuration q and a momentum N, and room for the next state.
 ///
@@ -74,16 +76,24 @@ where
     momenta: [Momenta; 4],
 }
 
-/// A slice as the array that it is, of N entries.
-macro_rules! sites {
-    ($slice:expr, $n:ident) => {
-        match $slice.try_into() {
-            Ok(array) => array,
-            Err(_) => {
-                return Err(SiteError { site: None, error: Error::NumberOfSites { found: $slice.len(), sites: $n } })
-            }
-        }
-    };
+/// A slice as the array of N entries that it is.
+fn array<V, const N: usize>(slice: &[V]) -> Result<&[V; N], SiteError> {
+    slice.try_into().map_err(|_| wrong_length::<N>(slice.len()))
+}
+
+/// The same of a slice to write to.
+fn array_mut<V, const N: usize>(slice: &mut [V]) -> Result<&mut [V; N], SiteError> {
+    let found = slice.len();
+    slice.try_into().map_err(|_| wrong_length::<N>(found))
+}
+
+fn wrong_length<const N: usize>(found: usize) -> SiteError {
+    of_all(Error::NumberOfSites { found, sites: N })
+}
+
+/// An error at no single site.
+fn of_all(error: Error) -> SiteError {
+    SiteError { site: None, error }
 }
 
 impl<P: Clebsch> Stepper<P> {
@@ -100,7 +110,16 @@ impl<P: Clebsch> Stepper<P> {
         Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
         Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
     {
-        Sites::new(self, storage)
+        let SiteStorage { configuration, momentum, more_points: [p1, p2], more_momenta: [m1, m2, m3] } = storage;
+        let (points, momenta) = ([configuration, p1, p2], [momentum, m1, m2, m3]);
+        let lengths = points.iter().map(|one| one.as_ref().len()).chain(momenta.iter().map(|one| one.as_ref().len()));
+        if let Some(found) = { lengths }.find(|&found| found != N) {
+            return Err(wrong_length::<N>(found));
+        }
+        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, points, momenta };
+        sites.check()?;
+        sites.kick()?;
+        Ok(sites)
     }
 }
 
@@ -110,28 +129,12 @@ where
     Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
 {
-    fn new(stepper: Stepper<P>, storage: SiteStorage<Points, Momenta>) -> Result<Self, SiteError> {
-        let SiteStorage { configuration, momentum, more_points: [p1, p2], more_momenta: [m1, m2, m3] } = storage;
-        let (points, momenta) = ([configuration, p1, p2], [momentum, m1, m2, m3]);
-        let time = Time::at(num_traits::Zero::zero());
-        let mut sites = Self { stepper, time, steps: 0, points, momenta };
-        let lengths = (sites.points.iter().map(|one| one.as_ref().len()))
-            .chain(sites.momenta.iter().map(|one| one.as_ref().len()));
-        if let Some(found) = { lengths }.find(|&found| found != N) {
-            return Err(SiteError { site: None, error: Error::NumberOfSites { found, sites: N } });
-        }
-        sites.check()?;
-        sites.kick()?;
-        Ok(sites)
-    }
-
     /// Each site as a state of its own.
     fn check(&self) -> Result<(), SiteError> {
         let h = self.stepper.step_size();
         for (i, (q, mu)) in self.configuration().iter().zip(self.momentum()).enumerate() {
-            let at = |error| SiteError { site: Some(i), error };
-            let site = self.stepper.system().site(i).into_stepper(h).map_err(at)?;
-            site.state(*q, *mu).map_err(at)?;
+            let site = self.stepper.system().site(i).into_stepper(h).and_then(|site| site.state(*q, *mu));
+            site.map_err(|error| SiteError { site: Some(i), error })?;
         }
         Ok(())
     }
@@ -139,14 +142,12 @@ where
     /// The kick at the configuration, for the steps that start there.
     fn kick(&mut self) -> Result<(), SiteError> {
         let [q, _, gradient] = &mut self.points;
-        let [_, next, kick, _] = &mut self.momenta;
-        let (q, gradient): (&[Point<P, N>; N], &mut [Point<P, N>; N]) =
-            (sites!(q.as_ref(), N), sites!(gradient.as_mut(), N));
-        let kick: &mut [SiteMomentum<P, N>; N] = sites!(kick.as_mut(), N);
         // what is in the room for the next momenta does not matter
-        let next: &mut [SiteMomentum<P, N>; N] = sites!(next.as_mut(), N);
+        let [_, next, kick, _] = &mut self.momenta;
         let weight = self.stepper.step_size() * Scalar::from_f64(if P::ORDER == 1 { 0.0 } else { -0.5 });
-        self.stepper.system().kick_into(self.time.now(), q, weight, gradient, kick, next);
+        let (gradient, kick, next) =
+            (array_mut(gradient.as_mut())?, array_mut(kick.as_mut())?, array_mut(next.as_mut())?);
+        self.stepper.system().kick_into(self.time.now(), array(q.as_ref())?, weight, gradient, kick, next);
         Ok(())
     }
 
@@ -155,32 +156,21 @@ where
     /// # Errors
     /// Those of [`Stepper::step`], with the site; the state is what it was.
     pub fn step(&mut self) -> Result<(), SiteError> {
-        let (system, h) = (self.stepper.system(), self.stepper.step_size());
+        let At { system, constants, t, .. } = self.stepper.at(self.time.now());
+        let h = self.stepper.step_size();
         let [q, next, gradient] = &mut self.points;
         let [mu, moved, kick, next_kick] = &mut self.momenta;
-        let (q, next): (&[Point<P, N>; N], &mut [Point<P, N>; N]) = (sites!(q.as_ref(), N), sites!(next.as_mut(), N));
-        let gradient: &mut [Point<P, N>; N] = sites!(gradient.as_mut(), N);
-        let (mu, kick): (&[SiteMomentum<P, N>; N], &[SiteMomentum<P, N>; N]) =
-            (sites!(mu.as_ref(), N), sites!(kick.as_ref(), N));
-        let (moved, next_kick): (&mut [SiteMomentum<P, N>; N], &mut [SiteMomentum<P, N>; N]) =
-            (sites!(moved.as_mut(), N), sites!(next_kick.as_mut(), N));
-        let t = self.time.now();
+        let (q, mu) = (array(q.as_ref())?, array(mu.as_ref())?);
+        let (next, moved) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
+        let (gradient, next_kick) = (array_mut(gradient.as_mut())?, array_mut(next_kick.as_mut())?);
         let first = P::ORDER == 1;
-        let start = if first { None } else { Some(kick) };
-        if let Err((site, error)) = system.drift_into(
-            P::constants_of_sites(P::Scheme::whole(self.stepper.constants())),
-            t,
-            q,
-            mu,
-            start,
-            next,
-            moved,
-        ) {
-            return Err(SiteError { site: Some(site), error });
-        }
+        let start = if first { None } else { Some(array(kick.as_ref())?) };
+        let constants = P::Scheme::whole(constants);
+        let drifted = system.drift_into(constants, t, q, mu, start, next, moved);
+        drifted.map_err(|(site, error)| SiteError { site: Some(site), error })?;
         let time = self.time.after_step(h);
         if !time.now().is_finite() {
-            return Err(SiteError { site: None, error: Error::NotFinite { name: "the time after the step" } });
+            return Err(of_all(Error::NotFinite { name: "the time after the step" }));
         }
         let weight = h * Scalar::from_f64(if first { -1.0 } else { -0.5 });
         if !system.kick_into(t + h, next, weight, gradient, next_kick, moved).is_finite()
@@ -213,14 +203,12 @@ where
         self.momenta[0].as_ref()
     }
 
-    /// The system with its step size.
-    pub fn stepper(&self) -> &Stepper<P> {
-        &self.stepper
-    }
+    getters! {
+        /// The system with its step size.
+        ref stepper: Stepper<P>;
 
-    /// The number of steps that it has made, at most 2⁶⁴ − 1.
-    pub fn steps(&self) -> u64 {
-        self.steps
+        /// The number of steps that it has made, at most 2⁶⁴ − 1.
+        copy steps: u64;
     }
 
     /// The storage, with the present state in front.
@@ -234,11 +222,9 @@ where
     /// # Errors
     /// None, but where the storage has changed its length.
     pub fn energy(&self) -> Result<P::Scalar, SiteError> {
-        let q: &[Point<P, N>; N] = sites!(self.configuration(), N);
-        let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
-        let (system, t) = (self.stepper.system(), self.time.now());
-        Ok(system.power_kinetic_energy(P::constants_of_sites(P::Scheme::whole(self.stepper.constants())), t, q, mu)
-            + system.potential_of_sites(t, q))
+        let (q, mu) = (array(self.configuration())?, array(self.momentum())?);
+        let At { system, constants, t, .. } = self.stepper.at(self.time.now());
+        Ok(system.power_kinetic_energy(P::Scheme::whole(constants), t, q, mu) + system.potential_of_sites(t, q))
     }
 
     /// The conserved momenta, sums over all sites.
@@ -247,11 +233,9 @@ where
     /// None, but where the storage has changed its length.
     pub fn conserved(&self) -> Result<P::Conserved, SiteError>
     where
-        P: Conserves + Clebsch<Configuration = [Point<P, N>; N], Momentum = [SiteMomentum<P, N>; N]>,
+        P: Conserves,
     {
-        let q: &[Point<P, N>; N] = sites!(self.configuration(), N);
-        let mu: &[SiteMomentum<P, N>; N] = sites!(self.momentum(), N);
-        Ok(self.stepper.system().conserved(q, mu))
+        Ok(self.stepper.system().conserved(array(self.configuration())?, array(self.momentum())?))
     }
 }
 

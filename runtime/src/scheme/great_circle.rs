@@ -87,10 +87,7 @@ pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize> {
     ) -> Result<(), Error>;
 }
 
-impl<S, M: Method<S>, const N: usize> Turns<S, M, N> for Shared
-where
-    S: GreatCircles<M, Configuration = SVector<<S as Clebsch>::Scalar, N>>,
-{
+impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usize> Turns<S, M, N> for Shared {
     type Plane = Point<S, N>;
     type Gradient = Point<S, N>;
 
@@ -133,10 +130,7 @@ where
     }
 }
 
-impl<S, M: Method<S>, const N: usize> Turns<S, M, N> for Apart
-where
-    S: GreatCircles<M, Configuration = SVector<<S as Clebsch>::Scalar, N>>,
-{
+impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usize> Turns<S, M, N> for Apart {
     type Plane = Point<S, N>;
     type Gradient = ();
 
@@ -183,11 +177,7 @@ impl<S: GreatCircles<M>, M: Method<S>, const N: usize> Turns<S, M, N> for Unpush
 
 impl<S, M: Method<S>, C: Turns<S, M, N>, const N: usize, const D: usize> Scheme<S, M> for GreatCircle<C>
 where
-    S: GreatCircles<
-            M,
-            Configuration = SVector<<S as Clebsch>::Scalar, N>,
-            Momentum = SVector<<S as Clebsch>::Scalar, D>,
-        >,
+    S: GreatCircles<M, Configuration = Point<S, N>, Momentum = Point<S, D>>,
 {
     type Held = C::Plane;
     type Left = C::Gradient;

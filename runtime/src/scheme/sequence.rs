@@ -57,28 +57,9 @@ pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
 pub struct InSequence<P>(PhantomData<P>);
 
 impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSequence<P> {
-    type Held = S::Momentum;
     type Left = LeftBy<S, M, P::Carry>;
-    type Constants = M::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<M::Constants, Error> {
-        M::constants(system, h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &M::Constants) -> &M::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
-        *held
-    }
+    momentum_is_held!(M);
 
     #[inline]
     fn left(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left {

@@ -3,7 +3,7 @@
 use super::{At, Before, Pair, Parted, Scheme};
 use crate::parts::{F, Mu, Q};
 use crate::power::Power;
-use crate::{Clock, Error, Space, Time};
+use crate::{Clock, Declared, Error, Space, Time};
 use core::marker::PhantomData;
 
 /// Half a kick, the moves, half a kick.
@@ -100,28 +100,9 @@ impl<M, const N: usize> LeftKick<[M; N]> for () {
 }
 
 impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<K, N> {
-    type Held = S::Momentum;
     type Left = K::Left;
-    type Constants = S::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<S::Constants, Error> {
-        system.constants(h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &S::Constants) -> &S::Constants {
-        constants
-    }
-
-    #[inline(always)]
-    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
-        *mu
-    }
-
-    #[inline(always)]
-    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
-        *held
-    }
+    momentum_is_held!(Declared);
 
     #[inline]
     fn left(at: At<'_, S>, q: &Q<S>, _: &Mu<S>) -> K::Left {

@@ -9,25 +9,9 @@ use crate::{Clebsch, Error, Method};
 pub struct Unstepped;
 
 impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
-    type Held = S::Momentum;
     type Left = ();
-    type Constants = ();
 
-    fn constants(system: &S, h: S::Scalar) -> Result<(), Error> {
-        M::constants(system, h)
-    }
-
-    fn whole(constants: &()) -> &() {
-        constants
-    }
-
-    fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
-        *mu
-    }
-
-    fn momentum(_: &Q<S>, held: &Mu<S>) -> Mu<S> {
-        *held
-    }
+    momentum_is_held!(M);
 
     fn left(_: At<'_, S, M>, _: &Q<S>, _: &Mu<S>) {}
 

@@ -1,9 +1,9 @@
 //! The derived formulas as methods of a stepper, which knows the step size.
 
-use super::Stepper;
-use super::whole_or_lane;
+use super::{Stepper, first_without, whole_or_lane};
+use crate::parameters::check_finite;
 use crate::scheme::Scheme;
-use crate::{Clebsch, Error, Mask, Method, Scalar, Space};
+use crate::{Clebsch, Error, Method, Scalar, Space};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -36,18 +36,13 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         q: &S::Configuration,
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
-        for (is_finite, name) in
-            [(t.is_finite(), "the time"), (q.is_finite(), "the configuration"), (mu.is_finite(), "the momentum")]
-        {
-            if !is_finite {
-                return Err(Error::NotFinite { name });
-            }
-        }
+        check_finite("the time", &t)?;
+        check_finite("the configuration", q)?;
+        check_finite("the momentum", mu)?;
         match M::Scheme::inverse_legendre(self.at(t), q, mu) {
             Ok(element) if element.is_finite() => Ok(element),
             Ok(element) => {
-                let finite = element.finite();
-                let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
+                let lane = first_without::<S::Scalar>(element.finite());
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the group element of the step" }))
             }
             Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),

@@ -1,8 +1,10 @@
 //! What is read from a stepper and its states.
 
 use super::Stepper;
+use crate::fields::getters;
+use crate::parameters::check_finite;
 use crate::scheme::{Constants, Scheme};
-use crate::{Clebsch, Conserves, Error, Method, Space, State, Time};
+use crate::{Clebsch, Conserves, Error, Method, State, Time};
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Kinetic energy plus potential, at the time of the state.
@@ -27,10 +29,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.h
     }
 
-    /// The system.
-    #[inline]
-    pub fn system(&self) -> &S {
-        &self.system
+    getters! {
+        /// The system.
+        ref system: S;
     }
 
     /// The momentum nearest to `mu` that motions of q can have: the orthogonal projection of its components to 𝔤_q^⊥.
@@ -42,9 +43,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub fn project(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
         self.check_configuration(q)?;
         let projected = self.system.project_momentum(q, mu);
-        if !(mu.is_finite() && projected.is_finite()) {
-            return Err(Error::NotFinite { name: "the momentum" });
-        }
+        check_finite("the momentum", &(*mu, projected))?;
         Ok(projected)
     }
 

@@ -1,6 +1,7 @@
 //! Momenta of steps of first order, which are staggered: read at the time of their configuration, and started from there.
 
-use super::{Stepper, check_gradient, check_momentum, check_time};
+use super::{GRADIENT, Stepper, check_momentum};
+use crate::parameters::check_finite;
 use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, Error, Method, Space, State, Time};
 use num_traits::Zero;
@@ -83,11 +84,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.check_configuration(&q)?;
         check_momentum(&self.system, &q, &mu)?;
         let stagger = M::stagger(&self.system, self.h, t, &q);
-        check_gradient(&stagger)?;
+        check_finite(GRADIENT, &stagger)?;
         let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);
-        if !staggered.is_finite() {
-            return Err(Error::NotFinite { name: "the momentum half a kick ahead" });
-        }
+        check_finite("the momentum half a kick ahead", &staggered)?;
         self.made_state(t, q, staggered)
     }
 }
@@ -99,7 +98,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
     /// # Errors
     /// As [`staggered_state`](Self::staggered_state); [`Error::NotFinite`] for the time too.
     pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
-        check_time(t)?;
+        check_finite("the time", &t)?;
         self.checked_staggered_state(t, q, mu)
     }
 }

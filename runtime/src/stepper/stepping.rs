@@ -1,6 +1,7 @@
 //! State after state.
 
-use super::{GRADIENT, Stepper, check_momentum, check_time, whole_or_lane};
+use super::{GRADIENT, Stepper, check_momentum, first_without, whole_or_lane};
+use crate::parameters::check_finite;
 use crate::scheme::{Left, Scheme};
 use crate::{Clebsch, Clock, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
@@ -42,15 +43,11 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let start = (configuration, held, &left);
         let none = S::Input::origin();
         let advanced = M::Scheme::steps(self.at(time.now()), self.h, steps, start, &none);
-        let (configuration, held, left) = match advanced {
-            Ok(next) => next,
-            Err(error) => return Err(self.refused_after(state, steps, error)),
-        };
+        let (configuration, held, left) = advanced.map_err(|error| self.refused_after(state, steps, error))?;
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
         let next = State { time, configuration, held, left, h: self.h };
         if !next.is_finite() {
-            let error = self.beyond(&next);
-            return Err(self.refused_after(state, steps, error));
+            return Err(self.refused_after(state, steps, self.beyond(&next)));
         }
         Ok(next)
     }
@@ -70,9 +67,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
     #[inline(always)]
     pub fn step_with(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
-        if size_of::<S::Input>() > 0 && !u.is_finite() {
-            return Err(Error::NotFinite { name: "the input" });
-        }
+        check_input::<S>(u)?;
         // Copy the state on the cold path only: passing it by reference would force it into memory in every step. Build the error there too: otherwise
         // LLVM splits the loads of a successful result.
         let Ok(next) = self.attempt(state, u) else {
@@ -92,18 +87,18 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Those of [`step_with`](Self::step_with).
     #[inline]
     pub(crate) fn step_into(&self, state: &State<S, M>, u: &S::Input, next: &mut State<S, M>) -> Result<(), Error> {
-        if size_of::<S::Input>() > 0 && !u.is_finite() {
-            return Err(Error::NotFinite { name: "the input" });
-        }
+        check_input::<S>(u)?;
         let State { configuration: q, held, left, .. } = state;
         let at = self.at(state.time.now());
         let into = (&mut next.configuration, &mut next.held, &mut next.left);
-        let stepped = if size_of::<Left<S, M>>() == 0 || state.h == self.h {
-            M::Scheme::step_into(at, (q, held, left), u, into)
+        let anew;
+        let left = if self.has_left(state) {
+            left
         } else {
-            M::Scheme::step_into(at, (q, held, &self.left_of(state)), u, into)
+            anew = self.left_of(state);
+            &anew
         };
-        if stepped.is_err() {
+        if M::Scheme::step_into(at, (q, held, left), u, into).is_err() {
             return Err(self.refused(state, u));
         }
         (next.time, next.h) = (state.time.after_step(self.h), self.h);
@@ -118,7 +113,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
     /// # Errors
     /// As [`state`](Self::state); [`Error::NotFinite`] for the time too.
     pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
-        check_time(t)?;
+        check_finite("the time", &t)?;
         self.checked_state(t, q, mu)
     }
 }
@@ -135,8 +130,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let left = M::Scheme::left(self.at(t), &q, &mu);
         if !left.is_finite() {
             let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
-            let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
-            return Err(Error::NotFinite { name });
+            return Err(Error::NotFinite {
+                name: if has_gradient { "the velocity of this momentum" } else { GRADIENT },
+            });
         }
         let held = M::Scheme::held(&q, &mu);
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
@@ -171,10 +167,16 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         }
     }
 
+    /// Whether what a state has left is for steps of this size.
+    #[inline(always)]
+    fn has_left(&self, state: &State<S, M>) -> bool {
+        size_of::<Left<S, M>>() == 0 || state.h == self.h
+    }
+
     /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
     #[inline]
     fn left_of(&self, state: &State<S, M>) -> Left<S, M> {
-        if size_of::<Left<S, M>>() == 0 || state.h == self.h {
+        if self.has_left(state) {
             return state.left;
         }
         let State { time, configuration, left, .. } = state;
@@ -197,23 +199,22 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[cold]
     #[inline(never)]
     fn refused_after(&self, start: &State<S, M>, steps: usize, known: Error) -> Error {
-        let mut state = *start;
-        for _ in 0..steps {
-            match self.step(&state) {
-                Ok(next) => state = next,
-                Err(error) => return error,
-            }
-        }
-        whole_or_lane::<S::Scalar>(0, known)
+        let failed = self.trajectory(*start).take(steps.saturating_add(1)).find_map(Result::err);
+        failed.unwrap_or_else(|| whole_or_lane::<S::Scalar>(0, known))
     }
 
     /// The error of a step whose state is not finite in some lane.
     #[cold]
     fn beyond(&self, next: &State<S, M>) -> Error {
-        let finite = next.finite();
-        let lane = (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)).unwrap_or(0);
+        let lane = first_without::<S::Scalar>(next.finite());
         whole_or_lane::<S::Scalar>(lane, self.overflow(next, lane))
     }
+}
+
+/// The input is finite.
+#[inline(always)]
+fn check_input<S: Clebsch>(u: &S::Input) -> Result<(), Error> {
+    if size_of::<S::Input>() == 0 || u.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the input" }) }
 }
 
 /// The impulse `kept` in the lanes of the mask, `anew` in the others.

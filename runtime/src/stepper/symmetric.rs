@@ -1,8 +1,9 @@
 //! States on the cotangent bundle.
 
-use super::{Stepper, check_time, whole_or_lane};
+use super::{Stepper, first_without, whole_or_lane};
+use crate::parameters::check_finite;
 use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Space, Time};
+use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Time};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -28,10 +29,11 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         };
         let next = CotangentState { time: time.after_step(self.h), configuration, covector };
         let finite: <S::Scalar as Scalar>::Mask = next.finite();
-        match (0..S::Scalar::LANES).find(|&lane| !finite.lane(lane)) {
-            None => Ok(next),
-            Some(lane) => Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) })),
+        if finite.all() {
+            return Ok(next);
         }
+        let lane = first_without::<S::Scalar>(finite);
+        Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) }))
     }
 
     fn checked_cotangent_state(
@@ -41,9 +43,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         p: S::Configuration,
     ) -> Result<CotangentState<S>, Error> {
         self.check_configuration(&q)?;
-        if !p.is_finite() {
-            return Err(Error::NotFinite { name: "the covector" });
-        }
+        check_finite("the covector", &p)?;
         Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })
     }
 }
@@ -60,7 +60,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
         q: S::Configuration,
         p: S::Configuration,
     ) -> Result<CotangentState<S>, Error> {
-        check_time(t)?;
+        check_finite("the time", &t)?;
         self.checked_cotangent_state(t, q, p)
     }
 }

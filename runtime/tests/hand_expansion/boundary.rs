@@ -1,7 +1,6 @@
 //! Fixed endpoints for a body and a top: attitudes are given, momenta are found.
 
 use crate::{HeavyTop, assert_near, attitude, body, last, top};
-use clebsch::__private::Stepping;
 use clebsch::{Boundary, Clebsch, Error, Extremal, Guess, Node, Variational};
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 
@@ -106,7 +105,7 @@ fn the_action_is_critical_and_least() -> Result<(), Error> {
     let extremal =
         boundary.solve(&start, &(start * rotation(Vector3::new(0.9, -0.4, 0.6))), Guess::Geodesic, &mut path)?;
     let system = stepper.system();
-    let constants = system.step_constants(h)?;
+    let constants = system.constants(h)?;
     let lagrangian = |q: &Matrix3<f64>, d: &Matrix3<f64>| {
         system.edge(&constants, 0, 0.0, q, d, &system.advance(q, d), &()).lagrangian
     };

@@ -2,7 +2,6 @@
 //!
 //! Both sides are sums of a few dozen products of numbers of size one to ten (h = 0.1 divides them), so they agree to 1e-13.
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
@@ -18,6 +17,7 @@ use clebsch_tests::oracle::body::{gravity_torque, mass_matrix};
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{components, hat, skew, vee};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix4, SMatrix, SVector, Vector3, Vector4, Vector6};
 
 const H: f64 = 0.1;

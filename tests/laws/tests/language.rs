@@ -4,9 +4,9 @@
 
 #![allow(missing_docs)]
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Vector3};
 
 /// The potential of a particle, once derived and once as it stands.

@@ -5,13 +5,13 @@
 
 #![allow(missing_docs)]
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Scalar};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::oracle::dual::Dual;
 use clebsch_tests::oracle::near::{assert_near, distance};
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{hat, vee};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3};
 
 const H: f64 = 0.1;

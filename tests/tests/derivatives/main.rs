@@ -11,7 +11,7 @@ mod kernels;
 mod program;
 
 use by_hand::{ByHand, slope};
-use clebsch::__private::{Scheme, Stepping};
+use clebsch::__private::Scheme;
 use clebsch::Clebsch;
 use clebsch_compiler::Graph;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
@@ -19,6 +19,7 @@ use clebsch_tests::fixtures::neumann::Neumann;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::two_bodies::TwoBodies;
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 use program::{Values, program};
 

@@ -1,11 +1,11 @@
 //! What every step keeps, and what belongs together.
 
 use crate::systems::{eighth, fourth, sixth};
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Conserved, Conserves, Error, Stepper};
 use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::hat;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 const MOMENTS: Vector3<f64> = Vector3::new(1.1, 2.0, 2.6);

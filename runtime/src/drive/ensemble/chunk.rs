@@ -3,46 +3,32 @@
 use crate::scheme::Held;
 use crate::{Body, Clebsch, Error, Mask, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
-use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
 
 /// Chunks that take turns: what one waits for, another one has the time to do.
 pub const TOGETHER: usize = 4;
 
 /// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.
-pub struct Chunk<S: Clebsch, M: Method<S>> {
-    state: State<S, M>,
+#[derive(Debug)]
+pub struct Chunk<X> {
+    state: X,
     /// The lanes of bodies that are stepped, one bit for each. The momenta of the others are NaN, which ends their solve at once.
     live: u16,
-    failed: Vec<Failed<S, M>>,
+    failed: Vec<Failed<X>>,
 }
 
 /// A body that stays where it is.
-struct Failed<S: Clebsch, M: Method<S>> {
+#[derive(Debug)]
+struct Failed<X> {
     lane: usize,
     /// The number of steps that it has made.
     step: u64,
     error: Error,
     /// The last state that it reached, in its lane.
-    state: State<S, M>,
+    state: X,
 }
 
-impl<S: Clebsch, M: Method<S>> Debug for Chunk<S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { state, live, failed } = self;
-        f.debug_struct("Chunk").field("state", state).field("live", live).field("failed", failed).finish()
-    }
-}
-
-impl<S: Clebsch, M: Method<S>> Debug for Failed<S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { lane, step, error, state } = self;
-        let mut failed = f.debug_struct("Failed");
-        failed.field("lane", lane).field("step", step).field("error", error).field("state", state).finish()
-    }
-}
-
-impl<S: Clebsch, M: Method<S>> Chunk<S, M> {
+impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     /// From at least one body, and at most one for each lane.
     ///
     /// # Errors
@@ -113,7 +99,7 @@ impl<S: Clebsch, M: Method<S>> Chunk<S, M> {
 /// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
 #[inline]
 pub fn advance<S: Clebsch, M: Method<S>>(
-    chunks: &mut [Chunk<S, M>],
+    chunks: &mut [Chunk<State<S, M>>],
     steppers: &[Stepper<S, M>],
     first: u64,
     steps: u64,

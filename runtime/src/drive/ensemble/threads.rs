@@ -1,7 +1,7 @@
 //! Steps on all cores.
 
 use super::Ensemble;
-use super::chunk::{self, Chunk};
+use super::chunk;
 use crate::{Clebsch, Method, State, Stepper};
 use rayon::prelude::*;
 
@@ -12,7 +12,6 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M>
 where
     State<S, M>: Send,
     Stepper<S, M>: Sync,
-    Chunk<S, M>: Send,
 {
     /// [`advance`](Self::advance) on all threads of the present pool, with the same bits.
     ///

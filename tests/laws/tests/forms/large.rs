@@ -1,8 +1,8 @@
 //! Systems that have one form alone, for they are too large to be written out: their steps keep what theory says that they keep.
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Conserves, Error, F64x4, Space};
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{SMatrix, SVector};
 
 const H: f64 = 0.02;

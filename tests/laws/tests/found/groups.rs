@@ -1,6 +1,5 @@
 //! Section 2.4: other groups, built in and declared.
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::fluid_ellipsoid::FluidEllipsoid;
 use clebsch_tests::fixtures::heisenberg_geodesic::HeisenbergGeodesic;
@@ -10,6 +9,7 @@ use clebsch_tests::fixtures::weighted_sl2::WeightedSl2;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::hat;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};

@@ -1,6 +1,5 @@
 //! Section 2.3: SO(n), SE(3), products.
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::centred_body::CentredBody;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
@@ -12,6 +11,7 @@ use clebsch_tests::oracle::body::mass_matrix;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{components, vee};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector6};
 
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};

@@ -1,10 +1,10 @@
 //! Section 2.6: a potential that no expression holds.
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::harmonics::Harmonics;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::Vector3;
 
 use crate::{H, NEAR, assert_reversible, assert_says};

@@ -1,6 +1,5 @@
 //! Section 2.1: bodies on SO(3) and on unit quaternions.
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::gravity_gradient::GravityGradient;
@@ -15,6 +14,7 @@ use clebsch_tests::oracle::motion::order;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::vee;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};

@@ -1,6 +1,5 @@
 //! Section 2.2: spheres, acted on from the left, in closed form.
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::neumann::Neumann;
 use clebsch_tests::fixtures::paper_pendulum::PaperPendulum;
@@ -10,6 +9,7 @@ use clebsch_tests::fixtures::two_pendulums::TwoPendulums;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{components, skew};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Vector3, Vector4, Vector6};
 
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};

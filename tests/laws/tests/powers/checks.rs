@@ -1,9 +1,9 @@
 //! What holds of the two ways to compile a declaration.
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Power, SiteStorage, Space};
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::SVector;
 
 const H: f64 = 0.02;

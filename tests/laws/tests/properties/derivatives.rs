@@ -6,11 +6,11 @@
 use crate::arbitrary::{attitude, cases, matrix, rotation, vector};
 use crate::bodies::{H, particles, tops};
 use clebsch::__private as private;
-use clebsch::__private::Stepping;
 use clebsch::{Carried, Clebsch, Momenta, Sensitive, Sensitivity, Space, State, Tangent, Variation, Variational};
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::rotation::{hat, vee};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use private::{Link, Price};
 use proptest::prelude::*;

@@ -3,10 +3,10 @@
 
 use crate::arbitrary::{attitude, cases, matrix, rotation, unit, vector};
 use crate::bodies::{H, inertia_of, pendulums, satellites, tops, vehicles};
-use clebsch::__private::Stepping;
 use clebsch::{__private as private, Clebsch, Stepper};
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::rotation::hat;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Matrix4, SVector, Vector3};
 use proptest::prelude::*;
 

@@ -2,10 +2,10 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{particles, tops};
-use clebsch::__private::Stepping;
 use clebsch::{Boundary, Clebsch, Error, Extremal, Guess, Variational, Way};
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

@@ -1,10 +1,9 @@
 //! Powers: each site is a system of its own, tied to the others by kicks alone.
 
 use crate::arbitrary::{cases, unit, vector};
-use clebsch::__private::{
-    At, FreeSites, PowerConstants, Scheme, SitesOfFirstOrder, SitesOfSecondOrder, Stepping, wrapped,
-};
+use clebsch::__private::{At, FreeSites, PowerConstants, Scheme, SitesOfFirstOrder, SitesOfSecondOrder, wrapped};
 use clebsch::{Clebsch, Power, SiteStorage};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

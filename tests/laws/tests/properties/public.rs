@@ -145,7 +145,10 @@ impl Sources {
             match item {
                 Item::Macro(written) => methods_of_macro(written),
                 Item::Trait(item) => methods.map(|method| format!("{}::{method}", item.ident)).collect(),
-                Item::Impl(block) => methods.map(|method| format!("{}::{method}", name_of_type(block))).collect(),
+                Item::Impl(block) => {
+                    let name = name_of_type(block);
+                    methods.chain(getters(block)).map(|method| format!("{name}::{method}")).collect()
+                }
                 _ => methods.collect(),
             }
         });
@@ -213,9 +216,23 @@ fn name_of_type(block: &ItemImpl) -> String {
     }
 }
 
+/// The methods of a type that `getters!` writes: what follows `copy` or `ref`.
+fn getters(block: &ItemImpl) -> Vec<String> {
+    let written = block.items.iter().filter_map(|inner| match inner {
+        ImplItem::Macro(written) if written.mac.path.is_ident("getters") => Some(words(written.mac.tokens.clone())),
+        _ => None,
+    });
+    let named = |words: Vec<String>| {
+        let pairs = words.windows(2).filter(|pair| pair[0] == "copy" || pair[0] == "ref");
+        pairs.map(|pair| pair[1].clone()).collect::<Vec<_>>()
+    };
+    written.flat_map(named).collect()
+}
+
 /// What follows `pub fn` or `pub const fn` in the tokens of a macro.
 fn methods_of_macro(written: &ItemMacro) -> Vec<String> {
-    let Some(name) = &written.ident else { return vec![] };
+    // what `getters!` writes is named where it is used
+    let Some(name) = written.ident.as_ref().filter(|name| *name != "getters") else { return vec![] };
     let tokens = words(written.mac.tokens.clone());
     let starts = tokens.windows(4).filter_map(|four| match four {
         [first, second, method, _] if first == "pub" && second == "fn" => Some(method),

@@ -149,6 +149,7 @@ proptest! {
     #[test]
     fn spaces_are_lists_of_scalars(x in entries(), y in entries()) {
         let (a, b) = (nested(&x), nested(&y));
+        prop_assert_eq!(Space::<f64>::reduce(&a, 0, |_| 1, |a, b| a + b), 16);
         let mapped: Vec<f64> = x.iter().zip(&y).map(|(x, y)| 2.0 * x - y).collect();
         prop_assert_eq!(Space::<f64>::zip_map(&a, &b, |x, y| 2.0 * x - y), nested(&mapped));
         prop_assert_eq!(Space::<f64>::max_abs(&a), x.iter().fold(0.0, |max, x| f64::max(max, x.abs())));

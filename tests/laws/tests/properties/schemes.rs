@@ -3,7 +3,7 @@
 use crate::arbitrary::{attitude, cases, definite, matrix, vector};
 use crate::bodies::{H, damped_bodies, tops};
 use clebsch::__private::{
-    At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Stepping, Substep, VariedSubstep,
+    At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Substep, VariedSubstep,
 };
 use clebsch::{Clebsch, Error, Variational};
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
@@ -15,6 +15,7 @@ use clebsch_tests::fixtures::sixth_order_top::SixthOrderTop;
 use clebsch_tests::fixtures::split_top::SplitTop;
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, Vector3};
 use proptest::prelude::*;
 

@@ -2,11 +2,12 @@
 
 use crate::arbitrary::{attitude, cases, definite, matrix, unit, vector};
 use crate::bodies::{H, damped_bodies, generic_top, particles, pendulums, satellites, staggered_tops, tops};
-use clebsch::__private::{At, Scheme, Stepping};
+use clebsch::__private::{At, Scheme};
 use clebsch::{Clebsch, Clock, Conserved, Conserves, Error, F64x8, Mask, Scalar, Space, Time};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::split_top::SplitTop;
 use clebsch_tests::oracle::near::assert_near;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 

@@ -1,7 +1,6 @@
 //! Operations on whole matrices, and points on spheres in (q, w): what code of large systems is made of.
 
 use crate::arbitrary::{cases, matrix, vector};
-use clebsch::__private::Stepping;
 use clebsch::__private::{
     At, Blocks, InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection,
     embedded, hat, invert_uniform, kinetic_energy_uniform, matrix_of, momentum_of_tangent, orientation_of_inertia,
@@ -10,6 +9,7 @@ use clebsch::__private::{
 };
 use clebsch::num_dual::Dual64;
 use clebsch::{Clebsch, Error, F64x4, Space};
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
 

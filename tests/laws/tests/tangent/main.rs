@@ -4,12 +4,12 @@
 
 mod systems;
 
-use clebsch::__private::Stepping;
 use clebsch::{Clebsch, Scalar, Sensitive, Sensitivity, Space, Tangent, Variation, Variational};
 use clebsch_tests::oracle::dual::Dual;
 use clebsch_tests::oracle::near::{assert_near, distance};
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::hat;
+use clebsch_tests::stepping::Stepping;
 use nalgebra::{Matrix3, Matrix6, Quaternion, SMatrix, SVector, Vector2, Vector3};
 use std::cell::RefCell;
 

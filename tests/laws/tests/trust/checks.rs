@@ -1,6 +1,5 @@
 //! What has to hold for every system of the table.
 
-use clebsch::__private::Stepping;
 use clebsch::Clebsch;
 use clebsch_tests::oracle::flat::{Flat, far};
 use clebsch_tests::oracle::motion::order;
@@ -8,6 +7,7 @@ use clebsch_tests::oracle::precise::matrix::Matrix;
 use clebsch_tests::oracle::precise::on_itself::OnItself;
 use clebsch_tests::oracle::precise::step::{State, deviation};
 use clebsch_tests::oracle::random::Random;
+use clebsch_tests::stepping::Stepping;
 
 use crate::shapes::Element;
 
