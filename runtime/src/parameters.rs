@@ -11,18 +11,12 @@ use num_traits::{One, Zero};
 /// An inertia without an inverse.
 const SINGULAR: Error = Error::SingularKineticEnergy { condition: f64::INFINITY };
 
-/// Fails with the name of the field if a number in it is NaN or infinite.
-///
-/// # Errors
-/// [`Error::NotFinite`].
+/// [`Error::NotFinite`] with the name of the field if a number in it is NaN or infinite.
 pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
     if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
 }
 
-/// Fails if `matrix` differs from its transpose by more than the round-off of computing it, 1024 ε of its largest entry.
-///
-/// # Errors
-/// [`Error::NotSymmetric`].
+/// [`Error::NotSymmetric`] if `matrix` differs from its transpose by more than the round-off of computing it, 1024 ε of its largest entry.
 pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
     check_lanes::<T>(|lane| {
         let matrix = lane_of(matrix, lane);
@@ -35,10 +29,7 @@ pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &S
     })
 }
 
-/// Fails if `matrix` has an entry off its diagonal.
-///
-/// # Errors
-/// [`Error::NotDiagonal`].
+/// [`Error::NotDiagonal`] if `matrix` has an entry off its diagonal.
 pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
     let off_diagonal = SMatrix::<T, N, N>::from_fn(|i, j| if i == j { T::zero() } else { matrix[(i, j)] });
     check_lanes::<T>(|lane| match off_diagonal.max_abs().lane(lane) {
@@ -47,10 +38,7 @@ pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SM
     })
 }
 
-/// Fails if the length of `vector` differs from one by more than round-off, √ε as for the input of configurations.
-///
-/// # Errors
-/// [`Error::NotUnit`].
+/// [`Error::NotUnit`] if the length of `vector` differs from one by more than round-off, √ε as for the input of configurations.
 pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVector<T, N>) -> Result<(), Error> {
     check_lanes::<T>(|lane| {
         let entries: [T::Lane; N] = from_fn(|i| vector[i].lane(lane));
@@ -64,11 +52,8 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
 
 /// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
 ///
-/// Refused is a matrix whose condition number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for
+/// [`Error::SingularKineticEnergy`] for a matrix whose condition number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for
 /// every diagonal matrix) reaches 1/(N ε): its inverse would have no correct digit.
-///
-/// # Errors
-/// [`Error::SingularKineticEnergy`].
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse = *matrix;
     check_lanes::<T>(|lane| {
@@ -87,9 +72,6 @@ pub struct InertiaInverse<T: Scalar, const N: usize> {
 
 impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
     /// The inverse of Σ.
-    ///
-    /// # Errors
-    /// [`Error::SingularKineticEnergy`].
     pub fn new(inertia: &SMatrix<T, N, N>) -> Result<Self, Error> {
         let matrix = invert(inertia)?;
         let is_zero = |(k, entry): (usize, &T)| k % (N + 1) == 0 || entry.equals(T::zero()).all();
@@ -119,9 +101,6 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
 }
 
 /// 1/κ of the inertia κI.
-///
-/// # Errors
-/// [`Error::SingularKineticEnergy`].
 pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
     let inverse = T::one() / *kappa;
     check_lanes::<T>(|lane| if inverse.lane(lane).is_finite() { Ok(()) } else { Err(SINGULAR) })?;
@@ -129,9 +108,6 @@ pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
 }
 
 /// The sign of det Σ/h.
-///
-/// # Errors
-/// [`Error::SingularKineticEnergy`].
 pub fn orientation_of_inertia<T: Scalar, const N: usize>(
     inertia: &SMatrix<T, N, N>,
     h: T,
@@ -140,9 +116,6 @@ pub fn orientation_of_inertia<T: Scalar, const N: usize>(
 }
 
 /// The sign of κⁿ.
-///
-/// # Errors
-/// [`Error::SingularKineticEnergy`].
 pub fn orientation_of_uniform<T: Scalar>(kappa: T, n: usize) -> Result<Orientation, Error> {
     let kappa = if n.is_multiple_of(2) { kappa * kappa } else { kappa };
     Orientation::of([[kappa]]).ok_or(SINGULAR)

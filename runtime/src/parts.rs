@@ -12,8 +12,9 @@ pub(crate) type Q<S> = <S as Clebsch>::Configuration;
 pub(crate) type F<S> = <S as Clebsch>::Element;
 pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
 pub(crate) type U<S> = <S as Clebsch>::Input;
-/// What no step of S changes, and the coordinates that a solve finds.
-type C<S> = <S as Clebsch>::Constants;
+/// What no step of S changes.
+pub(crate) type C<S> = <S as Clebsch>::Constants;
+/// The coordinates that a solve finds.
 type X<S, M> = <S as Parts<M>>::Coordinates;
 
 /// What all substeps of a step share: how q moves, and what the step is made of.

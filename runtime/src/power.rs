@@ -8,8 +8,8 @@
 
 mod formulas;
 
-use crate::parts::{F, Mu, Q, T};
-use crate::scheme::{self, At, Scheme};
+use crate::parts::{C, F, Mu, Q, Solved, T};
+use crate::scheme::{self, At, Pair, Scheme};
 use crate::space::larger;
 use crate::{Clebsch, Error, Scalar, Space};
 use core::array::from_fn;
@@ -61,9 +61,6 @@ fn plus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
 }
 
 /// What no step of a site changes.
-///
-/// # Errors
-/// Those of [`Clebsch::constants`].
 fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constants<S>, Error> {
     S::Scheme::constants(site, h)
 }
@@ -118,9 +115,6 @@ pub trait Power<const N: usize>:
     fn add_gradient(&self, _t: T<Self>, _q: &Q<Self>, _gradient: &mut Q<Self>) {}
 
     /// The constants of a step of size `h`.
-    ///
-    /// # Errors
-    /// Those of a site.
     fn power_constants(&self, h: T<Self>) -> Result<Constants<Self, N>, Error> {
         const { assert!(N > 0, "a power has at least one site") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
@@ -129,22 +123,10 @@ pub trait Power<const N: usize>:
         Ok(PowerConstants { h, site: site_constants(&self.site(0), h)? })
     }
 
-    /// Φ_F(q), site by site.
-    #[inline]
-    fn act_on_sites(&self, f: &F<Self>, q: &Q<Self>) -> Q<Self> {
-        from_fn(|i| self.site(i).act(&f[i], &q[i]))
-    }
-
-    /// J(q, p), site by site.
-    #[inline]
-    fn momenta_of(&self, q: &Q<Self>, p: &Q<Self>) -> Mu<Self> {
-        from_fn(|i| self.site(i).momentum_map(&q[i], &p[i]))
-    }
-
-    /// Ad*_F μ, site by site.
-    #[inline]
-    fn coadjoint_of_sites(&self, f: &F<Self>, mu: &Mu<Self>) -> Mu<Self> {
-        from_fn(|i| self.site(i).coadjoint(&f[i], &mu[i]))
+    /// What each site gives.
+    #[inline(always)]
+    fn each<R>(&self, mut give: impl FnMut(&Self::Site, usize) -> R) -> [R; N] {
+        from_fn(|i| give(&self.site(i), i))
     }
 
     /// ∂V/∂q.
@@ -202,13 +184,10 @@ pub trait Power<const N: usize>:
     }
 
     /// What a site gives with its constants, which are made anew where sites differ.
-    ///
-    /// # Errors
-    /// Those of `act`, and of the constants of the site.
     #[inline(always)]
     fn at_site<R>(
         &self,
-        c: &Constants<Self, N>,
+        c: &C<Self>,
         i: usize,
         act: impl FnOnce(&Self::Site, &scheme::Constants<Self::Site>) -> Result<R, Error>,
     ) -> Result<R, Error> {
@@ -217,19 +196,16 @@ pub trait Power<const N: usize>:
     }
 
     /// Moves one site with the momentum n.
-    ///
-    /// # Errors
-    /// Those of a step of the site.
     #[inline(always)]
     #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn moved(
         &self,
-        c: &Constants<Self, N>,
+        c: &C<Self>,
         t: T<Self>,
         i: usize,
         q: &Point<Self, N>,
         n: &SiteMomentum<Self, N>,
-    ) -> Result<(Point<Self, N>, SiteMomentum<Self, N>), Error> {
+    ) -> Solved<(Point<Self, N>, SiteMomentum<Self, N>)> {
         self.at_site(c, i, |site, c| {
             let at = At::new(site, c, t);
             let left = SiteScheme::<Self, N>::left(at, q, n);
@@ -247,7 +223,7 @@ pub trait Power<const N: usize>:
     #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(
         &self,
-        c: &Constants<Self, N>,
+        c: &C<Self>,
         t: T<Self>,
         q: &Q<Self>,
         mu: &Mu<Self>,
@@ -266,28 +242,25 @@ pub trait Power<const N: usize>:
     #[inline]
     fn power_legendre(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
         let kick = self.power_kick(t, q, h * Scalar::from_f64(part));
-        from_fn(|i| self.site(i).legendre(h, t, &q[i], &f[i]).zip_map(&kick[i], |momentum, kick| momentum - kick))
+        self.each(|site, i| site.legendre(h, t, &q[i], &f[i]).zip_map(&kick[i], |momentum, kick| momentum - kick))
     }
 
     /// F⁺ℓd, where the kick at the end has the weight `part` of a step.
     #[inline]
     fn power_legendre_next(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
-        let kick = self.power_kick(t + h, &self.act_on_sites(f, q), h * Scalar::from_f64(part));
-        from_fn(|i| plus(&self.site(i).legendre_next(h, t, &q[i], &f[i]), &kick[i]))
+        let kick = self.power_kick(t + h, &self.act(f, q), h * Scalar::from_f64(part));
+        self.each(|site, i| plus(&site.legendre_next(h, t, &q[i], &f[i]), &kick[i]))
     }
 
     /// The elements with this F⁻ℓd, where the kick at the start has the weight `part` of a step.
-    ///
-    /// # Errors
-    /// Those of a site.
     fn power_inverse_legendre(
         &self,
-        c: &Constants<Self, N>,
+        c: &C<Self>,
         t: T<Self>,
         q: &Q<Self>,
         mu: &Mu<Self>,
         part: f64,
-    ) -> Result<F<Self>, Error> {
+    ) -> Solved<F<Self>> {
         let kick = self.power_kick(t, q, c.part(part));
         let mut elements = [Space::origin(); N];
         for (i, element) in elements.iter_mut().enumerate() {
@@ -308,18 +281,15 @@ pub trait Power<const N: usize>:
     }
 
     /// A step of (q, p), whose kicks have these weights of a step.
-    ///
-    /// # Errors
-    /// Those of a step of a site.
     fn power_step_symmetric(
         &self,
-        c: &Constants<Self, N>,
+        c: &C<Self>,
         t: T<Self>,
         q: &Q<Self>,
         p: &Q<Self>,
         start: f64,
         end: f64,
-    ) -> Result<(Q<Self>, Q<Self>), Error> {
+    ) -> Solved<Pair<Self>> {
         let kicked = |p: &Q<Self>, t, q: &Q<Self>, part: f64| -> Q<Self> {
             let (gradient, weight) = (self.slope(t, q), c.part(part));
             from_fn(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
@@ -334,7 +304,7 @@ pub trait Power<const N: usize>:
     }
 
     /// The kinetic energy of all sites.
-    fn power_kinetic_energy(&self, c: &Constants<Self, N>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
+    fn power_kinetic_energy(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
         let mut sum = T::<Self>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
             let energy =
@@ -371,12 +341,6 @@ pub trait Power<const N: usize>:
         let scale = T::<Self>::select(zero.below(most), most, One::one());
         let squares = defects().fold(zero, |sum, defect| sum + (defect / scale) * (defect / scale));
         scale * Scalar::sqrt(squares)
-    }
-
-    /// The momenta that motions of q can have, site by site.
-    #[inline]
-    fn projected(&self, q: &Q<Self>, mu: &Mu<Self>) -> Mu<Self> {
-        from_fn(|i| self.site(i).project_momentum(&q[i], &mu[i]))
     }
 }
 

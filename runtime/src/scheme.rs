@@ -123,9 +123,6 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     type Constants: Clone + Debug;
 
     /// Checks the parameters and computes what no step of the size h changes.
-    ///
-    /// # Errors
-    /// Those of [`Method::constants`].
     fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error>;
 
     /// The constants of one step of the whole size.
@@ -159,9 +156,6 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     -> Result<Parted<S, Self, M>, Error>;
 
     /// The same step, into the place of another state. After an error that state is unspecified.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
     #[inline]
     fn step_into(
         at: AtOf<'_, S, Self, M>,
@@ -175,9 +169,6 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
 
     /// `steps` steps of the size h, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts, both may be made at
     /// once.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
     #[inline]
     fn steps(
         at: AtOf<'_, S, Self, M>,
@@ -190,15 +181,9 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     }
 
     /// One step of the discrete symmetric representation on T*Q: (q, p) ↦ (q⁺, p⁺), from the time t to t + h.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
     fn step_symmetric(at: AtOf<'_, S, Self, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error>;
 
     /// The group element F with `legendre(h, t, q, F)` = μ that is connected to the identity.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
     fn inverse_legendre(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error>;
 }
 

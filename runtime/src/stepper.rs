@@ -5,7 +5,6 @@ mod stepping;
 
 mod reading;
 
-mod conversion;
 mod each;
 mod formulas;
 mod refusal;

@@ -55,10 +55,16 @@ pub trait Sums {
     fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, increment: &V) -> V;
 
     /// What a kernel has made of a sum: it gives the new sum itself, or, where sums are compensated, what is added.
-    fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V;
+    #[inline(always)]
+    fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V {
+        if Self::ARE_COMPENSATED { Self::sum(sum, rest, &made) } else { made }
+    }
 
-    /// The same where no rest is kept.
-    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V;
+    /// The same without a look at rounding.
+    #[inline(always)]
+    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V {
+        if Self::ARE_COMPENSATED { sum.zip_map(&made, |a, b| a + b) } else { made }
+    }
 }
 
 /// What rounding has taken off q and N.
@@ -88,16 +94,6 @@ impl Sums for Plain {
     fn sum<T: Scalar, V: Space<T>>(sum: &V, (): &mut (), increment: &V) -> V {
         sum.zip_map(increment, |a, b| a + b)
     }
-
-    #[inline(always)]
-    fn made<T: Scalar, V: Space<T>>(_: &V, (): &mut (), made: V) -> V {
-        made
-    }
-
-    #[inline(always)]
-    fn made_plainly<T: Scalar, V: Space<T>>(_: &V, made: V) -> V {
-        made
-    }
 }
 
 /// Compensated sums.
@@ -125,16 +121,6 @@ impl Sums for Compensated {
         let (sum, left) = accumulate(sum, rest, increment);
         *rest = left;
         sum
-    }
-
-    #[inline(always)]
-    fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut V, made: V) -> V {
-        Self::sum(sum, rest, &made)
-    }
-
-    #[inline(always)]
-    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V {
-        sum.zip_map(&made, |a, b| a + b)
     }
 }
 

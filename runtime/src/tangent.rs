@@ -51,36 +51,41 @@ impl<T: Scalar, const M: usize> Tangent<T, M> {
 
     /// (η′, ν′) of (η, ν).
     pub fn apply(&self, variation: &Variation<T, M>) -> Variation<T, M> {
-        let Variation { motion, momentum } = variation;
-        Variation {
-            motion: times(&self.motion_by_motion, motion) + times(&self.motion_by_momentum, momentum),
-            momentum: times(&self.momentum_by_motion, motion) + times(&self.momentum_by_momentum, momentum),
-        }
+        let (motion, momentum) = self.image(&variation.motion, &variation.momentum);
+        Variation { motion, momentum }
     }
 
     /// The transposed map, which pulls gradients back: the gradient of a function of the state after is turned into that of the
     /// same function of the state before.
     pub fn apply_transposed(&self, gradient: &Variation<T, M>) -> Variation<T, M> {
-        let Variation { motion, momentum } = gradient;
-        let back = |a: &SMatrix<T, M, M>, v| times(&a.transpose(), v);
-        Variation {
-            motion: back(&self.motion_by_motion, motion) + back(&self.momentum_by_motion, momentum),
-            momentum: back(&self.motion_by_momentum, motion) + back(&self.momentum_by_momentum, momentum),
-        }
+        let transposed = Self {
+            motion_by_motion: self.motion_by_motion.transpose(),
+            motion_by_momentum: self.momentum_by_motion.transpose(),
+            momentum_by_motion: self.motion_by_momentum.transpose(),
+            momentum_by_momentum: self.momentum_by_momentum.transpose(),
+        };
+        transposed.apply(gradient)
     }
 
     /// The derivative of this map and after it `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
-        let row = |a: &SMatrix<T, M, M>, b: &SMatrix<T, M, M>| {
-            (
-                times(a, &self.motion_by_motion) + times(b, &self.momentum_by_motion),
-                times(a, &self.motion_by_momentum) + times(b, &self.momentum_by_momentum),
-            )
-        };
-        let (motion_by_motion, motion_by_momentum) = row(&next.motion_by_motion, &next.motion_by_momentum);
-        let (momentum_by_motion, momentum_by_momentum) = row(&next.momentum_by_motion, &next.momentum_by_momentum);
+        let (motion_by_motion, momentum_by_motion) = next.image(&self.motion_by_motion, &self.momentum_by_motion);
+        let (motion_by_momentum, momentum_by_momentum) =
+            next.image(&self.motion_by_momentum, &self.momentum_by_momentum);
         Self { motion_by_motion, motion_by_momentum, momentum_by_motion, momentum_by_momentum }
+    }
+
+    /// (η′, ν′) of (η, ν), column by column.
+    fn image<const K: usize>(
+        &self,
+        motion: &SMatrix<T, M, K>,
+        momentum: &SMatrix<T, M, K>,
+    ) -> (SMatrix<T, M, K>, SMatrix<T, M, K>) {
+        (
+            times(&self.motion_by_motion, motion) + times(&self.motion_by_momentum, momentum),
+            times(&self.momentum_by_motion, motion) + times(&self.momentum_by_momentum, momentum),
+        )
     }
 }
 
@@ -93,10 +98,7 @@ impl<T: Scalar, const M: usize, const P: usize> Sensitivity<T, M, P> {
     /// The sensitivity after a step with the tangent map `tangent`, whose own sensitivity is `of_step`.
     #[must_use]
     pub fn after(&self, tangent: &Tangent<T, M>, of_step: &Self) -> Self {
-        let motion =
-            times(&tangent.motion_by_motion, &self.motion) + times(&tangent.motion_by_momentum, &self.momentum);
-        let momentum =
-            times(&tangent.momentum_by_motion, &self.motion) + times(&tangent.momentum_by_momentum, &self.momentum);
+        let (motion, momentum) = tangent.image(&self.motion, &self.momentum);
         Self { motion: motion + of_step.motion, momentum: momentum + of_step.momentum }
     }
 }

@@ -7,15 +7,15 @@ macro_rules! __formulas_of_sites {
     ($scalar:ty, $sites:tt, $start:expr, $end:expr) => {
         /// The action, site by site.
         fn act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration {
-            $crate::__private::Power::act_on_sites(self, f, q)
+            $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::act(site, &f[i], &q[i]))
         }
         /// The momentum map of the cotangent lift, site by site.
         fn momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum {
-            $crate::__private::Power::momenta_of(self, q, p)
+            $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::momentum_map(site, &q[i], &p[i]))
         }
         /// The coadjoint action, site by site.
         fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum {
-            $crate::__private::Power::coadjoint_of_sites(self, f, mu)
+            $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::coadjoint(site, &f[i], &mu[i]))
         }
         /// The discrete Legendre transform: that of each site, less its kick at the start.
         fn legendre(&self, h: $scalar, t: $scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum {
@@ -61,7 +61,9 @@ macro_rules! __formulas_of_sites {
         }
         /// The momentum without that component.
         fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
-            $crate::__private::Power::projected(self, q, mu)
+            $crate::__private::Power::each(self, |site, i| {
+                $crate::__private::Clebsch::project_momentum(site, &q[i], &mu[i])
+            })
         }
     };
 }

@@ -23,7 +23,10 @@ impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> S
     fn step(at: At<'_, S, M>, (q, mu, left): From<'_, S, M, Apart>, _: &S::Input) -> To<S, M, Apart> {
         let (mut state, ()) = Moving::<S, M>::start::<Apart>(q, mu, left);
         let system = at.system;
-        let p = completed(at, q, mu);
+        // Where rounding has moved q off its orbit, J(q, p) of a covector of μ misses μ by as much: added up, N would drift like the square of the steps.
+        // So the covector of the difference is added once.
+        let p = system.covector(at.constants, q, mu);
+        let p = plus(p, &system.covector(at.constants, q, &minus(*mu, &system.momentum(q, &p))));
         let (dq, dp) = change(at, q, &p, mu)?;
         let half = S::Scalar::from_ratio(1, 2);
         let middle_q = q.zip_map(&dq, |q, dq| q + half * dq);
@@ -53,25 +56,7 @@ fn minus<T: Scalar, V: Space<T>>(a: V, b: &V) -> V {
     a.zip_map(b, |a, b| a - b)
 }
 
-/// A covector with J(q, p) = μ.
-///
-/// Where rounding has moved q off its orbit, J(q, p) misses μ by as much: added up, N would drift like the square of the steps. So what is missing is
-/// added once.
-#[inline(always)]
-fn completed<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
-    At { system, constants, .. }: At<'_, S, M>,
-    q: &Q<S>,
-    mu: &Mu<S>,
-) -> Q<S> {
-    let p = system.covector(constants, q, mu);
-    let missing = system.covector(constants, q, &minus(*mu, &system.momentum(q, &p)));
-    plus(p, &missing)
-}
-
 /// (q⁺ − q, p⁺ − p), by collocation at eight nodes.
-///
-/// # Errors
-/// Those of [`collocate`].
 #[inline]
 fn change<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
     At { system, constants, t, .. }: At<'_, S, M>,
@@ -80,28 +65,21 @@ fn change<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
     mu: &Mu<S>,
 ) -> Result<Pair<S>, Error> {
     let x = system.guess(constants, t, q, mu);
+    // moved along by the velocity of the start, on the orbit of q
+    let along = |part| {
+        let x = S::part(&x, part);
+        let d = system.increment(&x);
+        let q_there = moved(system, q, &x, &d);
+        S::joined(&q_there, &system.lift(&q_there, p, &d))
+    };
     let change = collocate::<S::Scalar, N, 8, 4>(
         &GAUSS_16,
         (t, S::step_size(constants)),
         &S::joined(q, p),
         S::TOLERANCE,
         S::SWEEPS,
-        |part| along(system, &S::part(&x, part), q, p),
+        along,
         |t, y| system.slope(constants, t, y),
     )?;
     Ok(S::parted(&change))
-}
-
-/// (q, p) after a part of the step, moved along by the velocity of its start: on the orbit of q.
-#[inline(always)]
-fn along<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
-    system: &S,
-    x: &S::Coordinates,
-    q: &Q<S>,
-    p: &Q<S>,
-) -> [S::Scalar; N] {
-    let d = system.increment(x);
-    let q = moved(system, q, x, &d);
-    let p = system.lift(&q, p, &d);
-    S::joined(&q, &p)
 }

@@ -126,9 +126,6 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
 }
 
 /// The state after a composed step from the time `t`. `scaled` is what a state holds for a step that is so many times as long.
-///
-/// # Errors
-/// Those of a step.
 #[inline(always)]
 pub fn compose<T: Scalar, C: Clone, X, const K: usize>(
     stages: &Stages<T, C, K>,
@@ -164,9 +161,6 @@ pub struct Stages<T, C, const K: usize> {
 
 impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
     /// The constants for the step size `h`, those of each size made by `make`.
-    ///
-    /// # Errors
-    /// Those of `make`.
     pub fn new(h: T, sizes: &[f64; K], make: impl Fn(T) -> Result<C, Error>) -> Result<Self, Error> {
         let whole = make(h)?;
         let sizes = sizes.map(|size| T::from_f64(size) * h);

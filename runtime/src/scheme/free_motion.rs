@@ -51,9 +51,6 @@ impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Sequence<S, M> for Order {
 }
 
 /// (q, N) after one step along a motion.
-///
-/// # Errors
-/// Those of [`FreeMotion::follow`].
 #[inline(always)]
 fn follow<S: Substep<0, M> + FreeMotion<M>, M: Method<S>>(
     at: At<'_, S, M>,

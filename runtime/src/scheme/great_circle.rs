@@ -77,9 +77,6 @@ pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize> {
     }
 
     /// As many steps, in place.
-    ///
-    /// # Errors
-    /// Those of [`turn_great_circle`].
     fn turn(
         at: At<'_, S, M>,
         steps: usize,

@@ -13,15 +13,9 @@ pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
     type Carry: Carry<S, M>;
 
     /// As [`Scheme::step`].
-    ///
-    /// # Errors
-    /// Those of the solve.
     fn step(at: At<'_, S, M>, state: From<'_, S, M, Self::Carry>, u: &S::Input) -> To<S, M, Self::Carry>;
 
     /// As [`Scheme::steps`].
-    ///
-    /// # Errors
-    /// Those of a step.
     #[inline]
     fn steps(
         at: At<'_, S, M>,
@@ -34,18 +28,12 @@ pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
     }
 
     /// As [`Scheme::step_symmetric`].
-    ///
-    /// # Errors
-    /// Those of the solve.
     #[inline]
     fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
         symmetric::<S, M, 0>(at, (*q, *p))
     }
 
     /// As [`Scheme::inverse_legendre`].
-    ///
-    /// # Errors
-    /// Those of the solve.
     #[inline]
     fn inverse_legendre(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error> {
         inverse_legendre::<S, M, 0>(at, q, mu)

@@ -131,8 +131,14 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             state.push(Some(at.system.kick(at.constants, t, &state.q, weight, gradient)));
             state
         };
+        let drifted = |part, mut state: Moving<S, M>| {
+            let x = solve_part(at, part, &state.q, &state.mu)?;
+            state.drift(At { t: Zero::zero(), ..at }, &x);
+            state.on_space();
+            Ok(state)
+        };
         let size = (at.t, S::step_size(at.constants), steps);
-        Ok(split(&Z::KICKS, size, start, |part, state| drift(at, part, state), kicked)?.end::<Apart>(()))
+        Ok(split(&Z::KICKS, size, start, drifted, kicked)?.end::<Apart>(()))
     }
 
     fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
@@ -140,15 +146,18 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             let kick = at.system.kick_gradient(at.constants, t, &q, weight, gradient);
             (q, p.zip_map(&kick, |a, b| a + b))
         };
+        let drifted = |part, (q, p): Pair<S>| {
+            let x = solve_part(at, part, &q, &at.system.momentum_map(&q, &p))?;
+            let d = at.system.increment(&x);
+            let q = moved(at.system, &q, &x, &d);
+            Ok((q, at.system.lift(&q, &p, &d)))
+        };
         let size = (at.t, S::step_size(at.constants), 1);
-        split(&Z::KICKS, size, (*q, *p), |part, state| drift_symmetric(at, part, state), kicked)
+        split(&Z::KICKS, size, (*q, *p), drifted, kicked)
     }
 }
 
 /// The coordinates of the drift of a part of the step: it is the drift of the step with this part of the momentum, at any time.
-///
-/// # Errors
-/// Those of the solve.
 #[inline(always)]
 fn solve_part<S: Substep<0, M>, M: Method<S>>(
     at: At<'_, S, M>,
@@ -160,45 +169,9 @@ fn solve_part<S: Substep<0, M>, M: Method<S>>(
     at.system.solve(at.constants, Zero::zero(), q, &mu, &S::Input::origin())
 }
 
-/// (q, M) ↦ (q⁺, M⁺) by the exact drift of a part of the step.
-///
-/// # Errors
-/// Those of the solve.
-#[inline]
-fn drift<S: Substep<0, M>, M: Method<S>>(
-    at: At<'_, S, M>,
-    part: S::Scalar,
-    mut state: Moving<S, M>,
-) -> Result<Moving<S, M>, Error> {
-    let x = solve_part(at, part, &state.q, &state.mu)?;
-    state.drift(At { t: Zero::zero(), ..at }, &x);
-    state.on_space();
-    Ok(state)
-}
-
-/// (q, p) ↦ (q⁺, p⁺) by the same.
-///
-/// # Errors
-/// Those of the solve.
-#[inline]
-fn drift_symmetric<S: Substep<0, M>, M: Method<S>>(
-    at: At<'_, S, M>,
-    part: S::Scalar,
-    (q, p): Pair<S>,
-) -> Result<Pair<S>, Error> {
-    let x = solve_part(at, part, &q, &at.system.momentum_map(&q, &p))?;
-    let d = at.system.increment(&x);
-    let q = moved(at.system, &q, &x, &d);
-    let p = at.system.lift(&q, &p, &d);
-    Ok((q, p))
-}
-
 /// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one.
 ///
 /// `drift` takes a part of the step and the state, `kick` a time, b_i, g_i and the state.
-///
-/// # Errors
-/// Those of a drift.
 #[inline]
 pub fn split<T: Scalar, S, const K: usize>(
     kicks: &[Kick; K],

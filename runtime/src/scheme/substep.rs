@@ -64,9 +64,6 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
 /// One substep, from its first kick to the one before its last.
 ///
 /// What does not change stays where it is, and is not copied.
-///
-/// # Errors
-/// Those of the solve.
 #[inline(always)]
 pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,
@@ -131,9 +128,6 @@ fn kicked<S: Substep<K, M>, M: Method<S>, const K: usize>(at: At<'_, S, M>, q: &
 }
 
 /// The coordinates of the group element with the momentum N before the kick.
-///
-/// # Errors
-/// Those of the solve.
 #[inline(always)]
 pub(super) fn solve_before_kick<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,
@@ -146,9 +140,6 @@ pub(super) fn solve_before_kick<S: Substep<K, M>, M: Method<S>, const K: usize>(
 }
 
 /// F with F⁻ℓd(q, F) = N.
-///
-/// # Errors
-/// Those of the solve.
 #[inline]
 pub(super) fn inverse_legendre<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,
@@ -160,9 +151,6 @@ pub(super) fn inverse_legendre<S: Substep<K, M>, M: Method<S>, const K: usize>(
 }
 
 /// (q, p) ↦ (q⁺, p⁺), with the momentum J(q, p).
-///
-/// # Errors
-/// Those of the solve.
 #[inline]
 pub(super) fn symmetric<S: Substep<K, M>, M: Method<S>, const K: usize>(
     At { system, constants, t, .. }: At<'_, S, M>,

@@ -2,8 +2,8 @@
 
 use super::{Stepper, first_without, whole_or_lane};
 use crate::parameters::check_finite;
-use crate::scheme::Scheme;
-use crate::{Clebsch, Error, Method, Scalar, Space};
+use crate::scheme::{At, Scheme};
+use crate::{Clebsch, Error, Mask, Method, Scalar, Space};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -46,7 +46,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the group element of the step" }))
             }
             Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
-            Err(error) => Err(self.refusal_of_element(t, q, mu, error)),
+            Err(error) => Err(self.explained(0, error, |constants| {
+                Ok(M::Scheme::inverse_legendre(At::new(&self.system, constants, t), q, mu)?.finite().lane(0))
+            })),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Stepper;
 use crate::scheme::{At, Constants, Scheme};
-use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, State, Time};
+use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
 
 /// Step sizes that are tried to find the longest one that can be solved, at most.
 const TRIALS: usize = 32;
@@ -31,35 +31,15 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         })
     }
 
-    /// The same of a step on T*Q.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn refusal_of_covector(&self, state: &CotangentState<S>, error: Error) -> Error {
-        let CotangentState { time, configuration, covector } = state;
-        self.explained(0, error, |constants| {
-            let at = At::new(&self.system, constants, time.now());
-            let (q, p) = M::Scheme::step_symmetric(at, configuration, covector)?;
-            Ok((q.finite() & p.finite()).lane(0))
-        })
-    }
-
-    /// The same of a solve for the group element.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn refusal_of_element(
-        &self,
-        t: S::Scalar,
-        q: &S::Configuration,
-        mu: &S::Momentum,
-        error: Error,
-    ) -> Error {
-        self.explained(0, error, |constants| {
-            Ok(M::Scheme::inverse_legendre(At::new(&self.system, constants, t), q, mu)?.finite().lane(0))
-        })
-    }
-
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
-    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>) -> Error {
+    #[cold]
+    #[inline(never)]
+    pub(super) fn explained(
+        &self,
+        lane: usize,
+        error: Error,
+        stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>,
+    ) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },

@@ -82,9 +82,6 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     /// One step into the place of another state, which holds none where this fails.
-    ///
-    /// # Errors
-    /// Those of [`step_with`](Self::step_with).
     #[inline]
     pub(crate) fn step_into(&self, state: &State<S, M>, u: &S::Input, next: &mut State<S, M>) -> Result<(), Error> {
         check_input::<S>(u)?;
@@ -148,9 +145,6 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     /// The same with the impulse at the configuration.
-    ///
-    /// # Errors
-    /// Those of [`attempt`](Self::attempt).
     #[inline(always)]
     pub(crate) fn attempt_with(
         &self,

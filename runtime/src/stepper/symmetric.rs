@@ -2,8 +2,8 @@
 
 use super::{Stepper, first_without, whole_or_lane};
 use crate::parameters::check_finite;
-use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Time};
+use crate::scheme::{At, Scheme};
+use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Space, Time};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -25,7 +25,13 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let (configuration, covector) = match M::Scheme::step_symmetric(self.at(time.now()), configuration, covector) {
             Ok(next) => next,
             Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
-            Err(error) => return Err(self.refusal_of_covector(state, error)),
+            Err(error) => {
+                return Err(self.explained(0, error, |constants| {
+                    let at = At::new(&self.system, constants, time.now());
+                    let (q, p) = M::Scheme::step_symmetric(at, configuration, covector)?;
+                    Ok((q.finite() & p.finite()).lane(0))
+                }));
+            }
         };
         let next = CotangentState { time: time.after_step(self.h), configuration, covector };
         let finite: <S::Scalar as Scalar>::Mask = next.finite();

@@ -115,9 +115,6 @@ pub fn advance<S: Clebsch, M: Method<S>>(
 }
 
 /// A state with the same body in all lanes, checked.
-///
-/// # Errors
-/// Those of [`Stepper::state`].
 pub fn alone<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, (q, mu): &Body<S>) -> Result<State<S, M>, Error> {
     stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
 }

@@ -59,8 +59,9 @@ proptest! {
         let constants = ring.power_constants(H)?;
         let drifted = FreeSites::<N>::step(At::new(&ring, &constants, t), (&q, &mu, &()), &())?;
         let f = ring.power_inverse_legendre(&constants, t, &q, &mu, 0.0)?;
-        let (image, momenta, coadjoint) = (ring.act_on_sites(&f, &q), ring.momenta_of(&q, &p), ring.coadjoint_of_sites(&f, &mu));
-        let (matrices, projected) = (<Ring<N> as Power<N>>::matrices_of(&mu), ring.projected(&q, &p));
+        let (image, momenta, coadjoint) = (ring.act(&f, &q), ring.momentum_map(&q, &p), ring.coadjoint(&f, &mu));
+        let (matrices, projected) = (<Ring<N> as Power<N>>::matrices_of(&mu), ring.project_momentum(&q, &p));
+        prop_assert_eq!(ring.each(|site, i| site.act(&f[i], &q[i])), image);
         prop_assert!(apart(&<Ring<N> as Power<N>>::components_of(&matrices), &mu) < 1e-15);
         let (mut energy, mut defect, mut largest) = (0.0, 0.0_f64, 0.0_f64);
         let off: Spins = std::array::from_fn(|i| q[i] * (1.0 + 0.01 * i as f64));
@@ -95,7 +96,7 @@ proptest! {
         let expected: f64 = slope.iter().zip(&along).map(|(slope, along)| slope.dot(along)).sum();
         prop_assert!((difference - expected).abs() < 1e-11, "{} and {}", difference, expected);
         let kick = ring.power_kick(t, &q, weight);
-        let by_map: Spins = ring.momenta_of(&q, &slope.map(|slope| weight * slope));
+        let by_map: Spins = ring.momentum_map(&q, &slope.map(|slope| weight * slope));
         prop_assert!(apart(&kick, &by_map) < 1e-14);
         prop_assert_eq!(kick, std::array::from_fn(|i| ring.kick_of_site(i, &q[i], &slope[i], weight)));
         let (mut gradient, mut again, mut momenta) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::y(); N]);
@@ -145,7 +146,7 @@ proptest! {
         SitesOfSecondOrder::<N>::step_into(at, (&q, &mu, &start), &(), (&mut image, &mut moved, &mut left))?;
         prop_assert_eq!((image, moved, left), (next, momenta, kick));
         let f = ring.power_inverse_legendre(&constants, t, &q, &mu, -0.5)?;
-        prop_assert!(apart(&ring.act_on_sites(&f, &q), &next) < 1e-13);
+        prop_assert!(apart(&ring.act(&f, &q), &next) < 1e-13);
         prop_assert!(apart(&ring.power_legendre(H, t, &q, &f, -0.5), &mu) < 1e-12);
         prop_assert!(apart(&ring.power_legendre_next(H, t, &q, &f, -0.5), &momenta) < 1e-12);
         let (first, late, ()) = SitesOfFirstOrder::<N>::step(at, (&q, &mu, &()), &())?;
@@ -173,7 +174,7 @@ proptest! {
         let p: Spins = std::array::from_fn(|i| mu[i].cross(&q[i]));
         let (there, covectors) = ring.power_step_symmetric(&constants, t, &q, &p, -0.5, -0.5)?;
         prop_assert!(apart(&there, &next) < 1e-13);
-        prop_assert!(apart(&ring.momenta_of(&there, &covectors), &momenta) < 1e-12);
+        prop_assert!(apart(&ring.momentum_map(&there, &covectors), &momenta) < 1e-12);
     }
 
     /// Bit for bit, in vectors and in slices.
