@@ -1,5 +1,7 @@
 //! Bases of vector spaces of matrices, Lie algebras above all: what v ↦ Σ v_i E_i and A ↦ ⟨A, E_i⟩ refer to.
 
+use std::rc::Rc;
+
 use num_traits::{One, Zero};
 
 use crate::{Expr, Graph, Rational, Shape, integer};
@@ -18,7 +20,7 @@ pub struct Algebra {
 }
 
 /// What a graph keeps of a basis.
-#[derive(PartialEq, Eq, Debug)]
+#[derive(PartialEq, Eq, Hash, Debug)]
 pub struct Basis {
     /// The shape of the matrices.
     pub shape: Shape,
@@ -53,62 +55,49 @@ impl Graph {
     pub fn algebra(&self, shape: Shape, elements: Vec<Sparse>) -> Algebra {
         let basis = Basis { shape, elements };
         let (dimension, skew, identification) = (basis.elements.len(), basis.is_skew(), basis.is_identification());
-        let index = self.basis_index(basis);
+        let index = self.bases.borrow_mut().intern(Rc::new(basis)).0 as u32;
         Algebra { index, dimension, shape, skew, identification }
     }
 
     /// For each basis element its entries that are not zero.
-    pub fn basis(&self, algebra: Algebra) -> std::rc::Rc<Basis> {
-        self.basis_at(algebra.index)
+    pub fn basis(&self, algebra: Algebra) -> Rc<Basis> {
+        self.bases.borrow().value(algebra.index as usize).clone()
     }
 
     /// The basis as literal matrices.
     pub fn basis_matrices(&self, algebra: Algebra) -> Vec<Expr<'_>> {
-        self.basis(algebra).elements.iter().map(|element| self.sparse_literal(algebra.shape, element)).collect()
-    }
-
-    /// A literal matrix from its entries that are not zero.
-    pub fn sparse_literal(&self, shape: Shape, entries: &Sparse) -> Expr<'_> {
-        let mut dense = vec![Rational::zero(); shape.len()];
-        for (i, j, value) in entries {
-            dense[i * shape.columns + j] += value;
-        }
-        self.literal(shape, dense)
+        let matrix = |element: &Sparse| self.sparse_literal(algebra.shape, element.iter().cloned());
+        self.basis(algebra).elements.iter().map(matrix).collect()
     }
 }
 
 impl Basis {
     /// G_ij = ⟨E_i, E_j⟩ = tr(E_iᵀE_j).
     pub fn gram(&self) -> Vec<Vec<Rational>> {
-        let pairing = |a: &Sparse, b: &Sparse| {
-            let mut sum = Rational::zero();
-            for (i, j, value) in a {
-                for (_, _, other) in b.iter().filter(|(k, l, _)| (k, l) == (i, j)) {
-                    sum += value * other;
-                }
-            }
-            sum
+        let pairing = |a: &Sparse, b: &Sparse| -> Rational {
+            let product = |(i, j, value): &(usize, usize, Rational)| {
+                let others = b.iter().filter(|(k, l, _)| (k, l) == (i, j));
+                others.map(|(_, _, other)| value * other).sum::<Rational>()
+            };
+            a.iter().map(product).sum()
         };
         self.elements.iter().map(|a| self.elements.iter().map(|b| pairing(a, b)).collect()).collect()
     }
 
     /// The square ⟨E_i, E_i⟩ of the elements, if they are orthogonal to each other and equally long.
     pub fn uniform_gram(&self) -> Option<Rational> {
-        let square_of =
-            |element: &Sparse| element.iter().fold(Rational::zero(), |sum, (_, _, value)| sum + value * value);
+        let square_of = |element: &Sparse| element.iter().map(|(_, _, value)| value * value).sum::<Rational>();
         let square = square_of(self.elements.first()?);
         // those of large bases have no entry in common
         let mut places: Vec<(usize, usize)> = self.elements.iter().flatten().map(|(i, j, _)| (*i, *j)).collect();
         places.sort_unstable();
         let is_apart = places.windows(2).all(|pair| pair[0] != pair[1]);
-        let fits = match is_apart {
-            true => self.elements.iter().all(|element| square_of(element) == square),
-            false => {
-                let expected = |i: usize, j: usize| if i == j { square.clone() } else { Rational::zero() };
-                let gram = self.gram();
-                gram.iter().enumerate().all(|(i, row)| row.iter().enumerate().all(|(j, g)| *g == expected(i, j)))
-            }
+        let are_orthogonal = || {
+            let gram = self.gram();
+            let positions = Shape::square(gram.len()).positions();
+            positions.filter(|(i, j)| i != j).all(|(i, j)| gram[i][j].is_zero())
         };
+        let fits = self.elements.iter().all(|element| square_of(element) == square) && (is_apart || are_orthogonal());
         fits.then_some(square)
     }
 

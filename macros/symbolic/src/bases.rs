@@ -3,8 +3,8 @@
 use num_traits::{One, Zero};
 
 use crate::memory::Map;
-use crate::node::{ExprNode, Term};
-use crate::{Algebra, Expr, Graph, Group, Rational, Shape, integer};
+use crate::node::{ExprNode, Operation, Term};
+use crate::{Algebra, Basis, Expr, Graph, Group, Rational, Shape};
 
 impl<'g> Expr<'g> {
     /// The matrix of x ↦ a × x.
@@ -27,13 +27,12 @@ impl<'g> Expr<'g> {
             return self.wedge_of_scalar(algebra);
         }
         if let ExprNode::Literal(entries) = &*self.node() {
-            let basis = self.graph.basis_matrices(algebra);
-            let terms = entries.iter().zip(basis).map(|(entry, element)| element.times(entry));
-            return terms.fold(self.graph.zero(shape), |sum, term| sum + term);
+            let terms = self.graph.basis_matrices(algebra).into_iter().zip(entries);
+            return terms.fold(self.graph.zero(shape), |sum, (element, entry)| sum + element.times(entry));
         }
         self.linear(shape, |plain| match &*plain.node() {
             ExprNode::Literal(_) if plain != self => plain.wedge(algebra),
-            _ => plain.atom_of(ExprNode::Wedge(algebra, plain.id), shape),
+            _ => plain.atom_of(Operation::Wedge(algebra), shape),
         })
     }
 
@@ -42,10 +41,10 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let shape = algebra.matrix_shape();
         self.terms().into_iter().fold(graph.zero(shape), |sum, Term { coefficient, scalars, word }| {
-            let plain = graph.collect(Shape::scalar(), [Term { coefficient: Rational::one(), scalars, word }]);
+            let plain = graph.scalar(Term { coefficient: Rational::one(), scalars, word });
             let element = match plain.as_number() {
                 Some(number) => graph.basis_matrices(algebra)[0].times(&number),
-                None => self.atom_of(ExprNode::Wedge(algebra, plain.id), shape),
+                None => plain.atom_of(Operation::Wedge(algebra), shape),
             };
             sum + element.times(&coefficient)
         })
@@ -62,34 +61,27 @@ impl<'g> Expr<'g> {
 
     fn components_by_terms(self, algebra: Algebra, shape: Shape) -> Expr<'g> {
         self.linear(shape, |plain| {
-            if let ExprNode::Wedge(other, inner) = &*plain.node()
+            if let ExprNode::Of(Operation::Wedge(other), inner) = &*plain.node()
                 && *other == algebra
             {
-                let (inner, basis) = (plain.graph.expr(*inner), plain.graph.basis(algebra));
-                return match basis.uniform_gram() {
-                    Some(square) => inner.times(&square),
-                    None => {
-                        let square = Shape::square(basis.elements.len());
-                        plain.graph.literal(square, basis.gram().into_iter().flatten().collect()) * inner
-                    }
-                };
+                return plain.graph.lower(algebra, plain.graph.expr(*inner));
             }
             if let Some(entries) = plain.constant_entries() {
                 return plain.graph.pairings(algebra, &entries);
             }
             if !algebra.is_skew() {
-                return plain.atom_of(ExprNode::Components(algebra, plain.id), shape);
+                return plain.atom_of(Operation::Components(algebra), shape);
             }
             // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both
-            let Term { coefficient, scalars, word } = plain.transpose().factor();
-            let sign = coefficient.clone();
-            let word = plain.graph.collect(plain.shape(), [Term { coefficient: Rational::one(), scalars, word }]);
-            match sign == integer(1) || sign == integer(-1) {
-                true if word == plain && sign == integer(1) => plain.graph.zero(shape),
-                true if word.id < plain.id => {
-                    plain.atom_of(ExprNode::Components(algebra, word.id), shape).times(&-sign)
-                }
-                _ => plain.atom_of(ExprNode::Components(algebra, plain.id), shape),
+            let mut transposed = plain.transpose().factor();
+            let sign = std::mem::replace(&mut transposed.coefficient, Rational::one());
+            let transposed = plain.graph.collect(plain.shape(), [transposed]);
+            if transposed == plain && sign.is_one() {
+                plain.graph.zero(shape)
+            } else if transposed.id < plain.id && sign.abs().is_one() {
+                transposed.atom_of(Operation::Components(algebra), shape).times(&-sign)
+            } else {
+                plain.atom_of(Operation::Components(algebra), shape)
             }
         })
     }
@@ -99,13 +91,28 @@ impl<'g> Expr<'g> {
         let one_at = |(i, j)| if i == j { Rational::one() } else { Rational::zero() };
         match &*self.node() {
             ExprNode::Literal(entries) => Some(entries.clone()),
-            _ if self.is_identity() => Some(self.shape().positions().map(one_at).collect()),
-            _ => None,
+            _ => self.is_identity().then(|| self.shape().positions().map(one_at).collect()),
         }
     }
 }
 
 impl Graph {
+    /// Gξ for the coordinates ξ in a basis with Gram matrix G.
+    fn lower<'g>(&'g self, algebra: Algebra, xi: Expr<'g>) -> Expr<'g> {
+        let basis = self.basis(algebra);
+        basis.uniform_gram().map_or_else(|| self.gram_matrix(&basis) * xi, |square| xi.times(&square))
+    }
+
+    /// G⁻¹m for the components m with respect to a basis with Gram matrix G.
+    pub fn raise<'g>(&'g self, algebra: Algebra, mu: Expr<'g>) -> Expr<'g> {
+        let basis = self.basis(algebra);
+        basis.uniform_gram().map_or_else(|| self.gram_matrix(&basis).inverse() * mu, |square| mu.times(&square.recip()))
+    }
+
+    fn gram_matrix(&self, basis: &Basis) -> Expr<'_> {
+        self.literal(Shape::square(basis.elements.len()), basis.gram().into_iter().flatten().collect())
+    }
+
     /// ⟨A, E_i⟩ of a matrix of numbers.
     fn pairings(&self, algebra: Algebra, entries: &[Rational]) -> Expr<'_> {
         let columns = algebra.matrix_shape().columns;

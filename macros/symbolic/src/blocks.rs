@@ -1,8 +1,7 @@
 //! Blocks of matrices, and matrices made of blocks.
 
-use crate::node::{ExprNode, Id};
-use crate::{Expr, Rational, Shape, integer};
-use num_traits::One;
+use crate::node::{ExprNode, Id, Operation};
+use crate::{Expr, Shape, integer};
 
 impl<'g> Expr<'g> {
     /// The entry in row i and column j, counted from zero.
@@ -29,34 +28,27 @@ impl<'g> Expr<'g> {
         match &*self.node() {
             ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
             ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
-            ExprNode::Block(inner, r, c) => graph.expr(*inner).block(r + row, c + column, shape),
             ExprNode::Hadamard(a, b) => {
                 let [a, b] = [a, b].map(|factor| graph.expr(*factor).block(row, column, shape));
                 a.hadamard(b)
             }
-            ExprNode::DiagonalMatrix(inner) if shape.is_scalar() => match row == column {
+            ExprNode::Of(Operation::Block(r, c), inner) => graph.expr(*inner).block(r + row, c + column, shape),
+            ExprNode::Of(Operation::DiagonalMatrix, inner) if shape.is_scalar() => match row == column {
                 true => graph.expr(*inner).entry(row, 0),
                 false => graph.zero(shape),
             },
-            ExprNode::Embed(inner, r, c) => {
-                let given = graph.shape(*inner);
-                let (last_row, last_column) = (row + shape.rows, column + shape.columns);
-                let inside =
-                    row >= *r && column >= *c && last_row <= r + given.rows && last_column <= c + given.columns;
-                let outside =
-                    last_row <= *r || last_column <= *c || row >= r + given.rows || column >= c + given.columns;
+            ExprNode::Of(Operation::Embed(r, c), inner) => {
+                let inner = graph.expr(*inner);
+                // where the block and the embedded matrix meet
                 let (first_row, first_column) = (row.max(*r), column.max(*c));
-                let meets = |first: usize, last: usize, start: usize, size: usize| last.min(start + size) - first;
-                match (inside, outside) {
-                    (true, _) => graph.expr(*inner).block(row - r, column - c, shape),
-                    (_, true) => graph.zero(shape),
-                    _ => {
-                        let rows = meets(first_row, last_row, *r, given.rows);
-                        let columns = meets(first_column, last_column, *c, given.columns);
-                        let part = graph.expr(*inner).block(first_row - r, first_column - c, Shape::new(rows, columns));
-                        part.embed(shape, first_row - row, first_column - column)
-                    }
+                let last_row = (row + shape.rows).min(r + inner.shape().rows);
+                let last_column = (column + shape.columns).min(c + inner.shape().columns);
+                if last_row <= first_row || last_column <= first_column {
+                    return graph.zero(shape);
                 }
+                let part = Shape::new(last_row - first_row, last_column - first_column);
+                let part = inner.block(first_row - r, first_column - c, part);
+                part.embed(shape, first_row - row, first_column - column)
             }
             ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {
                 self.block_of_word(&terms[0].word, row, column, shape)
@@ -65,22 +57,22 @@ impl<'g> Expr<'g> {
                 let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
                 graph.literal(shape, shape.positions().map(one_at).collect())
             }
-            _ => self.atom_of(ExprNode::Block(self.id, row, column), shape),
+            _ => self.atom_of(Operation::Block(row, column), shape),
         }
     }
 
     /// The block of a product: rows of its first letter, columns of its last, where these are known to be mostly zero.
     fn block_of_word(self, word: &[Id], row: usize, column: usize, shape: Shape) -> Expr<'g> {
         let graph = self.graph;
-        let (first, last) = (graph.expr(word[0]), graph.expr(word[word.len() - 1]));
-        let sparse = |letter: Expr<'g>| matches!(&*letter.node(), ExprNode::Embed(..));
+        let letters = graph.exprs(word);
+        let (first, last) = (letters[0], letters[letters.len() - 1]);
+        let sparse = |letter: Expr<'g>| matches!(&*letter.node(), ExprNode::Of(Operation::Embed(..), _));
         if !sparse(first) && !sparse(last) {
-            return self.atom_of(ExprNode::Block(self.id, row, column), shape);
+            return self.atom_of(Operation::Block(row, column), shape);
         }
         let rows = first.block(row, 0, Shape::new(shape.rows, first.shape().columns));
         let columns = last.block(0, column, Shape::new(last.shape().rows, shape.columns));
-        let middle = word[1..word.len() - 1].iter().map(|&letter| graph.expr(letter));
-        middle.fold(rows, Expr::product) * columns
+        letters[1..letters.len() - 1].iter().copied().fold(rows, Expr::product) * columns
     }
 
     /// The matrix of the given shape that is zero but for this block at (row, column).
@@ -92,21 +84,24 @@ impl<'g> Expr<'g> {
         if shape == self.shape() {
             return self;
         }
+        if self.is_zero() {
+            return self.graph.zero(shape);
+        }
         if self.shape().is_scalar() {
             return self * self.graph.unit(shape, row, column);
         }
         self.linear(shape, |plain| match &*plain.node() {
-            ExprNode::Embed(inner, r, c) => plain.graph.expr(*inner).embed(shape, row + r, column + c),
+            ExprNode::Of(Operation::Embed(r, c), inner) => plain.graph.expr(*inner).embed(shape, row + r, column + c),
             ExprNode::Literal(entries) => {
                 let positions = plain.shape().positions().zip(entries);
                 let moved = positions.map(|((i, j), value)| (i + row, j + column, value.clone()));
-                plain.graph.sparse_literal(shape, &moved.collect())
+                plain.graph.sparse_literal(shape, moved)
             }
             ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
-                let moved = (0..plain.shape().rows).map(|i| (i + row, i + column, Rational::one()));
-                plain.graph.sparse_literal(shape, &moved.collect())
+                let moved = (0..plain.shape().rows).map(|i| (i + row, i + column, integer(1)));
+                plain.graph.sparse_literal(shape, moved)
             }
-            _ => plain.atom_of(ExprNode::Embed(plain.id, row, column), shape),
+            _ => plain.atom_of(Operation::Embed(row, column), shape),
         })
     }
 }

@@ -2,21 +2,21 @@
 
 use num_traits::{One, Zero};
 
-use crate::node::{Analytic, ExprNode, Id, Term};
+use crate::node::{Analytic, ExprNode, Id, Operation, Term};
 use crate::{Expr, Graph, Property, Rational, Shape};
 
 impl<'g> Expr<'g> {
-    pub(crate) fn atom_of(self, node: ExprNode, shape: Shape) -> Expr<'g> {
-        self.graph.intern(node, shape)
+    /// The operation on this expression as a node of its own.
+    pub(crate) fn atom_of(self, operation: Operation, shape: Shape) -> Expr<'g> {
+        self.graph.intern(ExprNode::Of(operation, self.id), shape)
     }
 
     /// Applies a linear operation to each term of a sum, `operation` being given single terms without their scalars.
     pub(crate) fn linear(self, shape: Shape, operation: impl Fn(Expr<'g>) -> Expr<'g>) -> Expr<'g> {
-        let image = |Term { coefficient, scalars, word }| {
-            let plain = Term { coefficient: Rational::one(), scalars: Vec::new(), word };
+        let image = |term: Term| {
+            let (scale, plain) = term.split();
             let image = operation(self.graph.collect(self.shape(), [plain]));
-            let scale = self.graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]);
-            scale * image
+            self.graph.scalar(scale) * image
         };
         self.graph.total(shape, self.terms().into_iter().map(image))
     }
@@ -39,30 +39,28 @@ impl<'g> Expr<'g> {
     fn transpose_letter(self) -> Expr<'g> {
         let graph = self.graph;
         let shape = self.shape().transposed();
+        let positions = || shape.positions().map(|(i, j)| j * shape.rows + i);
         match &*self.node() {
             ExprNode::Sum(_) => self.transpose(),
-            ExprNode::Transpose(inner) => graph.expr(*inner),
-            ExprNode::Inverse(inner) => graph.expr(*inner).transpose().inverse(),
-            ExprNode::DiagonalMatrix(_) => self,
-            ExprNode::Analytic(function, inner) => graph.expr(*inner).transpose().analytic(*function),
-            ExprNode::Wedge(algebra, _) if algebra.is_skew() => -self,
+            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
+            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
             ExprNode::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
-            ExprNode::Symbol(id) => match graph.symbol_data(*id).property {
-                Property::Symmetric | Property::Diagonal => self,
-                Property::Skew => -self,
-                _ => self.atom_of(ExprNode::Transpose(self.id), shape),
-            },
-            ExprNode::Literal(entries) => {
-                let entry = |(i, j): (usize, usize)| entries[j * self.shape().columns + i].clone();
-                graph.literal(shape, shape.positions().map(entry).collect())
+            ExprNode::Symbol(symbol) if matches!(symbol.property, Property::Symmetric | Property::Diagonal) => self,
+            ExprNode::Symbol(symbol) if symbol.property == Property::Skew => -self,
+            ExprNode::Of(operation, inner) => {
+                let inner = graph.expr(*inner);
+                match *operation {
+                    Operation::Transpose => inner,
+                    Operation::DiagonalMatrix => self,
+                    Operation::Wedge(algebra) if algebra.is_skew() => -self,
+                    Operation::Inverse => inner.transpose().inverse(),
+                    Operation::Analytic(function) => inner.transpose().analytic(function),
+                    Operation::Block(row, column) => inner.transpose().block(column, row, shape),
+                    Operation::Embed(row, column) => inner.transpose().embed(shape, column, row),
+                    _ => self.atom_of(Operation::Transpose, shape),
+                }
             }
-            ExprNode::Stack(entries) => {
-                let entry = |(i, j): (usize, usize)| graph.expr(entries[j * self.shape().columns + i]);
-                graph.stack(shape, shape.positions().map(entry).collect())
-            }
-            ExprNode::Block(inner, row, column) => graph.expr(*inner).transpose().block(*column, *row, shape),
-            ExprNode::Embed(inner, row, column) => graph.expr(*inner).transpose().embed(shape, *column, *row),
-            _ => self.atom_of(ExprNode::Transpose(self.id), shape),
+            _ => self.atom_of(Operation::Transpose, shape),
         }
     }
 
@@ -85,42 +83,44 @@ impl<'g> Expr<'g> {
         if self.shape().is_scalar() {
             return self.powi(-1);
         }
-        let Term { coefficient, scalars, word } = self.factor();
-        let scale = graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]).powi(-1);
-        let square = word.iter().all(|&letter| graph.shape(letter).is_square());
-        match square {
-            true => {
-                let inverses = word.iter().rev().map(|&letter| graph.expr(letter).inverse_letter());
-                scale * inverses.fold(graph.identity(self.shape().rows), Expr::product)
-            }
-            false => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
+        let (scale, plain) = self.factor().split();
+        let scale = graph.scalar(scale).powi(-1);
+        if plain.word.iter().any(|&letter| !graph.shape(letter).is_square()) {
+            return self.atom_of(Operation::Inverse, self.shape());
         }
+        let inverses = plain.word.iter().rev().map(|&letter| graph.expr(letter).inverse_letter());
+        scale * inverses.fold(graph.identity(self.shape().rows), Expr::product)
     }
 
     fn inverse_letter(self) -> Expr<'g> {
         let graph = self.graph;
+        let atom = |matrix: Expr<'g>| matrix.atom_of(Operation::Inverse, self.shape());
         match &*self.node() {
-            ExprNode::Inverse(inner) => graph.expr(*inner),
-            ExprNode::Transpose(inner) if graph.is_orthogonal(*inner) => graph.expr(*inner),
+            ExprNode::Of(Operation::Inverse, inner) => graph.expr(*inner),
+            ExprNode::Of(Operation::Transpose, inner) if graph.is_orthogonal(*inner) => graph.expr(*inner),
             ExprNode::Symbol(_) if graph.is_orthogonal(self.id) => self.transpose(),
-            ExprNode::Analytic(Analytic::Exponential, inner) => (-graph.expr(*inner)).exponential(),
-            ExprNode::Literal(_) => {
-                let inverse = self.rational_inverse_of_literal();
-                inverse.unwrap_or_else(|| self.atom_of(ExprNode::Inverse(self.id), self.shape()))
-            }
+            ExprNode::Of(Operation::Analytic(Analytic::Exponential), inner) => (-graph.expr(*inner)).exponential(),
+            ExprNode::Literal(entries) => self.inverse_of_literal(entries).unwrap_or_else(|| atom(self)),
             ExprNode::Sum(terms) => {
                 // I + c L rather than a I + b L: the form that the rules of `expand` know.
                 let unit = terms.iter().find(|term| term.word.is_empty() && term.scalars.is_empty());
-                match unit.map(|term| term.coefficient.clone()).filter(|coefficient| !coefficient.is_one()) {
-                    Some(coefficient) => {
-                        let monic = self.times(&coefficient.recip());
-                        self.atom_of(ExprNode::Inverse(monic.id), self.shape()).times(&coefficient.recip())
-                    }
-                    None => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
-                }
+                let scale = unit.map_or_else(Rational::one, |term| term.coefficient.recip());
+                atom(self.times(&scale)).times(&scale)
             }
-            _ => self.atom_of(ExprNode::Inverse(self.id), self.shape()),
+            _ => atom(self),
         }
+    }
+
+    /// The inverse of a matrix of numbers, by exact elimination.
+    fn inverse_of_literal(self, entries: &[Rational]) -> Option<Expr<'g>> {
+        let n = self.shape().rows;
+        let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
+        let row = |(i, row): (usize, &[Rational])| row.iter().cloned().chain((0..n).map(|j| unit(i, j))).collect();
+        let mut rows: Vec<Vec<Rational>> = entries.chunks(n).enumerate().map(row).collect();
+        crate::reduce(&mut rows).iter().copied().take(n).eq(0..n).then(|| {
+            let entries = rows.into_iter().flat_map(|row| row.into_iter().skip(n));
+            self.graph.literal(self.shape(), entries.collect())
+        })
     }
 
     /// The determinant of a square matrix.
@@ -130,29 +130,26 @@ impl<'g> Expr<'g> {
         if self.shape().is_scalar() {
             return self;
         }
-        match self.is_zero() {
-            true => graph.integer(0),
-            false if self.is_identity() || graph.is_special(self.id) => graph.integer(1),
-            false => {
-                let Term { coefficient, scalars, word } = self.factor();
-                let scale = graph.collect(Shape::scalar(), [Term { coefficient, scalars, word: Vec::new() }]);
-                let plain =
-                    graph.collect(self.shape(), [Term { coefficient: Rational::one(), scalars: Vec::new(), word }]);
-                let value = match plain.is_identity() {
-                    true => graph.integer(1),
-                    false => self.atom_of(ExprNode::Determinant(plain.id), Shape::scalar()),
-                };
-                scale.powi(n as i32) * value
-            }
+        if self.is_zero() {
+            return graph.integer(0);
         }
+        if self.is_identity() || graph.is_special(self.id) {
+            return graph.integer(1);
+        }
+        let (scale, plain) = self.factor().split();
+        let scale = graph.scalar(scale);
+        let plain = graph.collect(self.shape(), [plain]);
+        let value = match plain.is_identity() {
+            true => graph.integer(1),
+            false => plain.atom_of(Operation::Determinant, Shape::scalar()),
+        };
+        scale.powi(n as i32) * value
     }
 
     /// The scalar product aᵀb of vectors, tr(AᵀB) of matrices.
     pub fn dot(self, other: Expr<'g>) -> Expr<'g> {
-        match self.shape().is_column() {
-            true => self.transpose() * other,
-            false => (self.transpose() * other).trace(),
-        }
+        let product = self.transpose() * other;
+        if self.shape().is_column() { product } else { product.trace() }
     }
 
     /// ⟨A, B⟩ = tr(AᵀB) for arrays of any shape.
@@ -185,7 +182,7 @@ impl<'g> Expr<'g> {
         self.linear(shape, |left| {
             other.linear(shape, |right| {
                 let (a, b) = if left.id <= right.id { (left, right) } else { (right, left) };
-                left.atom_of(ExprNode::Hadamard(a.id, b.id), shape)
+                self.graph.intern(ExprNode::Hadamard(a.id, b.id), shape)
             })
         })
     }
@@ -195,10 +192,9 @@ impl<'g> Expr<'g> {
         let shape = Shape::square(self.shape().rows);
         self.linear(shape, |plain| match &*plain.node() {
             ExprNode::Literal(entries) => {
-                let entry = |(i, j): (usize, usize)| if i == j { entries[i].clone() } else { Rational::zero() };
-                plain.graph.literal(shape, shape.positions().map(entry).collect())
+                plain.graph.sparse_literal(shape, entries.iter().enumerate().map(|(i, entry)| (i, i, entry.clone())))
             }
-            _ => plain.atom_of(ExprNode::DiagonalMatrix(plain.id), shape),
+            _ => plain.atom_of(Operation::DiagonalMatrix, shape),
         })
     }
 
@@ -206,9 +202,9 @@ impl<'g> Expr<'g> {
     pub fn diagonal(self) -> Expr<'g> {
         let shape = Shape::vector(self.shape().rows);
         self.linear(shape, |plain| match &*plain.node() {
-            ExprNode::DiagonalMatrix(inner) => plain.graph.expr(*inner),
+            ExprNode::Of(Operation::DiagonalMatrix, inner) => plain.graph.expr(*inner),
             _ if plain.is_identity() => plain.graph.literal(shape, vec![Rational::one(); shape.rows]),
-            _ => plain.atom_of(ExprNode::Diagonal(plain.id), shape),
+            _ => plain.atom_of(Operation::Diagonal, shape),
         })
     }
 }
@@ -216,39 +212,35 @@ impl<'g> Expr<'g> {
 impl Graph {
     /// The trace of a product of letters: cyclic, equal to that of the transpose, cut where an inner dimension is one.
     fn trace_of_word(&self, word: Vec<Id>, n: usize) -> Expr<'_> {
-        match word.as_slice() {
+        let (first, middle, last) = match word.as_slice() {
             [] => return self.integer(n as i64),
             [letter] => return self.trace_of_letter(*letter),
-            _ => {}
-        }
+            [first, middle @ .., last] => (*first, middle, *last),
+        };
         if let Some(start) = word.iter().position(|&letter| self.shape(letter).rows == 1) {
             let rotated = [&word[start..], &word[..start]].concat();
             return self.with_word(Term::number(Rational::one()), rotated, Shape::scalar());
         }
-        let folded = self.expr(word[word.len() - 1]) * self.expr(word[0]);
+        let folded = self.expr(last) * self.expr(first);
         if folded.factor().word.len() < 2 && folded.terms().len() == 1 {
-            let middle = word[1..word.len() - 1].iter().map(|&letter| self.expr(letter));
-            return middle.fold(folded, Expr::product).trace();
+            return middle.iter().map(|&letter| self.expr(letter)).fold(folded, Expr::product).trace();
         }
-        self.least_trace(word)
+        self.least_trace(&word)
     }
 
     fn trace_of_letter(&self, letter: Id) -> Expr<'_> {
         let expr = self.expr(letter);
+        let n = expr.shape().rows;
         match &*self.node(letter) {
             ExprNode::Sum(_) => expr.trace(),
-            ExprNode::Transpose(inner) => self.expr(*inner).trace(),
-            ExprNode::Wedge(algebra, _) if algebra.is_skew() => self.integer(0),
-            ExprNode::DiagonalMatrix(inner) => {
-                let n = self.shape(*inner).rows;
+            ExprNode::Of(Operation::Transpose, inner) => self.expr(*inner).trace(),
+            ExprNode::Of(Operation::Wedge(algebra), _) if algebra.is_skew() => self.integer(0),
+            ExprNode::Symbol(symbol) if symbol.property == Property::Skew => self.integer(0),
+            ExprNode::Of(Operation::DiagonalMatrix, inner) => {
                 (0..n).map(|i| self.expr(*inner).entry(i, 0)).fold(self.integer(0), |sum, entry| sum + entry)
             }
-            ExprNode::Literal(entries) => {
-                let n = self.shape(letter).rows;
-                self.number((0..n).map(|i| entries[i * n + i].clone()).sum())
-            }
-            ExprNode::Symbol(_) if self.has_property(letter, Property::Skew) => self.integer(0),
-            ExprNode::Embed(inner, row, column) => {
+            ExprNode::Literal(entries) => self.number(entries.iter().step_by(n + 1).cloned().sum()),
+            ExprNode::Of(Operation::Embed(row, column), inner) => {
                 // the part on the diagonal of the whole
                 let (inner, first) = (self.expr(*inner), (*row).max(*column));
                 let last = (row + inner.shape().rows).min(column + inner.shape().columns);
@@ -262,20 +254,21 @@ impl Graph {
     }
 
     /// Of all rotations of a word and of its transpose, the first in the order of letters.
-    fn least_trace(&self, word: Vec<Id>) -> Expr<'_> {
-        let rotations =
-            |word: &[Id]| -> Vec<Vec<Id>> { (0..word.len()).map(|k| [&word[k..], &word[..k]].concat()).collect() };
-        let mut candidates: Vec<(Vec<Id>, Rational)> =
-            rotations(&word).into_iter().map(|w| (w, Rational::one())).collect();
-        if let Some((sign, reversed)) = self.transposed_word(&word) {
-            candidates.extend(rotations(&reversed).into_iter().map(|w| (w, sign.clone())));
+    fn least_trace(&self, word: &[Id]) -> Expr<'_> {
+        let mut candidates: Vec<(Vec<Id>, Rational)> = Vec::new();
+        let mut add_rotations = |sign: Rational, word: &[Id]| {
+            candidates.extend((0..word.len()).map(|k| ([&word[k..], &word[..k]].concat(), sign.clone())));
+        };
+        add_rotations(Rational::one(), word);
+        if let Some((sign, reversed)) = self.transposed_word(word) {
+            add_rotations(sign, &reversed);
         }
         candidates.sort();
         // by construction: a word has at least one rotation
-        let (least, sign) = candidates[0].clone();
-        if candidates.iter().any(|(other, other_sign)| *other == least && *other_sign != sign) {
+        let (least, sign) = &candidates[0];
+        if candidates.iter().any(|(other, other_sign)| other == least && other_sign != sign) {
             return self.integer(0);
         }
-        self.intern(ExprNode::Trace(least), Shape::scalar()).times(&sign)
+        self.intern(ExprNode::Trace(least.clone()), Shape::scalar()).times(sign)
     }
 }

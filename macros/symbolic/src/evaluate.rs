@@ -1,7 +1,7 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
-use crate::node::{Analytic, Exponent, ExprNode, Function, Id};
-use crate::{Expr, Graph, Rational, Shape, Table, work};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation};
+use crate::{Expr, Graph, Rational, Shape, Sparse, Table, work};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
@@ -31,7 +31,7 @@ pub trait Number: Copy + PartialEq {
     /// A power series of a matrix.
     fn analytic(function: Analytic, argument: &Matrix<Self>) -> Matrix<Self>;
     /// The value of a method that is not known here.
-    fn opaque(name: u32, output: usize, arguments: &[&Matrix<Self>], shape: Shape) -> Matrix<Self>;
+    fn opaque(name: &str, output: usize, arguments: &[&Matrix<Self>], shape: Shape) -> Matrix<Self>;
     /// π.
     fn pi() -> Self;
 }
@@ -69,23 +69,20 @@ impl Number for f64 {
         }
     }
     fn analytic(function: Analytic, argument: &Matrix<f64>) -> Matrix<f64> {
-        let n = argument.shape.rows;
-        let mut power = Matrix::scaled_identity(n, 1.0);
-        let mut sum = power.clone();
-        match function {
-            // the series themselves: this is for matrices of moderate size in tests
-            Analytic::Exponential | Analytic::Phi => {
-                let shift = if function == Analytic::Phi { 1 } else { 0 };
-                for k in 1..120 {
-                    power = power.multiply(argument).scale(1.0 / f64::from(k + shift));
-                    sum = sum.add(&power);
-                }
-                sum
-            }
-            Analytic::Logarithm => Matrix::from_fn(argument.shape, |_| f64::NAN),
+        if function == Analytic::Logarithm {
+            return Matrix::from_fn(argument.shape, |_| f64::NAN);
         }
+        // the series themselves: this is for matrices of moderate size in tests
+        let shift = if function == Analytic::Phi { 1 } else { 0 };
+        let mut power = Matrix::scaled_identity(argument.shape.rows, 1.0);
+        let mut sum = power.clone();
+        for k in 1..120 {
+            power = power.multiply(argument).scale(1.0 / f64::from(k + shift));
+            sum.add_scaled(&power, 1.0);
+        }
+        sum
     }
-    fn opaque(_: u32, _: usize, _: &[&Matrix<f64>], shape: Shape) -> Matrix<f64> {
+    fn opaque(_: &str, _: usize, _: &[&Matrix<f64>], shape: Shape) -> Matrix<f64> {
         Matrix::from_fn(shape, |_| f64::NAN)
     }
     fn pi() -> f64 {
@@ -140,29 +137,32 @@ impl<K: Number> Matrix<K> {
         self.entries[i * self.shape.columns + j]
     }
 
-    /// The matrix without anything in it.
-    fn zeros(shape: Shape) -> Matrix<K> {
+    pub(crate) fn zeros(shape: Shape) -> Matrix<K> {
         work::spend(1 + shape.len() / 4);
         Matrix::new(shape, vec![zero(); shape.len()])
     }
 
-    fn add(&self, other: &Matrix<K>) -> Matrix<K> {
-        Matrix::new(self.shape, self.entries.iter().zip(&other.entries).map(|(a, b)| a.add(*b)).collect())
-    }
-
-    /// Adds a number to the entry at a place.
-    fn add_at(&mut self, place: usize, value: K) {
-        self.entries[place] = self.entries[place].add(value);
+    /// Adds a number to the entry at (row, column).
+    pub(crate) fn add_at(&mut self, (row, column): (usize, usize), value: K) {
+        let entry = &mut self.entries[row * self.shape.columns + column];
+        *entry = entry.add(value);
     }
 
     /// Adds a multiple of another matrix.
-    fn add_scaled(&mut self, other: &Matrix<K>, factor: K) {
+    pub(crate) fn add_scaled(&mut self, other: &Matrix<K>, factor: K) {
         for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
             *entry = entry.add(other.multiply(factor));
         }
     }
 
-    fn scale(&self, factor: K) -> Matrix<K> {
+    /// Adds a multiple of a matrix that is given by its entries.
+    pub(crate) fn add_sparse(&mut self, element: &Sparse, factor: K) {
+        for (i, j, value) in element {
+            self.add_at((*i, *j), factor.multiply(K::from_rational(value)));
+        }
+    }
+
+    pub(crate) fn scale(&self, factor: K) -> Matrix<K> {
         Matrix::new(self.shape, self.entries.iter().map(|entry| entry.multiply(factor)).collect())
     }
 
@@ -174,9 +174,8 @@ impl<K: Number> Matrix<K> {
         if other.shape.is_scalar() {
             return self.scale(other.entries[0]);
         }
-        work::spend(self.shape.len() * other.shape.columns / 4);
         let (columns, shape) = (other.shape.columns, Shape::new(self.shape.rows, other.shape.columns));
-        work::spend(1 + shape.len() / 4);
+        work::spend(1 + self.shape.len() * columns / 4 + shape.len() / 4);
         let mut entries = Vec::with_capacity(shape.len());
         for row in self.entries.chunks(self.shape.columns) {
             entries.extend((0..columns).map(|j| K::dot(row, other.entries[j..].iter().step_by(columns))));
@@ -197,32 +196,44 @@ impl<K: Number> Matrix<K> {
     pub fn inverse(&self) -> (Matrix<K>, K) {
         let n = self.shape.rows;
         work::spend(n * n * n / 2);
-        let (mut left, mut right) = (self.clone(), Matrix::scaled_identity(n, one::<K>()));
-        let mut determinant: K = one();
-        for column in 0..n {
-            let pivot = (column..n).find(|&row| left.at(row, column) != zero()).unwrap_or(column);
-            if pivot != column {
-                determinant = negative(determinant);
-                for k in 0..n {
-                    left.entries.swap(column * n + k, pivot * n + k);
-                    right.entries.swap(column * n + k, pivot * n + k);
+        let unit = |i: usize, j: usize| if j == i + n { one() } else { zero() };
+        let entry = |(i, j): (usize, usize)| if j < n { self.at(i, j) } else { unit(i, j) };
+        let shape = Shape::new(n, 2 * n);
+        let mut both = Matrix::new(shape, shape.positions().map(entry).collect());
+        let (pivots, determinant) = both.reduce(n);
+        let is_regular = pivots.len() == n;
+        let entry = |(i, j): (usize, usize)| if is_regular { both.at(i, n + j) } else { zero::<K>().reciprocal() };
+        let inverse = Matrix::new(self.shape, self.shape.positions().map(entry).collect());
+        (inverse, if is_regular { determinant } else { zero() })
+    }
+
+    /// Brings the first columns into reduced row echelon form. Gives the columns of the pivots and their product, with the sign of
+    /// the exchange of rows.
+    pub(crate) fn reduce(&mut self, columns: usize) -> (Vec<usize>, K) {
+        let Shape { rows, columns: width } = self.shape;
+        let mut pivots = Vec::new();
+        let mut product: K = one();
+        for column in 0..columns {
+            let rank = pivots.len();
+            let Some(found) = (rank..rows).find(|&row| self.at(row, column) != zero()) else { continue };
+            if found != rank {
+                product = negative(product);
+                (0..width).for_each(|k| self.entries.swap(rank * width + k, found * width + k));
+            }
+            product = product.multiply(self.at(rank, column));
+            let reciprocal = self.at(rank, column).reciprocal();
+            let pivot = &mut self.entries[rank * width..][..width];
+            pivot.iter_mut().for_each(|entry| *entry = entry.multiply(reciprocal));
+            let pivot = pivot.to_vec();
+            for (_, row) in self.entries.chunks_mut(width).enumerate().filter(|(row, _)| *row != rank) {
+                let factor = negative(row[column]);
+                for (entry, other) in row.iter_mut().zip(&pivot).skip(column) {
+                    *entry = entry.add(other.multiply(factor));
                 }
             }
-            determinant = determinant.multiply(left.at(column, column));
-            let reciprocal = left.at(column, column).reciprocal();
-            for k in 0..n {
-                left.entries[column * n + k] = left.at(column, k).multiply(reciprocal);
-                right.entries[column * n + k] = right.at(column, k).multiply(reciprocal);
-            }
-            for row in (0..n).filter(|&row| row != column) {
-                let factor = negative(left.at(row, column));
-                for k in 0..n {
-                    left.entries[row * n + k] = left.at(row, k).add(left.at(column, k).multiply(factor));
-                    right.entries[row * n + k] = right.at(row, k).add(right.at(column, k).multiply(factor));
-                }
-            }
+            pivots.push(column);
         }
-        (right, determinant)
+        (pivots, product)
     }
 }
 
@@ -252,10 +263,8 @@ impl<'g> Expr<'g> {
     ) -> Matrix<K> {
         for id in self.reachable_where(|id| !known.contains(&id)) {
             let expr = self.graph.expr(id);
-            let value = match &*expr.node() {
-                ExprNode::Symbol(_) => values(expr),
-                _ => expr.evaluate_node(known),
-            };
+            let is_symbol = matches!(&*expr.node(), ExprNode::Symbol(_));
+            let value = if is_symbol { values(expr) } else { expr.evaluate_node(known) };
             known.insert(id, value);
         }
         known[&self.id].clone()
@@ -278,7 +287,7 @@ impl<'g> Expr<'g> {
                     let powers = term.scalars.iter().map(|(base, exponent)| power(known[base].entries[0], *exponent));
                     let scale = powers.fold(K::from_rational(&term.coefficient), K::multiply);
                     match term.word.as_slice() {
-                        [] => (0..shape.rows).for_each(|i| sum.add_at(i * (shape.columns + 1), scale)),
+                        [] => (0..shape.rows).for_each(|i| sum.add_at((i, i), scale)),
                         [letter] => sum.add_scaled(&known[letter], scale),
                         word => product(word).iter().for_each(|word| sum.add_scaled(word, scale)),
                     }
@@ -290,52 +299,50 @@ impl<'g> Expr<'g> {
             }
             ExprNode::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
             ExprNode::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
-            ExprNode::Transpose(a) => known[a].transpose(),
-            ExprNode::Inverse(a) => known[a].inverse().0,
-            ExprNode::Determinant(a) => scalar(known[a].inverse().1),
-            ExprNode::Function(function, a) => scalar(known[a].entries[0].function(*function)),
-            ExprNode::Analytic(function, a) => K::analytic(*function, &known[a]),
             ExprNode::Opaque(name, output, arguments) => {
                 let arguments: Vec<&Matrix<K>> = arguments.iter().map(|argument| &known[argument]).collect();
-                K::opaque(name.0, *output, &arguments, shape)
+                K::opaque(name, *output, &arguments, shape)
             }
-            ExprNode::Block(a, row, column) => Matrix::from_fn(shape, |(i, j)| known[a].at(row + i, column + j)),
-            ExprNode::Embed(a, row, column) => Matrix::from_fn(shape, |(i, j)| {
-                let inner = &known[a];
-                let inside =
-                    i >= *row && j >= *column && i < row + inner.shape.rows && j < column + inner.shape.columns;
-                if inside { inner.at(i - row, j - column) } else { zero() }
-            }),
             ExprNode::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
-            ExprNode::DiagonalMatrix(a) => {
-                Matrix::from_fn(shape, |(i, j)| if i == j { known[a].at(i, 0) } else { zero() })
+            ExprNode::Of(operation, a) => self.evaluate_operation(*operation, &known[a]),
+        }
+    }
+
+    fn evaluate_operation<K: Number>(self, operation: Operation, a: &Matrix<K>) -> Matrix<K> {
+        let shape = self.shape();
+        let scalar = |value: K| Matrix::new(Shape::scalar(), vec![value]);
+        match operation {
+            Operation::Transpose => a.transpose(),
+            Operation::Inverse => a.inverse().0,
+            Operation::Determinant => scalar(a.inverse().1),
+            Operation::Function(function) => scalar(a.entries[0].function(function)),
+            Operation::Analytic(function) => K::analytic(function, a),
+            Operation::Block(row, column) => Matrix::from_fn(shape, |(i, j)| a.at(row + i, column + j)),
+            Operation::Embed(row, column) => {
+                let mut matrix = Matrix::zeros(shape);
+                a.shape.positions().for_each(|(i, j)| matrix.add_at((row + i, column + j), a.at(i, j)));
+                matrix
             }
-            ExprNode::Diagonal(a) => Matrix::from_fn(shape, |(i, _)| known[a].at(i, i)),
-            ExprNode::Wedge(algebra, a) => {
-                let mut matrix = Matrix::<K>::zeros(shape);
-                for (k, entries) in self.graph.basis(*algebra).elements.iter().enumerate() {
-                    for (i, j, value) in entries {
-                        let entry = known[a].at(k, 0).multiply(K::from_rational(value));
-                        matrix.entries[i * shape.columns + j] = matrix.at(*i, *j).add(entry);
-                    }
+            Operation::DiagonalMatrix => Matrix::from_fn(shape, |(i, j)| if i == j { a.at(i, 0) } else { zero() }),
+            Operation::Diagonal => Matrix::from_fn(shape, |(i, _)| a.at(i, i)),
+            Operation::Wedge(algebra) => {
+                let mut matrix = Matrix::zeros(shape);
+                for (element, x) in self.graph.basis(algebra).elements.iter().zip(&a.entries) {
+                    matrix.add_sparse(element, *x);
                 }
                 matrix
             }
-            ExprNode::Components(algebra, a) => {
-                let component = |entries: &crate::Sparse| {
-                    let product = |(i, j, value): &(usize, usize, Rational)| {
-                        known[a].at(*i, *j).multiply(K::from_rational(value))
-                    };
-                    entries.iter().map(product).fold(zero(), K::add)
-                };
-                Matrix::new(shape, self.graph.basis(*algebra).elements.iter().map(component).collect())
+            Operation::Components(algebra) => {
+                let product = |(i, j, value): &(usize, usize, Rational)| a.at(*i, *j).multiply(K::from_rational(value));
+                let component = |element: &Sparse| element.iter().map(product).fold(zero(), K::add);
+                Matrix::new(shape, self.graph.basis(algebra).elements.iter().map(component).collect())
             }
         }
     }
 }
 
 /// base^exponent: the integer part by multiplication, the fraction by the field's own root.
-fn power<K: Number>(base: K, exponent: Exponent) -> K {
+pub(crate) fn power<K: Number>(base: K, exponent: Exponent) -> K {
     if exponent.is_one() {
         return base;
     }

@@ -1,5 +1,6 @@
 //! Handles to expressions, and the operators on them.
 
+use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -8,7 +9,7 @@ use std::rc::Rc;
 use num_traits::{One, Zero};
 
 use crate::node::{ExprNode, Id};
-use crate::{Graph, Rational, Shape, Symbol, integer};
+use crate::{Graph, Property, Rational, Shape, Symbol, integer};
 
 /// A matrix-valued expression; scalars are 1×1. Copying is free, equality is structural.
 ///
@@ -42,19 +43,27 @@ impl<'g> Expr<'g> {
     /// The symbol, if it is one.
     pub fn as_symbol(self) -> Option<Symbol> {
         match &*self.node() {
-            ExprNode::Symbol(id) => Some(self.graph.symbol_data(*id)),
+            ExprNode::Symbol(symbol) => Some((**symbol).clone()),
             _ => None,
+        }
+    }
+
+    /// What is promised about a symbol; nothing about other expressions.
+    pub(crate) fn property(self) -> Property {
+        match &*self.node() {
+            ExprNode::Symbol(symbol) => symbol.property,
+            _ => Property::General,
         }
     }
 
     /// The value, if it is a rational number.
     pub fn as_number(self) -> Option<Rational> {
-        match &*self.node() {
-            ExprNode::Sum(terms) if self.shape().is_scalar() => match terms.as_slice() {
-                [] => Some(Rational::zero()),
-                [term] if term.scalars.is_empty() => Some(term.coefficient.clone()),
-                _ => None,
-            },
+        let node = self.node();
+        let ExprNode::Sum(terms) = &*node else { return None };
+        match terms.as_slice() {
+            _ if !self.shape().is_scalar() => None,
+            [] => Some(Rational::zero()),
+            [term] if term.scalars.is_empty() => Some(term.coefficient.clone()),
             _ => None,
         }
     }
@@ -90,13 +99,13 @@ impl Hash for Expr<'_> {
 }
 
 impl PartialOrd for Expr<'_> {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
 impl Ord for Expr<'_> {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+    fn cmp(&self, other: &Self) -> Ordering {
         self.id.cmp(&other.id)
     }
 }
@@ -107,51 +116,31 @@ impl fmt::Debug for Expr<'_> {
     }
 }
 
-impl<'g> Add for Expr<'g> {
-    type Output = Expr<'g>;
-    fn add(self, other: Expr<'g>) -> Expr<'g> {
-        self.sum(other, Rational::one())
-    }
+/// The operators, each by a function of its operands.
+macro_rules! operators {
+    ($($operator:ident::$function:ident($a:ident: $left:ty, $b:ident: $right:ty) = $result:expr;)*) => {$(
+        impl<'g> $operator<$right> for $left {
+            type Output = Expr<'g>;
+            fn $function(self, $b: $right) -> Expr<'g> {
+                let $a = self;
+                $result
+            }
+        }
+    )*};
 }
 
-impl<'g> Sub for Expr<'g> {
-    type Output = Expr<'g>;
-    fn sub(self, other: Expr<'g>) -> Expr<'g> {
-        self.sum(other, integer(-1))
-    }
+operators! {
+    Add::add(a: Expr<'g>, b: Expr<'g>) = a.sum(b, Rational::one());
+    Sub::sub(a: Expr<'g>, b: Expr<'g>) = a.sum(b, integer(-1));
+    Mul::mul(a: Expr<'g>, b: Expr<'g>) = a.product(b);
+    Mul::mul(a: i64, b: Expr<'g>) = b.times(&integer(a));
+    Div::div(a: Expr<'g>, b: Expr<'g>) = a * b.powi(-1);
+    Div::div(a: Expr<'g>, b: i64) = a.times(&integer(b).recip());
 }
 
 impl<'g> Neg for Expr<'g> {
     type Output = Expr<'g>;
     fn neg(self) -> Expr<'g> {
         self.times(&integer(-1))
-    }
-}
-
-impl<'g> Mul for Expr<'g> {
-    type Output = Expr<'g>;
-    fn mul(self, other: Expr<'g>) -> Expr<'g> {
-        self.product(other)
-    }
-}
-
-impl<'g> Mul<Expr<'g>> for i64 {
-    type Output = Expr<'g>;
-    fn mul(self, other: Expr<'g>) -> Expr<'g> {
-        other.times(&integer(self))
-    }
-}
-
-impl<'g> Div for Expr<'g> {
-    type Output = Expr<'g>;
-    fn div(self, other: Expr<'g>) -> Expr<'g> {
-        self * other.powi(-1)
-    }
-}
-
-impl<'g> Div<i64> for Expr<'g> {
-    type Output = Expr<'g>;
-    fn div(self, other: i64) -> Expr<'g> {
-        self.times(&integer(other).recip())
     }
 }

@@ -2,15 +2,13 @@
 
 use std::cmp::Ordering;
 use std::fmt;
-use std::ops::{Add, AddAssign, Mul, Neg};
-
-use num_traits::Zero;
+use std::ops::{Add, Mul, Neg};
 
 /// numerator/denominator in lowest terms, with a positive denominator and a numerator that has a negative.
 #[derive(Copy, Clone, PartialEq, Eq, Hash)]
-pub(crate) struct Fraction {
-    numerator: i64,
-    denominator: i64,
+pub struct Fraction {
+    pub(crate) numerator: i64,
+    pub(crate) denominator: i64,
 }
 
 impl Fraction {
@@ -31,16 +29,8 @@ impl Fraction {
         Some(Fraction { numerator, denominator: i64::try_from(denominator / divisor).ok()? })
     }
 
-    pub(crate) fn numerator(self) -> i64 {
-        self.numerator
-    }
-
-    pub(crate) fn denominator(self) -> i64 {
-        self.denominator
-    }
-
     /// Numerator and denominator.
-    pub(crate) fn parts(self) -> (i64, i64) {
+    pub fn parts(self) -> (i64, i64) {
         (self.numerator, self.denominator)
     }
 
@@ -48,8 +38,9 @@ impl Fraction {
         self.numerator == 0
     }
 
-    pub(crate) fn is_one(self) -> bool {
-        self.numerator == 1 && self.denominator == 1
+    /// Whether it is one.
+    pub fn is_one(self) -> bool {
+        self == Fraction::ONE
     }
 
     pub(crate) fn is_negative(self) -> bool {
@@ -75,8 +66,8 @@ impl Fraction {
     /// a + b, where it fits.
     pub(crate) fn checked_add(self, other: Fraction) -> Option<Fraction> {
         if self.denominator == 1 && other.denominator == 1 {
-            let numerator = self.numerator.checked_add(other.numerator).filter(|sum| *sum != i64::MIN)?;
-            return Some(Fraction { numerator, denominator: 1 });
+            let sum = self.numerator.checked_add(other.numerator).filter(|sum| *sum != i64::MIN);
+            return sum.map(Fraction::integer);
         }
         let (a, b) = (i128::from(self.numerator), i128::from(self.denominator));
         let (c, d) = (i128::from(other.numerator), i128::from(other.denominator));
@@ -86,8 +77,8 @@ impl Fraction {
     /// a·b, where it fits.
     pub(crate) fn checked_mul(self, other: Fraction) -> Option<Fraction> {
         if self.denominator == 1 && other.denominator == 1 {
-            let numerator = self.numerator.checked_mul(other.numerator).filter(|product| *product != i64::MIN)?;
-            return Some(Fraction { numerator, denominator: 1 });
+            let product = self.numerator.checked_mul(other.numerator).filter(|product| *product != i64::MIN);
+            return product.map(Fraction::integer);
         }
         let numerator = i128::from(self.numerator) * i128::from(other.numerator);
         Fraction::reduced(numerator, i128::from(self.denominator) * i128::from(other.denominator))
@@ -95,16 +86,6 @@ impl Fraction {
 }
 
 fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
-    while b != 0 {
-        if let (Ok(a), Ok(b)) = (u64::try_from(a), u64::try_from(b)) {
-            return u128::from(short_divisor(a, b));
-        }
-        (a, b) = (b, a % b);
-    }
-    a
-}
-
-fn short_divisor(mut a: u64, mut b: u64) -> u64 {
     while b != 0 {
         (a, b) = (b, a % b);
     }
@@ -126,26 +107,11 @@ impl Add for Fraction {
     }
 }
 
-impl AddAssign for Fraction {
-    fn add_assign(&mut self, other: Fraction) {
-        *self = *self + other;
-    }
-}
-
 impl Mul for Fraction {
     type Output = Fraction;
     fn mul(self, other: Fraction) -> Fraction {
         // by construction: what is multiplied without a check are exponents, which are small
         self.checked_mul(other).expect("exponents are small")
-    }
-}
-
-impl Zero for Fraction {
-    fn zero() -> Fraction {
-        Fraction::ZERO
-    }
-    fn is_zero(&self) -> bool {
-        self.numerator == 0
     }
 }
 
@@ -177,35 +143,5 @@ impl fmt::Display for Fraction {
 impl fmt::Debug for Fraction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Fraction;
-
-    #[test]
-    fn lowest_terms_and_order() {
-        let fraction = |n, d| Fraction::reduced(n, d).expect("it fits");
-        assert_eq!(fraction(6, -4).parts(), (-3, 2));
-        assert_eq!(fraction(-1, 2).floor(), -1);
-        assert!(fraction(1, 3) < fraction(1, 2) && fraction(-1, 2) < fraction(-1, 3));
-        assert_eq!(fraction(1, 3) + fraction(1, 6), fraction(1, 2));
-        assert_eq!(fraction(2, 3) * fraction(-3, 4), fraction(-1, 2));
-        assert_eq!(fraction(-2, 3).reciprocal(), Some(fraction(-3, 2)));
-        assert_eq!(Fraction::ZERO.reciprocal(), None);
-    }
-
-    #[test]
-    fn what_does_not_fit_is_no_fraction() {
-        let most = Fraction::integer(i64::MAX);
-        assert_eq!(most.checked_add(Fraction::ONE), None);
-        assert_eq!((-most).checked_add(-Fraction::ONE), None);
-        assert_eq!(most.checked_mul(most), None);
-        let least = Fraction::reduced(1, i128::from(i64::MAX)).expect("it fits");
-        assert_eq!(least.checked_mul(least), None);
-        assert_eq!(least.checked_mul(most), Some(Fraction::ONE));
-        assert_eq!(Fraction::reduced(i128::from(i64::MIN), 1), None);
-        assert_eq!(Fraction::reduced(1, 0), None);
     }
 }

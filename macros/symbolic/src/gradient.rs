@@ -1,8 +1,8 @@
 //! Derivatives: gradients by reverse accumulation, directional derivatives by the product rule.
 
 use crate::memory::{self, Images, Map};
-use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Term};
-use crate::{Expr, Rational, Shape, Table};
+use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
+use crate::{Expr, Graph, Rational, Shape, Table};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
@@ -27,7 +27,6 @@ impl<'g> Expr<'g> {
     /// Hands the adjoint of this node on to its children: `add(child, Ā)` with ⟨Ā_node, d node⟩ = Σ ⟨Ā, d child⟩.
     fn pull_back(self, adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
         let graph = self.graph;
-        let expr = |id: &Id| graph.expr(*id);
         match &*self.node() {
             ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => {}
             ExprNode::Sum(terms) => terms.iter().for_each(|term| self.pull_back_term(term, adjoint, add)),
@@ -41,66 +40,64 @@ impl<'g> Expr<'g> {
                     add(*entry, adjoint.entry(i, j));
                 }
             }
-            ExprNode::Transpose(a) => add(*a, adjoint.transpose()),
-            ExprNode::Inverse(a) => add(*a, -(self.transpose() * adjoint * self.transpose())),
-            ExprNode::Determinant(a) => add(*a, adjoint * self * expr(a).inverse().transpose()),
-            ExprNode::Function(function, a) => add(*a, adjoint * function.derivative(expr(a), self)),
-            // the adjoint of D ↦ Df(A)D with respect to tr(AᵀB) is G ↦ Df(Aᵀ)G
-            ExprNode::Analytic(function, a) => add(*a, expr(a).transpose().analytic_slope(*function, adjoint)),
             ExprNode::Opaque(name, output, arguments) => {
-                assert_eq!(*output, 0, "the second derivative of a method");
                 for (index, argument) in arguments.iter().enumerate() {
-                    let gradient = graph.opaque_of(*name, index + 1, self.arguments(arguments), graph.shape(*argument));
-                    add(*argument, adjoint * gradient);
+                    add(*argument, adjoint * graph.slope_of_opaque(name, *output, arguments, index));
                 }
             }
-            ExprNode::Block(a, row, column) => add(*a, adjoint.embed(graph.shape(*a), *row, *column)),
-            ExprNode::Embed(a, row, column) => add(*a, adjoint.block(*row, *column, graph.shape(*a))),
             ExprNode::Hadamard(a, b) => {
-                add(*a, adjoint.hadamard(expr(b)));
-                add(*b, adjoint.hadamard(expr(a)));
+                add(*a, adjoint.hadamard(graph.expr(*b)));
+                add(*b, adjoint.hadamard(graph.expr(*a)));
             }
-            ExprNode::DiagonalMatrix(a) => add(*a, adjoint.diagonal()),
-            ExprNode::Diagonal(a) => add(*a, adjoint.diagonal_matrix()),
-            ExprNode::Wedge(algebra, a) => add(*a, adjoint.components(*algebra)),
-            ExprNode::Components(algebra, a) => add(*a, adjoint.wedge(*algebra)),
+            ExprNode::Of(operation, a) => add(*a, self.pull_back_operation(*operation, graph.expr(*a), adjoint)),
         }
     }
 
+    fn pull_back_operation(self, operation: Operation, a: Expr<'g>, adjoint: Expr<'g>) -> Expr<'g> {
+        let dual = match operation {
+            Operation::Inverse => return -(self.transpose() * adjoint * self.transpose()),
+            Operation::Determinant => return adjoint * self * a.inverse().transpose(),
+            Operation::Function(function) => return adjoint * function.derivative(a, self),
+            // the adjoint of D ↦ Df(A)D with respect to tr(AᵀB) is G ↦ Df(Aᵀ)G
+            Operation::Analytic(function) => return a.transpose().analytic_slope(function, adjoint),
+            Operation::Transpose => Operation::Transpose,
+            Operation::Block(row, column) => Operation::Embed(row, column),
+            Operation::Embed(row, column) => Operation::Block(row, column),
+            Operation::DiagonalMatrix => Operation::Diagonal,
+            Operation::Diagonal => Operation::DiagonalMatrix,
+            Operation::Wedge(algebra) => Operation::Components(algebra),
+            Operation::Components(algebra) => Operation::Wedge(algebra),
+        };
+        adjoint.apply(dual, a.shape())
+    }
+
     fn pull_back_term(self, term: &Term, adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
-        let graph = self.graph;
-        let scalars_only = Term { word: Vec::new(), ..term.clone() };
-        let scale = graph.collect(Shape::scalar(), [scalars_only]);
+        let scale = self.graph.scale(term);
         if !term.word.is_empty() {
             self.pull_back_word(&term.word, scale * adjoint, add);
         }
         for (base, exponent) in &term.scalars {
-            let mut rest = Term { word: term.word.clone(), ..term.clone() };
-            rest.coefficient *= Rational::short(*exponent);
-            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
-            let rest = graph.collect(self.shape(), [rest]);
-            add(*base, adjoint.pairing(rest));
+            add(*base, adjoint.pairing(self.slope_of_term(term, *base, *exponent)));
         }
+    }
+
+    /// The derivative of a term with respect to one of its scalar factors.
+    fn slope_of_term(self, term: &Term, base: Id, exponent: Exponent) -> Expr<'g> {
+        let mut slope = term.clone();
+        slope.coefficient *= Rational::short(exponent);
+        slope.multiply_scalars(&[(base, -Exponent::ONE)]);
+        self.graph.collect(self.shape(), [slope])
     }
 
     fn pull_back_word(self, word: &[Id], adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
         let graph = self.graph;
         let transposed: Vec<Expr<'g>> = word.iter().map(|&letter| graph.expr(letter).transpose()).collect();
-        for position in 0..word.len() {
-            let left = transposed[..position]
-                .iter()
-                .fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| t * p)));
-            let right = transposed[position + 1..]
-                .iter()
-                .rev()
-                .fold(None, |product: Option<Expr<'g>>, &t| Some(product.map_or(t, |p| p * t)));
-            let with_left = left.map_or(adjoint, |l| l * adjoint);
-            add(word[position], right.map_or(with_left, |r| with_left * r));
+        for (position, letter) in word.iter().enumerate() {
+            let left = transposed[..position].iter().copied().reduce(|product, letter| letter * product);
+            let right = transposed[position + 1..].iter().rev().copied().reduce(|product, letter| product * letter);
+            let with_left = left.map_or(adjoint, |left| left * adjoint);
+            add(*letter, right.map_or(with_left, |right| with_left * right));
         }
-    }
-
-    fn arguments(self, ids: &[Id]) -> Vec<Expr<'g>> {
-        ids.iter().map(|id| self.graph.expr(*id)).collect()
     }
 
     /// Df(A)D, the upper right block of f((A D; 0 A)).
@@ -122,13 +119,13 @@ impl<'g> Expr<'g> {
 
     fn push_forward(self, tangents: &Images) -> Expr<'g> {
         let graph = self.graph;
-        let expr = |id: &Id| graph.expr(*id);
         let zero = graph.zero(self.shape());
         let tangent = |part: &Id| tangents.of(graph, part);
-        if self.node().all_children(|child| tangent(&child).is_zero()) {
+        let node = self.node();
+        if node.all_children(|child| tangent(&child).is_zero()) {
             return zero;
         }
-        match &*self.node() {
+        match &*node {
             ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => zero,
             ExprNode::Sum(terms) => {
                 graph.total(self.shape(), terms.iter().map(|term| self.push_forward_term(term, tangents)))
@@ -136,26 +133,22 @@ impl<'g> Expr<'g> {
             ExprNode::Word(word) => self.push_forward_word(word, tangents),
             ExprNode::Trace(word) => self.push_forward_word(word, tangents).trace(),
             ExprNode::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),
-            ExprNode::Transpose(a) => tangent(a).transpose(),
-            ExprNode::Inverse(a) => -(self * tangent(a) * self),
-            ExprNode::Determinant(a) => self * (expr(a).inverse() * tangent(a)).trace(),
-            ExprNode::Function(function, a) => function.derivative(expr(a), self) * tangent(a),
-            ExprNode::Analytic(function, a) => expr(a).analytic_slope(*function, tangent(a)),
             ExprNode::Opaque(name, output, arguments) => {
-                assert_eq!(*output, 0, "the second derivative of a method");
-                let gradient = |(index, argument): (usize, &Id)| {
-                    let shape = graph.shape(*argument);
-                    graph.opaque_of(*name, index + 1, self.arguments(arguments), shape).pairing(tangent(argument))
-                };
-                arguments.iter().enumerate().map(gradient).fold(zero, |sum, term| sum + term)
+                let slope = |index| graph.slope_of_opaque(name, *output, arguments, index);
+                let term = |index: usize| slope(index).pairing(tangent(&arguments[index]));
+                (0..arguments.len()).map(term).fold(zero, |sum, term| sum + term)
             }
-            ExprNode::Block(a, row, column) => tangent(a).block(*row, *column, self.shape()),
-            ExprNode::Embed(a, row, column) => tangent(a).embed(self.shape(), *row, *column),
-            ExprNode::Hadamard(a, b) => tangent(a).hadamard(expr(b)) + expr(a).hadamard(tangent(b)),
-            ExprNode::DiagonalMatrix(a) => tangent(a).diagonal_matrix(),
-            ExprNode::Diagonal(a) => tangent(a).diagonal(),
-            ExprNode::Wedge(algebra, a) => tangent(a).wedge(*algebra),
-            ExprNode::Components(algebra, a) => tangent(a).components(*algebra),
+            ExprNode::Hadamard(a, b) => tangent(a).hadamard(graph.expr(*b)) + graph.expr(*a).hadamard(tangent(b)),
+            ExprNode::Of(operation, a) => {
+                let (a, tangent) = (graph.expr(*a), tangent(a));
+                match operation {
+                    Operation::Inverse => -(self * tangent * self),
+                    Operation::Determinant => self * (a.inverse() * tangent).trace(),
+                    Operation::Function(function) => function.derivative(a, self) * tangent,
+                    Operation::Analytic(function) => a.analytic_slope(*function, tangent),
+                    linear => tangent.apply(*linear, self.shape()),
+                }
+            }
         }
     }
 
@@ -163,14 +156,10 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let mut sum = graph.zero(self.shape());
         for (base, exponent) in &term.scalars {
-            let mut rest = term.clone();
-            rest.coefficient *= Rational::short(*exponent);
-            rest.multiply_scalars(&[(*base, -Exponent::ONE)]);
-            sum = sum + tangents.of(graph, base) * graph.collect(self.shape(), [rest]);
+            sum = sum + tangents.of(graph, base) * self.slope_of_term(term, *base, *exponent);
         }
         if !term.word.is_empty() {
-            let scale = graph.collect(Shape::scalar(), [Term { word: Vec::new(), ..term.clone() }]);
-            sum = sum + scale * self.push_forward_word(&term.word, tangents);
+            sum = sum + graph.scale(term) * self.push_forward_word(&term.word, tangents);
         }
         sum
     }
@@ -186,6 +175,14 @@ impl<'g> Expr<'g> {
         };
         // by construction: a word has at least one letter
         (0..word.len()).filter_map(moved).reduce(|a, b| a + b).expect("a word has letters")
+    }
+}
+
+impl Graph {
+    /// The gradient of a method's value with respect to one of its arguments.
+    fn slope_of_opaque(&self, name: &str, output: usize, arguments: &[Id], index: usize) -> Expr<'_> {
+        assert_eq!(output, 0, "the second derivative of a method");
+        self.opaque(name, index + 1, &self.exprs(arguments), self.shape(arguments[index]))
     }
 }
 

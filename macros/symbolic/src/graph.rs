@@ -9,18 +9,16 @@ use crate::algebra::Basis;
 use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
-use crate::node::{ExprNode, Id, OpaqueId, SymbolId, Term};
+use crate::node::{ExprNode, Id, Term};
 use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
 pub struct Graph {
     nodes: RefCell<Interner<(Rc<ExprNode>, Shape)>>,
-    symbols: RefCell<Vec<Symbol>>,
-    bases: RefCell<Vec<Rc<Basis>>>,
-    blocks: RefCell<Table<Group, Rc<[Block]>>>,
-    definitions: RefCell<Vec<Rc<Definition>>>,
-    methods: RefCell<Vec<String>>,
+    pub(crate) bases: RefCell<Interner<Rc<Basis>>>,
+    pub(crate) blocks: RefCell<Table<Group, Rc<[Block]>>>,
+    pub(crate) definitions: RefCell<Vec<Rc<Definition>>>,
     pub(crate) transposed: Images,
     pub(crate) expanded: Images,
     pub(crate) maps: Maps,
@@ -59,6 +57,10 @@ impl Graph {
         Expr { graph: self, id }
     }
 
+    pub(crate) fn exprs<'g>(&'g self, ids: &[Id]) -> Vec<Expr<'g>> {
+        ids.iter().map(|id| self.expr(*id)).collect()
+    }
+
     pub(crate) fn node(&self, id: Id) -> Rc<ExprNode> {
         self.nodes.borrow().value(id.0 as usize).0.clone()
     }
@@ -67,77 +69,19 @@ impl Graph {
         self.nodes.borrow().value(id.0 as usize).1
     }
 
-    /// The index of a basis among those of this graph.
-    pub(crate) fn basis_index(&self, basis: Basis) -> u32 {
-        let known = self.bases.borrow().iter().position(|other| **other == basis);
-        known.unwrap_or_else(|| {
-            self.bases.borrow_mut().push(Rc::new(basis));
-            self.bases.borrow().len() - 1
-        }) as u32
-    }
-
-    pub(crate) fn basis_at(&self, index: u32) -> Rc<Basis> {
-        self.bases.borrow()[index as usize].clone()
-    }
-
-    /// The blocks of a group, made by `make` when they are first asked for.
-    pub(crate) fn blocks_of(&self, group: Group, make: impl FnOnce() -> Vec<Block>) -> Rc<[Block]> {
-        if let Some(known) = self.blocks.borrow().get(&group) {
-            return known.clone();
-        }
-        let made: Rc<[Block]> = make().into();
-        self.blocks.borrow_mut().insert(group, made.clone());
-        made
-    }
-
-    /// Keeps the definition of a group and gives its index.
-    pub(crate) fn keep_definition(&self, definition: Definition) -> u32 {
-        self.definitions.borrow_mut().push(Rc::new(definition));
-        self.definitions.borrow().len() as u32 - 1
-    }
-
-    pub(crate) fn definition_at(&self, index: u32) -> Rc<Definition> {
-        self.definitions.borrow()[index as usize].clone()
-    }
-
-    pub(crate) fn symbol_data(&self, id: SymbolId) -> Symbol {
-        self.symbols.borrow()[id.0 as usize].clone()
-    }
-
     /// The symbol with this name, shape, role and property; asking twice gives the same expression.
     pub fn symbol(&self, name: &str, shape: Shape, role: Role, property: Property) -> Expr<'_> {
         let symbol = Symbol { name: name.to_string(), shape, role, property };
-        let known = self.symbols.borrow().iter().position(|other| *other == symbol);
-        let index = known.unwrap_or_else(|| {
-            self.symbols.borrow_mut().push(symbol);
-            self.symbols.borrow().len() - 1
-        });
-        self.intern(ExprNode::Symbol(SymbolId(index as u32)), shape)
+        self.intern(ExprNode::Symbol(Rc::new(symbol)), shape)
     }
 
     /// What a method of the user's gives for some arguments: its value for `output` 0, its gradient with respect to argument i for
     /// `output` i + 1.
     pub fn opaque<'g>(&'g self, name: &str, output: usize, arguments: &[Expr<'g>], shape: Shape) -> Expr<'g> {
-        let known = self.methods.borrow().iter().position(|other| other == name);
-        let index = known.unwrap_or_else(|| {
-            self.methods.borrow_mut().push(name.to_string());
-            self.methods.borrow().len() - 1
-        });
-        self.opaque_of(OpaqueId(index as u32), output, arguments.to_vec(), shape)
-    }
-
-    pub(crate) fn opaque_of<'g>(
-        &'g self,
-        name: OpaqueId,
-        output: usize,
-        arguments: Vec<Expr<'g>>,
-        shape: Shape,
-    ) -> Expr<'g> {
-        self.intern(ExprNode::Opaque(name, output, arguments.iter().map(|argument| argument.id).collect()), shape)
-    }
-
-    pub(crate) fn opaque_name(&self, name: OpaqueId) -> String {
-        self.methods.borrow()[name.0 as usize].clone()
+        self.intern(
+            ExprNode::Opaque(name.into(), output, arguments.iter().map(|argument| argument.id).collect()),
+            shape,
+        )
     }
 
     /// A rational number.
@@ -171,19 +115,13 @@ impl Graph {
     }
 
     fn scaled_identity(&self, value: Rational, n: usize) -> Expr<'_> {
-        let terms = match value.is_zero() {
-            true => Vec::new(),
-            false => vec![Term { coefficient: value, scalars: Vec::new(), word: Vec::new() }],
-        };
+        let terms = if value.is_zero() { Vec::new() } else { vec![Term::number(value)] };
         self.intern(ExprNode::Sum(terms), Shape::square(n))
     }
 
     /// A matrix of numbers, row by row.
     pub fn literal(&self, shape: Shape, entries: Vec<Rational>) -> Expr<'_> {
         assert_eq!(entries.len(), shape.len(), "one number for each entry");
-        if shape.is_scalar() {
-            return self.number(entries[0].clone());
-        }
         if entries.iter().all(Rational::is_zero) {
             return self.zero(shape);
         }
@@ -194,10 +132,20 @@ impl Graph {
         self.intern(ExprNode::Literal(entries), shape)
     }
 
+    /// A matrix of numbers from its entries (row, column, value) that are not zero.
+    pub fn sparse_literal(
+        &self,
+        shape: Shape,
+        entries: impl IntoIterator<Item = (usize, usize, Rational)>,
+    ) -> Expr<'_> {
+        let mut dense = vec![Rational::zero(); shape.len()];
+        entries.into_iter().for_each(|(i, j, value)| dense[i * shape.columns + j] += value);
+        self.literal(shape, dense)
+    }
+
     /// The matrix with a one at (row, column) and zeros elsewhere.
     pub fn unit(&self, shape: Shape, row: usize, column: usize) -> Expr<'_> {
-        let one_at = |position| if position == (row, column) { Rational::one() } else { Rational::zero() };
-        self.literal(shape, shape.positions().map(one_at).collect())
+        self.sparse_literal(shape, [(row, column, Rational::one())])
     }
 
     /// A matrix of scalar expressions, row by row.

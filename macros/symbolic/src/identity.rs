@@ -13,9 +13,10 @@ use num_traits::ToPrimitive;
 use crate::evaluate::{Matrix, Number, Values, negative, one, zero};
 use crate::group::sample;
 use crate::node::{Analytic, Function, Term};
+use crate::table::hash_of;
 use crate::{Expr, Group, Property, Rational, Shape, Table};
 
-const PRIME: u64 = (1 << 61) - 1;
+pub(crate) const PRIME: u64 = (1 << 61) - 1;
 const POINTS: u64 = 3;
 
 /// An element of the field of integers modulo the prime 2⁶¹ − 1.
@@ -39,6 +40,13 @@ impl Residue {
             state ^= state >> 32;
         }
         Residue::new(state as u128)
+    }
+
+    /// A matrix of numbers that depend on the seeds and on some matrices.
+    fn scattered(mut seeds: Vec<u64>, arguments: &[&Matrix<Residue>], shape: Shape) -> Matrix<Residue> {
+        seeds.extend(arguments.iter().flat_map(|argument| &argument.entries).map(|entry| entry.0));
+        let seed = Residue::mixed(&seeds).0;
+        Matrix::from_fn(shape, |(i, j)| Residue::mixed(&[seed, i as u64, j as u64]))
     }
 }
 
@@ -98,23 +106,13 @@ impl Number for Residue {
         }
     }
     fn function(self, function: Function) -> Residue {
-        Residue::mixed(&[2, self.0, function.code()])
+        Residue::mixed(&[2, self.0, hash_of(&function)])
     }
     fn analytic(function: Analytic, argument: &Matrix<Residue>) -> Matrix<Residue> {
-        let mut seeds = vec![7, function as u64, 0];
-        seeds.extend(argument.entries.iter().map(|entry| entry.0));
-        Matrix::from_fn(argument.shape, |(i, j)| {
-            seeds[2] = (i * argument.shape.columns + j) as u64;
-            Residue::mixed(&seeds)
-        })
+        Residue::scattered(vec![7, function as u64], &[argument], argument.shape)
     }
-    fn opaque(name: u32, output: usize, arguments: &[&Matrix<Residue>], shape: Shape) -> Matrix<Residue> {
-        let mut seeds = vec![8, u64::from(name), output as u64, 0];
-        seeds.extend(arguments.iter().flat_map(|argument| argument.entries.iter().map(|entry| entry.0)));
-        Matrix::from_fn(shape, |(i, j)| {
-            seeds[3] = (i * shape.columns + j) as u64;
-            Residue::mixed(&seeds)
-        })
+    fn opaque(name: &str, output: usize, arguments: &[&Matrix<Residue>], shape: Shape) -> Matrix<Residue> {
+        Residue::scattered(vec![8, hash_of(&name), output as u64], arguments, shape)
     }
     fn pi() -> Residue {
         Residue::mixed(&[3])
@@ -181,15 +179,13 @@ impl<'g> Point<'g> {
             Property::General => Matrix::from_fn(shape, |(i, j)| random(i, j)),
             Property::Symmetric => Matrix::from_fn(shape, |(i, j)| random(i.min(j), i.max(j))),
             Property::Diagonal => Matrix::from_fn(shape, |(i, j)| if i == j { random(i, i) } else { zero() }),
-            Property::Skew => Matrix::from_fn(shape, |position| skew(position, random)),
-            Property::Orthogonal => cayley(shape.rows, random),
+            Property::Skew => Matrix::from_fn(shape, |(i, j)| random(i, j).add(negative(random(j, i)))),
+            Property::Orthogonal => self.sample_element(symbol, Group::SpecialOrthogonal(shape.rows)),
             Property::Unit => stereographic(shape, random),
             Property::Element(group) => self.sample_element(symbol, group),
         }
     }
-}
 
-impl<'g> Point<'g> {
     /// A random element of a group; any matrix where no way to make elements is known, for what holds for all matrices holds for them.
     fn sample_element(&self, symbol: Expr<'g>, group: Group) -> Matrix<Residue> {
         let mut count = 0;
@@ -200,24 +196,6 @@ impl<'g> Point<'g> {
         let element = sample::element(symbol.graph, group, &mut random);
         element.unwrap_or_else(|| Matrix::from_fn(symbol.shape(), |_| random()))
     }
-}
-
-fn skew((i, j): (usize, usize), random: impl Fn(usize, usize) -> Residue) -> Residue {
-    match i.cmp(&j) {
-        std::cmp::Ordering::Less => random(i, j),
-        std::cmp::Ordering::Equal => zero(),
-        std::cmp::Ordering::Greater => negative(random(j, i)),
-    }
-}
-
-/// (I − Z)⁻¹(I + Z) of a skew matrix Z.
-fn cayley(n: usize, random: impl Fn(usize, usize) -> Residue) -> Matrix<Residue> {
-    let unit = |i, j| if i == j { one() } else { zero::<Residue>() };
-    let shifted = |sign: i64| {
-        let sign = Residue::from_rational(&crate::integer(sign));
-        Matrix::from_fn(Shape::square(n), |(i, j)| unit(i, j).add(sign.multiply(skew((i, j), &random))))
-    };
-    shifted(-1).inverse().0.multiply(&shifted(1))
 }
 
 /// (2u, |u|² − 1)/(|u|² + 1).
@@ -281,28 +259,7 @@ pub fn rank(expr: Expr<'_>) -> usize {
 pub fn rank_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> usize {
     let mut point = Point::new(0);
     prepare(&mut point);
-    rank_of(point.evaluate(expr))
-}
-
-/// The rank of a matrix over the field.
-pub(crate) fn rank_of(mut matrix: Matrix<Residue>) -> usize {
-    let Shape { rows, columns } = matrix.shape;
-    let mut rank = 0;
-    for column in 0..columns {
-        let Some(pivot) = (rank..rows).find(|&row| matrix.at(row, column) != zero()) else { continue };
-        for k in 0..columns {
-            matrix.entries.swap(pivot * columns + k, rank * columns + k);
-        }
-        let reciprocal = matrix.at(rank, column).reciprocal();
-        for row in rank + 1..rows {
-            let factor = negative(matrix.at(row, column).multiply(reciprocal));
-            for k in 0..columns {
-                matrix.entries[row * columns + k] = matrix.at(row, k).add(matrix.at(rank, k).multiply(factor));
-            }
-        }
-        rank += 1;
-    }
-    rank
+    point.evaluate(expr).reduce(expr.shape().columns).0.len()
 }
 
 /// A basis of the constant vectors w with A·w = 0 for all values of the symbols in A that the properties allow, in reduced echelon
@@ -312,52 +269,32 @@ pub(crate) fn rank_of(mut matrix: Matrix<Residue>) -> usize {
 /// wrongly.
 pub fn null_space<'g>(matrix: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> Vec<Vec<Rational>> {
     let columns = matrix.shape().columns;
-    let mut rows: Vec<Vec<Residue>> = Vec::new();
+    let (mut rows, mut pivots): (Vec<Residue>, Vec<usize>) = (Vec::new(), Vec::new());
     // points that add nothing to the rank: as many in a row as decide an identity
     let mut idle = 0;
     for seed in 0..columns as u64 + POINTS {
         let mut point = Point::new(seed);
         prepare(&mut point);
-        let values = point.evaluate(matrix);
-        let rank = rows.len();
-        rows.extend(values.entries.chunks(columns).map(<[Residue]>::to_vec));
-        reduce(&mut rows);
-        idle = if rows.len() == rank { idle + 1 } else { 0 };
-        if idle == POINTS || rows.len() == columns {
+        rows.extend(point.evaluate(matrix).entries);
+        let rank = pivots.len();
+        let mut reduced = Matrix::new(Shape::new(rows.len() / columns, columns), rows);
+        pivots = reduced.reduce(columns).0;
+        rows = reduced.entries;
+        rows.truncate(pivots.len() * columns);
+        idle = if pivots.len() == rank { idle + 1 } else { 0 };
+        if idle == POINTS || pivots.len() == columns {
             break;
         }
     }
-    let pivots: Vec<usize> = rows.iter().filter_map(|row| row.iter().position(|entry| *entry != zero())).collect();
     let free = (0..columns).filter(|column| !pivots.contains(column));
     let vector = |column: usize| -> Option<Vec<Rational>> {
         let entry = |k: usize| match pivots.iter().position(|pivot| *pivot == k) {
-            Some(row) => negative(rows[row][column]).rational(),
+            Some(row) => negative(rows[row * columns + column]).rational(),
             None => Some(crate::integer((k == column) as i64)),
         };
         (0..columns).map(entry).collect()
     };
     free.filter_map(vector).collect()
-}
-
-/// Reduced row echelon form, without zero rows.
-fn reduce(rows: &mut Vec<Vec<Residue>>) {
-    let columns = rows.first().map_or(0, Vec::len);
-    let mut rank = 0;
-    for column in 0..columns {
-        let Some(found) = (rank..rows.len()).find(|&row| rows[row][column] != zero()) else { continue };
-        rows.swap(rank, found);
-        let scale = rows[rank][column].reciprocal();
-        rows[rank].iter_mut().for_each(|entry| *entry = entry.multiply(scale));
-        let pivot = rows[rank].clone();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != rank) {
-            let factor = negative(row[column]);
-            if factor != zero() {
-                row.iter_mut().zip(&pivot).for_each(|(entry, other)| *entry = entry.add(factor.multiply(*other)));
-            }
-        }
-        rank += 1;
-    }
-    rows.truncate(rank);
 }
 
 impl Residue {
@@ -372,22 +309,5 @@ impl Residue {
         }
         let (numerator, denominator) = if s.1 < 0 { (-r.1, -s.1) } else { (r.1, s.1) };
         (denominator > 0 && denominator < bound).then(|| crate::rational(numerator as i64, denominator as i64))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{PRIME, Residue};
-    use crate::evaluate::{Number, zero};
-
-    /// Products of the largest residues: their sums must not leave the words that hold them.
-    #[test]
-    fn sums_of_products_are_those_of_reduced_products() {
-        let numbers: Vec<Residue> = (0..20).map(|k| Residue(PRIME - 1 - k * k)).collect();
-        for count in 0..numbers.len() {
-            let (row, column) = (&numbers[..count], &numbers[numbers.len() - count..]);
-            let one_by_one = row.iter().zip(column).fold(zero(), |sum: Residue, (a, b)| sum.add(a.multiply(*b)));
-            assert_eq!(Residue::dot(row, column.iter()), one_by_one);
-        }
     }
 }

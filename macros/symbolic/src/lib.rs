@@ -34,18 +34,19 @@ mod shape;
 mod symbol;
 mod table;
 mod terms;
-mod view;
+#[cfg(test)]
+mod tests;
 mod windows;
 pub mod work;
 
 pub use algebra::{Algebra, Basis, Sparse};
 pub use evaluate::{Matrix, Number};
 pub use expr::Expr;
+pub use fraction::Fraction;
 pub use graph::Graph;
 pub use group::{Block, Chart, Declared, Group, Span, conjugate, quaternion_product, reduce};
-pub use node::{Analytic, Function};
+pub use node::{Analytic, Function, NodeOf, Operation, TermOf, View, WordTerm};
 pub use rational::{One, Rational, Zero, integer, product, rational};
 pub use shape::Shape;
 pub use symbol::{Property, Role, Symbol};
 pub use table::{Interner, Table};
-pub use view::{View, WordTerm};

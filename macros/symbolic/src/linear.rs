@@ -15,15 +15,11 @@ impl<'g> Expr<'g> {
         let mut sum = graph.zero(shape);
         for term in expanded.terms() {
             let whole = graph.collect(self.shape(), [term.clone()]);
-            let Term { mut word, coefficient, scalars } = term;
-            let trailing =
-                word.pop() == Some(vector.id) && !word.iter().any(|&letter| graph.expr(letter).depends_on(vector));
-            let free = !scalars.iter().any(|&(base, _)| graph.expr(base).depends_on(vector));
-            sum = sum
-                + match trailing && free {
-                    true => graph.collect(shape, [Term { word, coefficient, scalars }]),
-                    false => whole.jacobian(vector),
-                };
+            let mut matrix = term;
+            let trailing = matrix.word.pop() == Some(vector.id);
+            let mut factors = matrix.word.iter().chain(matrix.scalars.iter().map(|(base, _)| base));
+            let linear = trailing && !factors.any(|&factor| graph.expr(factor).depends_on(vector));
+            sum = sum + if linear { graph.collect(shape, [matrix]) } else { whole.jacobian(vector) };
         }
         sum
     }
@@ -47,8 +43,7 @@ impl<'g> Expr<'g> {
         let graph = self.graph;
         let mut sum = graph.integer(0);
         for term in self.terms() {
-            let scale = Term { word: Vec::new(), ..term.clone() };
-            let scale = graph.collect(Shape::scalar(), [scale]);
+            let scale = graph.scale(&term);
             if term.word != [vector.id] || scale.depends_on(vector) {
                 return None;
             }

@@ -3,32 +3,32 @@
 //! Every expression is a *sum of terms*; a term is a rational coefficient times commuting scalar powers times a word of
 //! matrix letters. Whatever is not a sum is an atom: a letter of a word when it is a matrix, a scalar factor when it is 1×1.
 
-use crate::fraction::Fraction;
-use crate::{Algebra, Rational};
+use std::rc::Rc;
+
+use crate::{Algebra, Expr, Fraction, Graph, Rational, Symbol};
 
 /// The identity of a node in its graph.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub(crate) struct Id(pub(crate) u32);
 
-/// The index of a symbol in its graph.
-#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub(crate) struct SymbolId(pub(crate) u32);
-
-/// The index of a method of the user's in its graph.
-#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct OpaqueId(pub(crate) u32);
-
 /// The exponent of a scalar factor.
 pub(crate) type Exponent = Fraction;
 
-/// A coefficient times scalar powers times a word; the empty word is the identity (the number one, if scalar).
+/// coefficient · Π base^exponent · word; the empty word is the identity (the number one, if scalar).
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub(crate) struct Term {
-    pub(crate) coefficient: Rational,
-    /// Sorted by identity, exponents not zero.
-    pub(crate) scalars: Vec<(Id, Exponent)>,
-    pub(crate) word: Vec<Id>,
+pub struct TermOf<C> {
+    /// The rational factor.
+    pub coefficient: Rational,
+    /// Scalar factors with their exponents, which are not zero; in a graph sorted by identity.
+    pub scalars: Vec<(C, Fraction)>,
+    /// Matrix factors.
+    pub word: Vec<C>,
 }
+
+pub(crate) type Term = TermOf<Id>;
+
+/// A term as it is seen from outside of this crate.
+pub type WordTerm<'g> = TermOf<Expr<'g>>;
 
 /// An elementary function of one scalar.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -60,44 +60,113 @@ pub enum Analytic {
     Logarithm,
 }
 
-/// An expression without its shape, which the graph keeps beside it.
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub(crate) enum ExprNode {
-    Symbol(SymbolId),
-    Pi,
-    Sum(Vec<Term>),
-    Literal(Vec<Rational>),
-    Stack(Vec<Id>),
-    /// A product of at least two letters that is 1×1.
-    Word(Vec<Id>),
-    /// The trace of a product of letters.
-    Trace(Vec<Id>),
-    Transpose(Id),
-    Inverse(Id),
-    Determinant(Id),
-    Function(Function, Id),
+/// An operation on one expression.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Operation {
+    /// Aᵀ.
+    Transpose,
+    /// A⁻¹.
+    Inverse,
+    /// det A.
+    Determinant,
+    /// f(x).
+    Function(Function),
     /// A power series of a matrix.
-    Analytic(Analytic, Id),
-    /// What a method of the user's gives for some arguments: 0 for its value, i + 1 for the gradient with respect to argument i.
-    Opaque(OpaqueId, usize, Vec<Id>),
+    Analytic(Analytic),
     /// The block that starts at (row, column).
-    Block(Id, usize, usize),
+    Block(usize, usize),
     /// A matrix placed at (row, column) of a zero matrix.
-    Embed(Id, usize, usize),
-    Hadamard(Id, Id),
-    DiagonalMatrix(Id),
-    Diagonal(Id),
+    Embed(usize, usize),
+    /// The diagonal matrix of a vector.
+    DiagonalMatrix,
+    /// The diagonal of a matrix.
+    Diagonal,
     /// Σ v_i E_i.
-    Wedge(Algebra, Id),
+    Wedge(Algebra),
     /// The vector of ⟨A, E_i⟩.
-    Components(Algebra, Id),
+    Components(Algebra),
+}
+
+/// The outermost operation of an expression over its children, without its shape, which the graph keeps beside it.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum NodeOf<C> {
+    /// A symbol.
+    Symbol(Rc<Symbol>),
+    /// π.
+    Pi,
+    /// A sum of terms.
+    Sum(Vec<TermOf<C>>),
+    /// A matrix of numbers, row by row.
+    Literal(Vec<Rational>),
+    /// A matrix of scalars, row by row.
+    Stack(Vec<C>),
+    /// A product of at least two letters that is 1×1.
+    Word(Vec<C>),
+    /// The trace of a product of letters.
+    Trace(Vec<C>),
+    /// What a method of the user's gives for some arguments: 0 for its value, i + 1 for the gradient with respect to argument i.
+    Opaque(Rc<str>, usize, Vec<C>),
+    /// The product entry by entry.
+    Hadamard(C, C),
+    /// An operation on one expression.
+    Of(Operation, C),
+}
+
+pub(crate) type ExprNode = NodeOf<Id>;
+
+/// A node as it is seen from outside of this crate: what the lowering to scalars walks over.
+pub type View<'g> = NodeOf<Expr<'g>>;
+
+impl<C: Copy> NodeOf<C> {
+    /// Hands the direct children on, one after the other.
+    pub fn each_child(&self, mut visit: impl FnMut(C)) {
+        match self {
+            NodeOf::Symbol(_) | NodeOf::Pi | NodeOf::Literal(_) => {}
+            NodeOf::Sum(terms) => {
+                for term in terms {
+                    term.scalars.iter().for_each(|(base, _)| visit(*base));
+                    term.word.iter().for_each(|letter| visit(*letter));
+                }
+            }
+            NodeOf::Stack(parts) | NodeOf::Word(parts) | NodeOf::Trace(parts) | NodeOf::Opaque(_, _, parts) => {
+                parts.iter().for_each(|part| visit(*part));
+            }
+            NodeOf::Hadamard(a, b) => [a, b].into_iter().for_each(|factor| visit(*factor)),
+            NodeOf::Of(_, a) => visit(*a),
+        }
+    }
+
+    /// The same node over the images of its children.
+    pub(crate) fn map<D>(&self, image: impl Fn(C) -> D) -> NodeOf<D> {
+        let all = |parts: &[C]| parts.iter().map(|part| image(*part)).collect();
+        match self {
+            NodeOf::Symbol(symbol) => NodeOf::Symbol(symbol.clone()),
+            NodeOf::Pi => NodeOf::Pi,
+            NodeOf::Sum(terms) => NodeOf::Sum(terms.iter().map(|term| term.map(&image)).collect()),
+            NodeOf::Literal(entries) => NodeOf::Literal(entries.clone()),
+            NodeOf::Stack(entries) => NodeOf::Stack(all(entries)),
+            NodeOf::Word(word) => NodeOf::Word(all(word)),
+            NodeOf::Trace(word) => NodeOf::Trace(all(word)),
+            NodeOf::Opaque(name, output, arguments) => NodeOf::Opaque(name.clone(), *output, all(arguments)),
+            NodeOf::Hadamard(a, b) => NodeOf::Hadamard(image(*a), image(*b)),
+            NodeOf::Of(operation, a) => NodeOf::Of(*operation, image(*a)),
+        }
+    }
 }
 
 impl ExprNode {
+    /// Whether all direct children have a property.
+    pub(crate) fn all_children(&self, property: impl Fn(Id) -> bool) -> bool {
+        let mut all = true;
+        self.each_child(|child| all = all && property(child));
+        all
+    }
+
     /// About the work that it takes to make it once its parts are there.
     pub(crate) fn size(&self) -> usize {
+        let size_of = |term: &Term| 1 + term.coefficient.digits() + (term.scalars.len() + term.word.len()) / 4;
         2 + match self {
-            ExprNode::Sum(terms) => terms.iter().map(Term::size).sum(),
+            ExprNode::Sum(terms) => terms.iter().map(size_of).sum(),
             ExprNode::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum(),
             ExprNode::Stack(parts) | ExprNode::Word(parts) | ExprNode::Trace(parts) | ExprNode::Opaque(_, _, parts) => {
                 parts.len()
@@ -107,39 +176,57 @@ impl ExprNode {
     }
 }
 
-impl Term {
-    fn size(&self) -> usize {
-        1 + self.coefficient.digits() + (self.scalars.len() + self.word.len()) / 4
+impl<C: Copy> TermOf<C> {
+    pub(crate) fn map<D>(&self, image: impl Fn(C) -> D) -> TermOf<D> {
+        TermOf {
+            coefficient: self.coefficient.clone(),
+            scalars: self.scalars.iter().map(|(base, exponent)| (image(*base), *exponent)).collect(),
+            word: self.word.iter().map(|letter| image(*letter)).collect(),
+        }
+    }
+
+    /// The term without its word, over the images of its bases.
+    pub(crate) fn scale_over<'g>(&self, graph: &'g Graph, image: impl Fn(C) -> Expr<'g>) -> Expr<'g> {
+        let powers = self.scalars.iter().map(|(base, exponent)| image(*base).power(Rational::short(*exponent)));
+        powers.fold(graph.number(self.coefficient.clone()), |product, power| product * power)
+    }
+}
+
+impl<'g> WordTerm<'g> {
+    /// The term without its word.
+    pub fn scale(&self, graph: &'g Graph) -> Expr<'g> {
+        self.scale_over(graph, |base| base)
+    }
+
+    /// The terms of `inner`, each times the scalars of this term.
+    pub fn over(&self, inner: Expr<'g>) -> Vec<WordTerm<'g>> {
+        let mut terms = inner.word_terms();
+        for term in &mut terms {
+            term.coefficient *= &self.coefficient;
+            term.scalars.extend(self.scalars.iter().copied());
+        }
+        terms
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The terms whose sum this is.
+    pub fn word_terms(self) -> Vec<WordTerm<'g>> {
+        self.terms().iter().map(|term| term.map(|id| self.graph.expr(id))).collect()
+    }
+
+    /// The outermost operation.
+    pub fn view(self) -> View<'g> {
+        self.node().map(|id| self.graph.expr(id))
     }
 }
 
 impl Function {
-    /// The functions that a declaration can name, by their names in Rust.
-    pub const ALL: [(&'static str, Function); 11] = [
-        ("sin", Function::Sin),
-        ("cos", Function::Cos),
-        ("tan", Function::Tan),
-        ("asin", Function::Asin),
-        ("acos", Function::Acos),
-        ("atan", Function::Atan),
-        ("sinh", Function::Sinh),
-        ("cosh", Function::Cosh),
-        ("tanh", Function::Tanh),
-        ("exp", Function::Exp),
-        ("ln", Function::Ln),
-    ];
-
     /// The name in Rust, `sin`; that of all Stumpff functions is one.
-    pub fn name(self) -> &'static str {
-        let known = Function::ALL.iter().find(|(_, function)| *function == self);
-        known.map_or("stumpff", |(name, _)| name)
-    }
-
-    /// A number that no other function has.
-    pub(crate) fn code(self) -> u64 {
+    pub fn name(self) -> String {
         match self {
-            Function::Stumpff(k) => 100 + u64::from(k),
-            _ => Function::ALL.iter().position(|(_, function)| *function == self).unwrap_or(0) as u64,
+            Function::Stumpff(_) => "stumpff".into(),
+            _ => format!("{self:?}").to_lowercase(),
         }
     }
 }

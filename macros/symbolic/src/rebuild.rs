@@ -3,48 +3,8 @@
 use num_traits::{One, Zero};
 
 use crate::memory::{self, Images, Map};
-use crate::node::{Exponent, ExprNode, Id, Term};
+use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
-
-impl ExprNode {
-    /// Hands the identities of the direct children on, one after the other.
-    pub(crate) fn each_child(&self, mut visit: impl FnMut(Id)) {
-        match self {
-            ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => {}
-            ExprNode::Sum(terms) => {
-                for term in terms {
-                    term.scalars.iter().for_each(|(base, _)| visit(*base));
-                    term.word.iter().for_each(|letter| visit(*letter));
-                }
-            }
-            ExprNode::Stack(ids) | ExprNode::Word(ids) | ExprNode::Trace(ids) | ExprNode::Opaque(_, _, ids) => {
-                ids.iter().for_each(|id| visit(*id));
-            }
-            ExprNode::Hadamard(a, b) => {
-                visit(*a);
-                visit(*b);
-            }
-            ExprNode::Transpose(a)
-            | ExprNode::Inverse(a)
-            | ExprNode::Determinant(a)
-            | ExprNode::Function(_, a)
-            | ExprNode::Analytic(_, a)
-            | ExprNode::Block(a, _, _)
-            | ExprNode::Embed(a, _, _)
-            | ExprNode::DiagonalMatrix(a)
-            | ExprNode::Diagonal(a)
-            | ExprNode::Wedge(_, a)
-            | ExprNode::Components(_, a) => visit(*a),
-        }
-    }
-
-    /// Whether all direct children have a property.
-    pub(crate) fn all_children(&self, property: impl Fn(Id) -> bool) -> bool {
-        let mut all = true;
-        self.each_child(|child| all = all && property(child));
-        all
-    }
-}
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
@@ -76,6 +36,17 @@ impl<'g> Expr<'g> {
         reached
     }
 
+    /// Whether a node occurs that passes a test.
+    fn has(self, test: impl Fn(&ExprNode) -> bool) -> bool {
+        self.reachable().into_iter().any(|id| test(&self.graph.node(id)))
+    }
+
+    /// Whether a scalar factor occurs, as base and exponent, that passes a test.
+    fn has_factor(self, test: impl Fn(Id, Exponent) -> bool) -> bool {
+        let passes = |term: &Term| term.scalars.iter().any(|(base, exponent)| test(*base, *exponent));
+        self.has(|node| matches!(node, ExprNode::Sum(terms) if terms.iter().any(passes)))
+    }
+
     /// The symbols that occur, in the order of their creation.
     pub fn symbols(self) -> Vec<Expr<'g>> {
         let reachable = self.reachable().into_iter().map(|id| self.graph.expr(id));
@@ -89,32 +60,33 @@ impl<'g> Expr<'g> {
 
     /// Whether the inverse of a matrix occurs.
     pub fn has_inverse(self) -> bool {
-        self.reachable().into_iter().any(|id| matches!(&*self.graph.node(id), ExprNode::Inverse(_)))
+        self.has(|node| matches!(node, ExprNode::Of(Operation::Inverse, _)))
     }
 
     /// Whether it divides by what depends on one of these symbols, or takes the inverse of a matrix that does: where that vanishes it has a pole.
     pub fn has_poles_in(self, symbols: &[Expr<'g>]) -> bool {
-        let depends = |expr: Expr<'g>| symbols.iter().any(|symbol| expr.depends_on(*symbol));
-        let divides = |term: &Term| {
-            let mut divisors = term.scalars.iter().filter(|(_, exponent)| exponent.numerator() < 0);
-            divisors.any(|(scalar, _)| depends(self.graph.expr(*scalar)))
-        };
-        self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
-            ExprNode::Inverse(matrix) => depends(self.graph.expr(*matrix)),
-            ExprNode::Sum(terms) => terms.iter().any(divides),
-            _ => false,
-        })
+        let depends = |id: Id| symbols.iter().any(|symbol| self.graph.expr(id).depends_on(*symbol));
+        self.has(|node| matches!(node, ExprNode::Of(Operation::Inverse, matrix) if depends(*matrix)))
+            || self.has_factor(|base, exponent| exponent.is_negative() && depends(base))
     }
 
     /// Whether a root, an elementary function, a power series or a method of the user's occurs.
     pub fn has_functions(self) -> bool {
-        let fractional =
-            |terms: &[Term]| terms.iter().any(|term| term.scalars.iter().any(|(_, e)| e.as_integer().is_none()));
-        self.reachable().into_iter().any(|id| match &*self.graph.node(id) {
-            ExprNode::Function(..) | ExprNode::Analytic(..) | ExprNode::Opaque(..) => true,
-            ExprNode::Sum(terms) => fractional(terms),
-            _ => false,
-        })
+        let is_function = |node: &ExprNode| {
+            matches!(node, ExprNode::Of(Operation::Function(_) | Operation::Analytic(_), _) | ExprNode::Opaque(..))
+        };
+        self.has(is_function) || self.has_factor(|_, exponent| exponent.as_integer().is_none())
+    }
+
+    /// Whether no functions, roots or irrational numbers occur.
+    pub fn is_rational(self) -> bool {
+        !self.has_functions() && !self.has(|node| *node == ExprNode::Pi)
+    }
+
+    /// Whether no reciprocal of zero occurs.
+    pub fn is_defined(self) -> bool {
+        let zero = self.graph.integer(0).id;
+        !self.has_factor(|base, exponent| base == zero && exponent.is_negative())
     }
 
     /// The expression with symbols replaced by expressions of the same shape.
@@ -133,37 +105,42 @@ impl<'g> Expr<'g> {
             return self;
         }
         let image = |part: &Id| images.of(graph, part);
+        let all = |parts: &[Id]| parts.iter().map(image).collect::<Vec<_>>();
         let product = |word: &[Id]| word.iter().map(image).reduce(|a, b| a * b);
         match &*node {
             ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => self,
             ExprNode::Sum(terms) => {
                 let image = |term: &Term| {
-                    let powers = term.scalars.iter().map(|(base, e)| image(base).power(Rational::short(*e)));
-                    let scale = powers.fold(graph.number(term.coefficient.clone()), |product, power| product * power);
+                    let scale = term.scale_over(graph, |base| image(&base));
                     let word = product(&term.word).unwrap_or_else(|| graph.identity(self.shape().rows));
                     scale * word
                 };
                 graph.total(self.shape(), terms.iter().map(image))
             }
-            ExprNode::Stack(entries) => graph.stack(self.shape(), entries.iter().map(image).collect()),
+            ExprNode::Stack(entries) => graph.stack(self.shape(), all(entries)),
             // by construction: words of `Word` and `Trace` nodes are not empty
             ExprNode::Word(word) => product(word).expect("a word has letters"),
             ExprNode::Trace(word) => product(word).expect("a word has letters").trace(),
-            ExprNode::Transpose(a) => image(a).transpose(),
-            ExprNode::Inverse(a) => image(a).inverse(),
-            ExprNode::Determinant(a) => image(a).determinant(),
-            ExprNode::Function(function, a) => image(a).function(*function),
-            ExprNode::Analytic(function, a) => image(a).analytic(*function),
-            ExprNode::Opaque(name, output, arguments) => {
-                graph.opaque_of(*name, *output, arguments.iter().map(image).collect(), self.shape())
-            }
-            ExprNode::Block(a, row, column) => image(a).block(*row, *column, self.shape()),
-            ExprNode::Embed(a, row, column) => image(a).embed(self.shape(), *row, *column),
+            ExprNode::Opaque(name, output, arguments) => graph.opaque(name, *output, &all(arguments), self.shape()),
             ExprNode::Hadamard(a, b) => image(a).hadamard(image(b)),
-            ExprNode::DiagonalMatrix(a) => image(a).diagonal_matrix(),
-            ExprNode::Diagonal(a) => image(a).diagonal(),
-            ExprNode::Wedge(algebra, a) => image(a).wedge(*algebra),
-            ExprNode::Components(algebra, a) => image(a).components(*algebra),
+            ExprNode::Of(operation, a) => image(a).apply(*operation, self.shape()),
+        }
+    }
+
+    /// The operation on this expression, with a result of the given shape.
+    pub(crate) fn apply(self, operation: Operation, shape: Shape) -> Expr<'g> {
+        match operation {
+            Operation::Transpose => self.transpose(),
+            Operation::Inverse => self.inverse(),
+            Operation::Determinant => self.determinant(),
+            Operation::Function(function) => self.function(function),
+            Operation::Analytic(function) => self.analytic(function),
+            Operation::Block(row, column) => self.block(row, column, shape),
+            Operation::Embed(row, column) => self.embed(shape, row, column),
+            Operation::DiagonalMatrix => self.diagonal_matrix(),
+            Operation::Diagonal => self.diagonal(),
+            Operation::Wedge(algebra) => self.wedge(algebra),
+            Operation::Components(algebra) => self.components(algebra),
         }
     }
 
@@ -179,21 +156,10 @@ impl<'g> Expr<'g> {
         self.mapped(&images, |part| part.rebuild(&images).expand())
     }
 
-    /// Whether no reciprocal of zero occurs.
-    pub fn is_defined(self) -> bool {
-        let zero = self.graph.integer(0).id;
-        let fails =
-            |term: &Term| term.scalars.iter().any(|(base, exponent)| *base == zero && *exponent < Exponent::ZERO);
-        !self
-            .reachable()
-            .into_iter()
-            .any(|id| matches!(&*self.graph.node(id), ExprNode::Sum(terms) if terms.iter().any(fails)))
-    }
-
     fn expand_node(self, images: &Images) -> Expr<'g> {
         let graph = self.graph;
         match &*self.node() {
-            ExprNode::Function(..) => self,
+            ExprNode::Of(Operation::Function(_), _) => self,
             ExprNode::Sum(terms) => {
                 let shape = self.shape();
                 graph.total(shape, terms.iter().map(|term| graph.expand_term(term, shape, images)))
@@ -212,16 +178,10 @@ impl Graph {
     fn expand_term<'g>(&'g self, term: &Term, shape: Shape, images: &Images) -> Expr<'g> {
         let mut scale = self.number(term.coefficient.clone());
         for (base, exponent) in &term.scalars {
-            scale = self.distribute(
-                scale,
-                self.expanded_power(self.expr(*base), images.of(self, base), *exponent),
-                Shape::scalar(),
-            );
+            let power = self.expanded_power(self.expr(*base), images.of(self, base), *exponent);
+            scale = self.distribute(scale, power, Shape::scalar());
         }
-        let word = match term.word.is_empty() {
-            true => self.identity(shape.rows),
-            false => self.expand_word(&term.word, images, shape),
-        };
+        let word = self.expand_word(&term.word, images, shape);
         self.distribute(scale, word, shape)
     }
 
@@ -237,15 +197,11 @@ impl Graph {
     }
 
     fn expand_word<'g>(&'g self, word: &[Id], images: &Images, shape: Shape) -> Expr<'g> {
-        let mut product: Option<Expr<'g>> = None;
-        for letter in word {
-            let factor = images.of(self, letter);
-            product = Some(match product {
-                None => factor,
-                Some(left) => self.distribute(left, factor, Shape::new(left.shape().rows, factor.shape().columns)),
-            });
-        }
-        product.unwrap_or_else(|| self.identity(shape.rows))
+        let letters = word.iter().map(|letter| images.of(self, letter));
+        let product = |left: Expr<'g>, right: Expr<'g>| {
+            self.distribute(left, right, Shape::new(left.shape().rows, right.shape().columns))
+        };
+        letters.reduce(product).unwrap_or_else(|| self.identity(shape.rows))
     }
 
     /// The product of two expanded expressions, term by term.
@@ -256,29 +212,19 @@ impl Graph {
     }
 
     fn multiply_expanded(&self, a: &Term, b: &Term, shape: Shape) -> Expr<'_> {
-        if let (Some(&last), Some(&first)) = (a.word.last(), b.word.first())
-            && let Some(contraction) = self.resolvent_product(last, first)
-        {
-            let mut prefix = a.clone();
-            prefix.word.pop();
-            let mut suffix = b.clone();
-            suffix.word.remove(0);
-            let rows = self.word_rows(&prefix.word, self.shape(last).rows);
-            let columns = self.word_columns(&suffix.word, self.shape(first).columns);
-            let prefix = self.collect(Shape::new(rows, self.shape(last).rows), [prefix]);
-            let suffix = self.collect(Shape::new(self.shape(first).columns, columns), [suffix]);
-            let middle = self.distribute(prefix, contraction, Shape::new(rows, contraction.shape().columns));
-            return self.distribute(middle, suffix, Shape::new(rows, columns));
-        }
-        self.multiply(a, b, shape)
-    }
-
-    fn word_rows(&self, word: &[Id], otherwise: usize) -> usize {
-        word.first().map_or(otherwise, |&letter| self.shape(letter).rows)
-    }
-
-    fn word_columns(&self, word: &[Id], otherwise: usize) -> usize {
-        word.last().map_or(otherwise, |&letter| self.shape(letter).columns)
+        let contraction =
+            a.word.last().zip(b.word.first()).and_then(|(last, first)| self.resolvent_product(*last, *first));
+        let Some(contraction) = contraction else { return self.multiply(a, b, shape) };
+        // the neighbours are square matrices of one size
+        let (n, mut prefix, mut suffix) = (contraction.shape().rows, a.clone(), b.clone());
+        prefix.word.pop();
+        suffix.word.remove(0);
+        let rows = prefix.word.first().map_or(n, |&letter| self.shape(letter).rows);
+        let columns = suffix.word.last().map_or(n, |&letter| self.shape(letter).columns);
+        let prefix = self.collect(Shape::new(rows, n), [prefix]);
+        let suffix = self.collect(Shape::new(n, columns), [suffix]);
+        let middle = self.distribute(prefix, contraction, Shape::new(rows, n));
+        self.distribute(middle, suffix, Shape::new(rows, columns))
     }
 
     /// (I + aL)⁻¹ L = (I − (I + aL)⁻¹)/a, and (I + aL)⁻¹ (I + bL)⁻¹ = (a (I + aL)⁻¹ − b (I + bL)⁻¹)/(a − b).
@@ -298,7 +244,7 @@ impl Graph {
 
     /// The pair (a, L), if the letter is (I + aL)⁻¹.
     fn resolvent(&self, letter: Id) -> Option<(Rational, Id)> {
-        let ExprNode::Inverse(inner) = &*self.node(letter) else { return None };
+        let ExprNode::Of(Operation::Inverse, inner) = &*self.node(letter) else { return None };
         let ExprNode::Sum(terms) = &*self.node(*inner) else { return None };
         let [first, second] = terms.as_slice() else { return None };
         let unit = |term: &Term| term.scalars.is_empty() && term.word.is_empty() && term.coefficient.is_one();

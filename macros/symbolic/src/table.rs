@@ -172,7 +172,7 @@ impl<K: Hash + Eq, V> std::ops::Index<&K> for Table<K, V> {
     }
 }
 
-fn hash_of(value: &impl Hash) -> u64 {
+pub(crate) fn hash_of(value: &impl Hash) -> u64 {
     let mut mixer = Mixer(0);
     value.hash(&mut mixer);
     mixer.finish()
@@ -212,28 +212,5 @@ impl Hasher for Mixer {
     }
     fn write_i64(&mut self, word: i64) {
         self.mix(word as u64);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Interner, Table};
-
-    #[test]
-    fn values_keep_their_positions() {
-        let mut interner = Interner::default();
-        let positions: Vec<(usize, bool)> = (0..2000_u64).map(|k| interner.intern(k * 7 % 1000)).collect();
-        assert!(positions.iter().enumerate().all(|(k, found)| *found == (k % 1000, k < 1000)));
-        assert_eq!((interner.len(), interner.value(2), interner.position(&1000)), (1000, &14, None));
-    }
-
-    #[test]
-    fn a_key_has_its_last_value() {
-        let mut table: Table<String, usize> =
-            ["b", "a", "b"].iter().zip(0..).map(|(k, v)| (k.to_string(), v)).collect();
-        *table.entry("c".into()) += 5;
-        let entries: Vec<(&str, usize)> = table.iter().map(|(key, value)| (key.as_str(), *value)).collect();
-        assert_eq!(entries, [("b", 2), ("a", 1), ("c", 5)]);
-        assert!(table.contains(&"a".into()) && !table.contains(&"d".into()) && table[&"c".into()] == 5);
     }
 }

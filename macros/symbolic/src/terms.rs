@@ -4,28 +4,24 @@ use std::cmp::Ordering;
 
 use num_traits::{One, Zero};
 
-use crate::node::{Exponent, ExprNode, Id, Term};
+use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::rational::product;
-use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
+use crate::{Expr, Graph, Property, Rational, Shape, integer, work};
 
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
         Term { coefficient, scalars: Vec::new(), word: Vec::new() }
     }
 
+    /// The term without its word, and its word.
+    pub(crate) fn split(self) -> (Term, Term) {
+        let plain = Term { word: self.word, ..Term::number(Rational::one()) };
+        (Term { word: Vec::new(), ..self }, plain)
+    }
+
     /// The order of terms in sums: by their scalar powers, then by their words, like terms being equal.
     fn compare(&self, other: &Term) -> Ordering {
-        for ((base, exponent), (other_base, other_exponent)) in self.scalars.iter().zip(&other.scalars) {
-            match base.0.cmp(&other_base.0) {
-                Ordering::Equal if exponent == other_exponent => {}
-                Ordering::Equal => return exponent.cmp(other_exponent),
-                different => return different,
-            }
-        }
-        match self.scalars.len().cmp(&other.scalars.len()) {
-            Ordering::Equal => self.word.cmp(&other.word),
-            different => different,
-        }
+        self.scalars.cmp(&other.scalars).then_with(|| self.word.cmp(&other.word))
     }
 
     /// Multiplies by scalar powers, keeping them sorted and without zero exponents.
@@ -34,7 +30,7 @@ impl Term {
             match self.scalars.binary_search_by_key(&base, |&(id, _)| id) {
                 Err(position) => self.scalars.insert(position, (base, exponent)),
                 Ok(position) => {
-                    self.scalars[position].1 += exponent;
+                    self.scalars[position].1 = self.scalars[position].1 + exponent;
                     if self.scalars[position].1.is_zero() {
                         self.scalars.remove(position);
                     }
@@ -79,6 +75,16 @@ impl Graph {
         self.settle(shape, sum)
     }
 
+    /// A scalar term as an expression.
+    pub(crate) fn scalar(&self, term: Term) -> Expr<'_> {
+        self.collect(Shape::scalar(), [term])
+    }
+
+    /// A term without its word.
+    pub(crate) fn scale(&self, term: &Term) -> Expr<'_> {
+        self.scalar(Term { word: Vec::new(), ..term.clone() })
+    }
+
     /// The sum of terms that are sorted and distinct.
     fn settle(&self, shape: Shape, mut terms: Vec<Term>) -> Expr<'_> {
         terms.retain(|term| !term.coefficient.is_zero());
@@ -107,9 +113,10 @@ impl<'g> Expr<'g> {
     /// This expression as a single factor.
     fn atom(self) -> Term {
         let mut term = Term::number(Rational::one());
-        match self.shape().is_scalar() {
-            true => term.scalars.push((self.id, Exponent::ONE)),
-            false => term.word.push(self.id),
+        if self.shape().is_scalar() {
+            term.scalars.push((self.id, Exponent::ONE));
+        } else {
+            term.word.push(self.id);
         }
         term
     }
@@ -160,12 +167,13 @@ impl<'g> Expr<'g> {
     /// The product of matrices, or of a scalar and anything.
     pub(crate) fn product(self, other: Expr<'g>) -> Expr<'g> {
         let (left, right) = (self.shape(), other.shape());
-        let scalar = left.is_scalar() || right.is_scalar();
-        assert!(scalar || left.columns == right.rows, "a product of `{self}` and `{other}`");
         let shape = match (left.is_scalar(), right.is_scalar()) {
             (true, _) => right,
             (_, true) => left,
-            _ => Shape::new(left.rows, right.columns),
+            _ => {
+                assert!(left.columns == right.rows, "a product of `{self}` and `{other}`");
+                Shape::new(left.rows, right.columns)
+            }
         };
         if self.is_zero() || other.is_zero() {
             return self.graph.zero(shape);
@@ -177,13 +185,6 @@ impl<'g> Expr<'g> {
             return self.times(&number);
         }
         self.graph.multiply(&self.factor(), &other.factor(), shape)
-    }
-}
-
-impl<'g> Expr<'g> {
-    /// The embedded matrix; zero for zero.
-    fn embed_any(self, shape: Shape, row: usize, column: usize) -> Expr<'g> {
-        if self.is_zero() { self.graph.zero(shape) } else { self.embed(shape, row, column) }
     }
 }
 
@@ -207,27 +208,22 @@ impl Graph {
             return self.zero(shape);
         }
         for segment in self.split_at_scalars(word) {
-            match self.word_shape(&segment).is_scalar() {
-                true => self.multiply_scalar(&mut term, self.scalar_word(segment)),
-                false => term.word.extend(segment),
+            let (first, last) = (self.shape(segment[0]), self.shape(segment[segment.len() - 1]));
+            if first.rows != 1 || last.columns != 1 {
+                term.word.extend(segment);
+                continue;
             }
+            let scalar = self.scalar_word(segment);
+            if scalar.is_zero() {
+                return self.zero(shape);
+            }
+            let factor = scalar.factor();
+            term.coefficient = product(&term.coefficient, &factor.coefficient);
+            term.multiply_scalars(&factor.scalars);
         }
-        let single = term.word.len() == 1 && term.scalars.is_empty();
-        if single && let ExprNode::Sum(terms) = &*self.node(term.word[0]) {
-            let scaled =
-                terms.iter().map(|inner| Term { coefficient: &inner.coefficient * &term.coefficient, ..inner.clone() });
-            return self.collect(shape, scaled);
-        }
-        self.collect(shape, [term])
-    }
-
-    /// Multiplies a term by a scalar expression.
-    pub(crate) fn multiply_scalar(&self, term: &mut Term, scalar: Expr<'_>) {
-        let factor = scalar.factor();
-        term.coefficient = product(&term.coefficient, &factor.coefficient);
-        match scalar.is_zero() {
-            true => term.coefficient = Rational::zero(),
-            false => term.multiply_scalars(&factor.scalars),
+        match term.word.as_slice() {
+            [letter] if term.scalars.is_empty() => self.expr(*letter).times(&term.coefficient),
+            _ => self.collect(shape, [term]),
         }
     }
 
@@ -253,40 +249,37 @@ impl Graph {
     /// The product of two neighbouring letters, where it is simpler than the pair.
     fn merge(&self, left: Id, right: Id) -> Option<Expr<'_>> {
         let inverse = |a: Id, b: Id| match &*self.node(a) {
-            ExprNode::Transpose(inner) => *inner == b && self.is_orthogonal(b),
-            ExprNode::Inverse(inner) => *inner == b,
+            ExprNode::Of(Operation::Transpose, inner) => *inner == b && self.is_orthogonal(b),
+            ExprNode::Of(Operation::Inverse, inner) => *inner == b,
             _ => false,
         };
         if inverse(left, right) || inverse(right, left) {
             return Some(self.identity(self.shape(left).rows));
         }
+        let shape = Shape::new(self.shape(left).rows, self.shape(right).columns);
+        let embedded = |(operation, inner): (&Operation, &Id)| match operation {
+            Operation::Embed(row, column) => Some((self.expr(*inner), *row, *column)),
+            _ => None,
+        };
         match (&*self.node(left), &*self.node(right)) {
-            (ExprNode::Literal(a), ExprNode::Literal(b)) => {
-                Some(self.multiply_literals(a, self.shape(left), b, self.shape(right)))
+            (ExprNode::Literal(a), ExprNode::Literal(b)) => Some(self.multiply_literals(a, b, shape)),
+            (ExprNode::Of(first, a), ExprNode::Of(second, b)) => {
+                let ((a, row, column), (b, other_row, other_column)) =
+                    embedded((first, a)).zip(embedded((second, b)))?;
+                let part = self.overlap((a, column), (b, other_row), Expr::block);
+                Some(part.embed(shape, row, other_column))
             }
-            (ExprNode::Embed(a, row, column), ExprNode::Embed(b, other_row, other_column)) => {
-                let shape = Shape::new(self.shape(left).rows, self.shape(right).columns);
-                let (a, b) = (self.expr(*a), self.expr(*b));
-                Some(self.overlap((a, *column), (b, *other_row)).embed_any(shape, *row, *other_column))
+            (ExprNode::Literal(_), ExprNode::Of(operation, b)) => {
+                let (b, row, column) = embedded((operation, b))?;
+                let columns = self.expr(left).block(0, row, Shape::new(shape.rows, b.shape().rows));
+                let (first, part) = self.sparse_rows(columns)?;
+                Some((part * b).embed(shape, first, column))
             }
-            (ExprNode::Literal(_), ExprNode::Embed(b, row, column)) => {
-                let b = self.expr(*b);
-                let (literal, rows) = (self.expr(left), self.shape(left).rows);
-                let columns = literal.block(0, *row, Shape::new(rows, b.shape().rows));
-                self.sparse_rows(columns).map(|(first, part)| {
-                    (part * b).embed_any(Shape::new(rows, self.shape(right).columns), first, *column)
-                })
-            }
-            (ExprNode::Embed(a, row, column), ExprNode::Literal(_)) => {
-                let a = self.expr(*a);
-                let (literal, columns) = (self.expr(right), self.shape(right).columns);
-                let rows = literal.block(*column, 0, Shape::new(a.shape().columns, columns));
-                self.sparse_rows(rows.transpose()).map(|(first, part)| {
-                    (a * part.transpose()).embed_any(Shape::new(self.shape(left).rows, columns), *row, first)
-                })
-            }
-            (ExprNode::Transpose(inner), _) if *inner == right && self.has_property(right, Property::Unit) => {
-                Some(self.integer(1))
+            (ExprNode::Of(operation, a), ExprNode::Literal(_)) => {
+                let (a, row, column) = embedded((operation, a))?;
+                let rows = self.expr(right).block(column, 0, Shape::new(a.shape().columns, shape.columns));
+                let (first, part) = self.sparse_rows(rows.transpose())?;
+                Some((a * part.transpose()).embed(shape, row, first))
             }
             _ => None,
         }
@@ -294,66 +287,53 @@ impl Graph {
     }
 
     /// The product of what meets of A, whose columns stand from `column` on, and of B, whose rows stand from `row` on.
-    fn overlap<'g>(&'g self, (a, column): (Expr<'g>, usize), (b, row): (Expr<'g>, usize)) -> Expr<'g> {
+    pub(crate) fn overlap<'g>(
+        &'g self,
+        (a, column): (Expr<'g>, usize),
+        (b, row): (Expr<'g>, usize),
+        block: impl Fn(Expr<'g>, usize, usize, Shape) -> Expr<'g>,
+    ) -> Expr<'g> {
+        let (left, right) = (a.shape(), b.shape());
         let start = column.max(row);
-        let end = (column + a.shape().columns).min(row + b.shape().rows);
+        let end = (column + left.columns).min(row + right.rows);
         if start >= end {
-            return self.zero(Shape::new(a.shape().rows, b.shape().columns));
+            return self.zero(Shape::new(left.rows, right.columns));
         }
-        let left = a.block(0, start - column, Shape::new(a.shape().rows, end - start));
-        let right = b.block(start - row, 0, Shape::new(end - start, b.shape().columns));
-        left * right
+        let size = end - start;
+        let a = block(a, 0, start - column, Shape::new(left.rows, size));
+        a * block(b, start - row, 0, Shape::new(size, right.columns))
     }
 
     /// The rows of a matrix of numbers between the first and the last that are not zero, with the index of the first: none for zero,
     /// `None` if these are all rows.
     fn sparse_rows<'g>(&'g self, literal: Expr<'g>) -> Option<(usize, Expr<'g>)> {
         let shape = literal.shape();
-        let filled = |i: &usize| !literal.block(*i, 0, Shape::new(1, shape.columns)).is_zero();
-        let (first, last) = match ((0..shape.rows).find(filled), (0..shape.rows).rev().find(filled)) {
-            (Some(first), Some(last)) => (first, last),
-            _ => return Some((0, literal)),
-        };
-        (last - first + 1 < shape.rows)
-            .then(|| (first, literal.block(first, 0, Shape::new(last - first + 1, shape.columns))))
+        let mut filled = (0..shape.rows).filter(|i| !literal.block(*i, 0, Shape::new(1, shape.columns)).is_zero());
+        let Some(first) = filled.next() else { return Some((0, literal)) };
+        let rows = filled.next_back().unwrap_or(first) + 1 - first;
+        (rows < shape.rows).then(|| (first, literal.block(first, 0, Shape::new(rows, shape.columns))))
     }
 
-    fn multiply_literals(&self, a: &[Rational], left: Shape, b: &[Rational], right: Shape) -> Expr<'_> {
-        let shape = Shape::new(left.rows, right.columns);
-        let entry = |(i, j): (usize, usize)| {
-            (0..left.columns).map(|k| &a[i * left.columns + k] * &b[k * right.columns + j]).sum::<Rational>()
-        };
+    fn multiply_literals(&self, a: &[Rational], b: &[Rational], shape: Shape) -> Expr<'_> {
+        let inner = a.len() / shape.rows;
+        let entry = |(i, j)| (0..inner).map(|k| &a[i * inner + k] * &b[k * shape.columns + j]).sum::<Rational>();
         self.literal(shape, shape.positions().map(entry).collect())
     }
 
     /// Whether this is the symbol of an orthogonal matrix.
     pub(crate) fn is_orthogonal(&self, id: Id) -> bool {
-        self.expr(id).as_symbol().is_some_and(|symbol| match symbol.property {
-            Property::Orthogonal => true,
+        match self.expr(id).property() {
             Property::Element(group) => group.is_orthogonal(),
-            _ => false,
-        })
+            property => property == Property::Orthogonal,
+        }
     }
 
     /// Whether this is the symbol of a matrix of determinant one.
     pub(crate) fn is_special(&self, id: Id) -> bool {
-        self.expr(id).as_symbol().is_some_and(|symbol| match symbol.property {
-            Property::Orthogonal => true,
-            Property::Element(group) => matches!(
-                group,
-                Group::SpecialLinear(_)
-                    | Group::Symplectic(_)
-                    | Group::SpecialEuclidean(_)
-                    | Group::Heisenberg(_)
-                    | Group::SpecialUnitary(_)
-                    | Group::Unitary(_)
-            ),
-            _ => false,
-        })
-    }
-
-    pub(crate) fn has_property(&self, id: Id, property: Property) -> bool {
-        self.expr(id).as_symbol().is_some_and(|symbol| symbol.property == property)
+        match self.expr(id).property() {
+            Property::Element(group) => group.is_special(),
+            property => property == Property::Orthogonal,
+        }
     }
 
     /// Cuts a word where an inner dimension is one.
@@ -368,35 +348,23 @@ impl Graph {
         segments
     }
 
-    /// The shape of the product of a word that is not empty.
-    fn word_shape(&self, word: &[Id]) -> Shape {
-        let rows = word.first().map_or(0, |&letter| self.shape(letter).rows);
-        let columns = word.last().map_or(0, |&letter| self.shape(letter).columns);
-        Shape::new(rows, columns)
-    }
-
     /// The 1×1 product of a word, written in the one of its two readings that comes first.
-    pub(crate) fn scalar_word(&self, word: Vec<Id>) -> Expr<'_> {
+    fn scalar_word(&self, word: Vec<Id>) -> Expr<'_> {
         match word.as_slice() {
-            [] => return self.integer(1),
             [only] => return self.expr(*only),
             [a, b] if self.is_unit_square(*a, *b) => return self.integer(1),
             _ => {}
         }
-        let (sign, reversed) = match self.transposed_word(&word) {
-            Some(transposed) => transposed,
-            None => (Rational::one(), word.clone()),
-        };
-        match reversed < word {
-            true => self.intern(ExprNode::Word(reversed), Shape::scalar()).times(&sign),
-            false if reversed == word && sign == integer(-1) => self.integer(0),
-            false => self.intern(ExprNode::Word(word), Shape::scalar()),
+        let (sign, reversed) = self.transposed_word(&word).unwrap_or_else(|| (Rational::one(), word.clone()));
+        match reversed.cmp(&word) {
+            Ordering::Less => self.intern(ExprNode::Word(reversed), Shape::scalar()).times(&sign),
+            Ordering::Equal if sign == integer(-1) => self.integer(0),
+            _ => self.intern(ExprNode::Word(word), Shape::scalar()),
         }
     }
 
     fn is_unit_square(&self, left: Id, right: Id) -> bool {
-        matches!(&*self.node(left), ExprNode::Transpose(inner) if *inner == right)
-            && self.has_property(right, Property::Unit)
+        *self.node(left) == ExprNode::Of(Operation::Transpose, right) && self.expr(right).property() == Property::Unit
     }
 
     /// The transposed letters in reverse order, with a sign; `None` if a letter's transpose is not plus or minus a letter.
@@ -412,10 +380,5 @@ impl Graph {
             sign *= factor.coefficient;
         }
         Some((sign, reversed))
-    }
-
-    /// An exponent as a small integer, if it is one.
-    pub(crate) fn small_integer(exponent: &Exponent) -> Option<i32> {
-        exponent.as_integer().and_then(|exponent| i32::try_from(exponent).ok())
     }
 }

@@ -6,7 +6,7 @@
 use num_traits::Zero;
 
 use crate::memory::Images;
-use crate::node::{ExprNode, Id, Term};
+use crate::node::{ExprNode, Id, Operation, Term};
 use crate::{Expr, Shape};
 
 /// A matrix that is zero outside of a part of it.
@@ -26,19 +26,16 @@ impl<'g> Expr<'g> {
         self.mapped(&images, |expr| match &*expr.node() {
             ExprNode::Sum(terms) => {
                 let image = |term: &Term| {
-                    let scale = Term { word: Vec::new(), ..term.clone() };
-                    let scale = self.graph.collect(Shape::scalar(), [scale]).rebuild(&images);
-                    let word = match term.word.is_empty() {
-                        true => self.graph.identity(expr.shape().rows),
-                        false => product(term.word.iter().map(image)),
-                    };
-                    scale * word
+                    let scale = self.graph.scale(term).rebuild(&images);
+                    let word = product(term.word.iter().map(image));
+                    scale * word.unwrap_or_else(|| self.graph.identity(expr.shape().rows))
                 };
                 self.graph.total(expr.shape(), terms.iter().map(image))
             }
-            ExprNode::Word(word) => product(word.iter().map(image)),
-            ExprNode::Trace(word) => product(word.iter().map(image)).trace(),
-            ExprNode::Block(inner, row, column) => image(inner).cut(*row, *column, expr.shape()),
+            // by construction: words of `Word` and `Trace` nodes are not empty
+            ExprNode::Word(word) => product(word.iter().map(image)).expect("a word has letters"),
+            ExprNode::Trace(word) => product(word.iter().map(image)).expect("a word has letters").trace(),
+            ExprNode::Of(Operation::Block(row, column), inner) => image(inner).cut(*row, *column, expr.shape()),
             _ => expr.rebuild(&images),
         })
     }
@@ -49,16 +46,12 @@ impl<'g> Expr<'g> {
             return self;
         }
         self.linear(shape, |plain| {
-            let word = plain.factor().word;
-            let letters = || word.iter().map(|&letter| plain.graph.expr(letter));
-            let (first, last) = match word.as_slice() {
-                [first, .., last] => (plain.graph.expr(*first), plain.graph.expr(*last)),
-                _ => return plain.block(row, column, shape),
-            };
+            let word = plain.graph.exprs(&plain.factor().word);
+            let [first, middle @ .., last] = word.as_slice() else { return plain.block(row, column, shape) };
             let rows = first.block(row, 0, Shape::new(shape.rows, first.shape().columns));
             let columns = last.block(0, column, Shape::new(last.shape().rows, shape.columns));
-            let middle = letters().skip(1).take(word.len() - 2);
-            product(std::iter::once(rows).chain(middle).chain([columns]))
+            // by construction: there are two letters at least
+            product([&[rows], middle, &[columns]].concat().into_iter()).expect("a word has letters")
         })
     }
 
@@ -66,7 +59,7 @@ impl<'g> Expr<'g> {
     fn window(self) -> Window<'g> {
         let shape = self.shape();
         match &*self.node() {
-            ExprNode::Embed(inner, row, column) => {
+            ExprNode::Of(Operation::Embed(row, column), inner) => {
                 Window { part: self.graph.expr(*inner), row: *row, column: *column, shape }
             }
             ExprNode::Literal(entries) => {
@@ -83,32 +76,17 @@ impl<'g> Expr<'g> {
     }
 }
 
-/// The product of some letters.
-fn product<'g>(mut letters: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
-    // by construction: words are not empty
-    let first = letters.next().expect("a word has letters").window();
-    let whole = letters.fold(first, |left, letter| left.times(letter.window()));
-    match whole.part.is_zero() {
-        true => whole.part.graph.zero(whole.shape),
-        false => whole.part.embed(whole.shape, whole.row, whole.column),
-    }
+/// The product of some letters, or `None` of none.
+fn product<'g>(letters: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
+    let whole = letters.map(Expr::window).reduce(Window::times)?;
+    Some(whole.part.embed(whole.shape, whole.row, whole.column))
 }
 
 impl<'g> Window<'g> {
     /// The product of what meets.
     fn times(self, other: Window<'g>) -> Window<'g> {
-        let (a, b) = (self.part.shape(), other.part.shape());
-        let start = self.column.max(other.row);
-        let end = (self.column + a.columns).min(other.row + b.rows);
+        let part = self.part.graph.overlap((self.part, self.column), (other.part, other.row), Expr::cut);
         let shape = Shape::new(self.shape.rows, other.shape.columns);
-        let part = match start < end {
-            true => {
-                let left = self.part.cut(0, start - self.column, Shape::new(a.rows, end - start));
-                let right = other.part.cut(start - other.row, 0, Shape::new(end - start, b.columns));
-                left * right
-            }
-            false => self.part.graph.zero(Shape::new(a.rows, b.columns)),
-        };
         Window { part, row: self.row, column: other.column, shape }
     }
 }

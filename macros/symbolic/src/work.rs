@@ -46,32 +46,3 @@ pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
         false => resume_unwind(payload),
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{Exhausted, spend, spent, within};
-
-    #[test]
-    fn what_stays_within_its_limit_is_done() {
-        let before = spent();
-        assert_eq!(within(10, || (0..10).for_each(|_| spend(1))), Ok(()));
-        assert_eq!(spent() - before, 10);
-        assert_eq!(within(10, || spend(11)), Err(Exhausted));
-        spend(1000);
-    }
-
-    #[test]
-    fn a_limit_within_another_cannot_raise_it() {
-        let inner = || within(100, || spend(11));
-        assert_eq!(within(10, inner), Ok(Err(Exhausted)));
-        assert_eq!(within(10, || (within(5, || spend(6)), within(5, || spend(3)))), Ok((Err(Exhausted), Ok(()))));
-    }
-
-    #[test]
-    fn a_panic_stays_one() {
-        let caught = std::panic::catch_unwind(|| within(10, || std::panic::resume_unwind(Box::new("ours"))));
-        assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"ours"));
-        // and the limit is gone
-        spend(1000);
-    }
-}

@@ -15,7 +15,7 @@ fn values_stay_as_they_are() {
     let (w, b) = (symbol(&graph, "W", Shape::square(3)), symbol(&graph, "b", Shape::vector(3)));
     let motion = w.embed(square, 0, 0) + b.embed(square, 0, 3) + graph.unit(square, 3, 3);
     let sparse =
-        graph.sparse_literal(square, &vec![(0, 2, clebsch_symbolic::integer(2)), (1, 2, clebsch_symbolic::integer(3))]);
+        graph.sparse_literal(square, [(0, 2, clebsch_symbolic::integer(2)), (1, 2, clebsch_symbolic::integer(3))]);
     let corner = Shape::square(3);
     for expression in [
         f * w.embed(square, 0, 0),

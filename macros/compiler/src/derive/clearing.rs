@@ -1,7 +1,7 @@
 //! Residuals freed of denominators, by maps that are regular near the identity: components of the result vanish where those of the
 //! residual do.
 
-use clebsch_symbolic::{Chart, Expr, Group, View, WordTerm};
+use clebsch_symbolic::{Chart, Expr, Fraction, Group, Operation, View, WordTerm};
 
 use super::Symbols;
 use super::symbols::ChartBlock;
@@ -61,14 +61,14 @@ pub(super) fn of_rotation<'g>(
 /// The skew matrix with components that are a term: ½(A − Aᵀ) for ⟨A, E⟩.
 fn skew_matrix<'g>(model: &Mechanics<'g>, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
     let matrix_of = |letter: Expr<'g>| match letter.view() {
-        View::Components(_, inner) => Some((inner - inner.transpose()) / 2),
+        View::Of(Operation::Components(_), inner) => Some((inner - inner.transpose()) / 2),
         _ => None,
     };
     // one component is a scalar among others
     let known = match term.word.as_slice() {
         [letter] => matrix_of(*letter),
         [] => {
-            let linear = |(base, exponent): &(Expr<'g>, (i64, i64))| *exponent == (1, 1) && matrix_of(*base).is_some();
+            let linear = |(base, exponent): &(Expr<'g>, Fraction)| exponent.is_one() && matrix_of(*base).is_some();
             let found = term.scalars.iter().position(linear);
             found.and_then(|position| matrix_of(term.scalars.remove(position).0))
         }

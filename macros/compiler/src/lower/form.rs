@@ -1,6 +1,6 @@
 //! Whether the kernels of a system are written out, entry by entry, or keep whole matrices.
 
-use clebsch_symbolic::{Expr, Group, Table, View};
+use clebsch_symbolic::{Expr, Group, Operation, Table, View};
 
 use super::{too_large, written_out_too_large};
 use crate::derive::{MechanicsFormulas, Solution};
@@ -172,29 +172,16 @@ fn products(expressions: &[Expr<'_>]) -> usize {
             let pairs = word.windows(2);
             pairs.map(|pair| word[0].shape().rows.min(pair[1].shape().columns) * pair[0].shape().len()).sum()
         };
-        match expr.view() {
-            View::Sum(terms) => {
-                count += terms.iter().map(|term| of_word(&term.word)).sum::<usize>();
-                open.extend(
-                    terms
-                        .iter()
-                        .flat_map(|term| term.scalars.iter().map(|(base, _)| *base).chain(term.word.iter().copied())),
-                );
+        let view = expr.view();
+        count += match &view {
+            View::Sum(terms) => terms.iter().map(|term| of_word(&term.word)).sum::<usize>(),
+            View::Word(word) | View::Trace(word) => of_word(word),
+            View::Of(Operation::Inverse | Operation::Determinant | Operation::Analytic(_), a) => {
+                a.shape().rows * a.shape().len()
             }
-            View::Word(word) | View::Trace(word) => {
-                count += of_word(&word);
-                open.extend(word);
-            }
-            View::Inverse(a) | View::Determinant(a) | View::Analytic(_, a) => {
-                count += a.shape().rows * a.shape().len();
-                open.push(a);
-            }
-            View::Transpose(a) | View::Function(_, a) | View::Block(a, ..) | View::Embed(a, ..) => open.push(a),
-            View::DiagonalMatrix(a) | View::Diagonal(a) | View::Wedge(_, a) | View::Components(_, a) => open.push(a),
-            View::Hadamard(a, b) => open.extend([a, b]),
-            View::Stack(entries) | View::Opaque(_, _, entries) => open.extend(entries),
-            View::Symbol(_) | View::Pi | View::Literal(_) => {}
-        }
+            _ => 0,
+        };
+        view.each_child(|child| open.push(child));
     }
     count
 }

@@ -6,7 +6,9 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use clebsch_symbolic::{Algebra, Basis, Expr, Graph, One, Rational, Role, Shape, Sparse, View, WordTerm, integer};
+use clebsch_symbolic::{
+    Algebra, Basis, Expr, Graph, One, Operation, Rational, Role, Shape, Sparse, View, WordTerm, integer,
+};
 
 use super::entry::{Grid, Scalar};
 use super::scalar::{Call, Callee, Input, Scalars};
@@ -47,71 +49,55 @@ impl<'g> Lowering<'_> {
                 let diagonal: Vec<_> = (0..product.shape.rows).map(|i| (product.at(i, i), integer(1))).collect();
                 one(self.scalars.sum(integer(0), diagonal))
             }
-            View::Transpose(a) => {
-                let a = self.grid(a);
-                Grid::from_fn(shape, |(i, j)| a.at(j, i))
+            View::Opaque(name, output, arguments) => {
+                let (name, arguments) =
+                    (name.to_string(), arguments.into_iter().map(|argument| self.grid(argument)).collect());
+                match output {
+                    0 => self.call(Callee::Value(name), arguments, 0, shape),
+                    leaf => self.call(Callee::Gradient(name), arguments, leaf - 1, shape),
+                }
             }
-            View::Inverse(a) => {
+            View::Hadamard(a, b) => {
+                let (a, b) = (self.grid(a), self.grid(b));
+                Grid::from_fn(shape, |(i, j)| self.scalars.product([a.at(i, j), b.at(i, j)]))
+            }
+            View::Of(operation, a) => self.operation(operation, a, shape),
+        }
+    }
+
+    fn operation(&mut self, operation: Operation, argument: Expr<'g>, shape: Shape) -> Grid {
+        let one = |scalar: Scalar| Grid { shape: Shape::scalar(), entries: vec![scalar] };
+        let a = self.grid(argument);
+        match operation {
+            Operation::Transpose => Grid::from_fn(shape, |(i, j)| a.at(j, i)),
+            Operation::Inverse => {
                 // I + Z with Z skew has no small pivots
-                let z = a - a.graph().identity(a.shape().rows);
+                let z = argument - argument.graph().identity(a.shape.rows);
                 let stable = (z + z.transpose()).is_zero();
-                let a = self.grid(a);
                 if a.shape.rows <= 3 || stable {
                     self.inverse(&a)
                 } else {
                     self.call(Callee::Inverse, vec![a], 0, shape)
                 }
             }
-            View::Analytic(function, a) => {
-                let a = self.grid(a);
-                self.call(Callee::Analytic(function), vec![a], 0, shape)
-            }
-            View::Opaque(name, output, arguments) => {
-                let arguments = arguments.into_iter().map(|argument| self.grid(argument)).collect();
-                match output {
-                    0 => self.call(Callee::Value(name), arguments, 0, shape),
-                    leaf => self.call(Callee::Gradient(name), arguments, leaf - 1, shape),
-                }
-            }
-            View::Determinant(a) => {
-                let a = self.grid(a);
-                one(self.determinant(&a, &(0..a.shape.rows).collect::<Vec<_>>(), 0))
-            }
-            View::Function(function, a) => {
-                let a = self.grid(a).entries[0];
-                one(self.scalars.function(function, a))
-            }
-            View::Block(a, row, column) => {
-                let a = self.grid(a);
-                Grid::from_fn(shape, |(i, j)| a.at(row + i, column + j))
-            }
-            View::Embed(a, row, column) => {
-                let (a, zero) = (self.grid(a), self.scalars.zero());
+            Operation::Analytic(function) => self.call(Callee::Analytic(function), vec![a], 0, shape),
+            Operation::Determinant => one(self.determinant(&a, &(0..a.shape.rows).collect::<Vec<_>>(), 0)),
+            Operation::Function(function) => one(self.scalars.function(function, a.entries[0])),
+            Operation::Block(row, column) => Grid::from_fn(shape, |(i, j)| a.at(row + i, column + j)),
+            Operation::Embed(row, column) => {
+                let zero = self.scalars.zero();
                 let inside = |i: usize, j: usize| {
                     i >= row && j >= column && i < row + a.shape.rows && j < column + a.shape.columns
                 };
                 Grid::from_fn(shape, |(i, j)| if inside(i, j) { a.at(i - row, j - column) } else { zero })
             }
-            View::Hadamard(a, b) => {
-                let (a, b) = (self.grid(a), self.grid(b));
-                Grid::from_fn(shape, |(i, j)| self.scalars.product([a.at(i, j), b.at(i, j)]))
-            }
-            View::DiagonalMatrix(a) => {
-                let (a, zero) = (self.grid(a), self.scalars.zero());
+            Operation::DiagonalMatrix => {
+                let zero = self.scalars.zero();
                 Grid::from_fn(shape, |(i, j)| if i == j { a.at(i, 0) } else { zero })
             }
-            View::Diagonal(a) => {
-                let a = self.grid(a);
-                Grid::from_fn(shape, |(i, _)| a.at(i, i))
-            }
-            View::Wedge(algebra, a) => {
-                let a = self.grid(a);
-                self.wedge(&expr.graph().basis(algebra), &a)
-            }
-            View::Components(algebra, a) => {
-                let a = self.grid(a);
-                self.components(&expr.graph().basis(algebra), &a)
-            }
+            Operation::Diagonal => Grid::from_fn(shape, |(i, _)| a.at(i, i)),
+            Operation::Wedge(algebra) => self.wedge(&argument.graph().basis(algebra), &a),
+            Operation::Components(algebra) => self.components(&argument.graph().basis(algebra), &a),
         }
     }
 
@@ -196,7 +182,9 @@ impl<'g> Lowering<'_> {
         for term in terms {
             match term.word.as_slice() {
                 [letter] => match letter.view() {
-                    View::Components(algebra, inner) => under.entry(algebra).or_default().extend(term.over(inner)),
+                    View::Of(Operation::Components(algebra), inner) => {
+                        under.entry(algebra).or_default().extend(term.over(inner))
+                    }
                     _ => rest.push(term),
                 },
                 _ => rest.push(term),
@@ -226,14 +214,15 @@ impl<'g> Lowering<'_> {
         let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
         let mut grids = Vec::new();
         for term in terms {
+            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.parts())).collect();
             if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
                 let product = self.word(&term.word);
-                let scale = self.monomial(&term.coefficient, &term.scalars);
+                let scale = self.monomial(&term.coefficient, &scalars);
                 grids.push(self.scaled(&product, scale));
                 continue;
             }
             let (constant, varying): (Vec<_>, Vec<_>) =
-                term.scalars.iter().cloned().partition(|(base, _)| self.is_constant(*base));
+                scalars.into_iter().partition(|(base, _)| self.is_constant(*base));
             let scale = self.monomial(&term.coefficient, &constant);
             let start = term.word.iter().position(|letter| self.is_constant(*letter)).unwrap_or(0);
             let length = term.word[start..].iter().take_while(|letter| self.is_constant(**letter)).count();

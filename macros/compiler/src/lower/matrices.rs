@@ -9,7 +9,8 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Expr, Function, Graph, Group, One, Rational, Role, Shape, Symbol, Table, View, WordTerm, integer, work,
+    Algebra, Expr, Fraction, Function, Graph, Group, One, Operation, Rational, Role, Shape, Symbol, Table, View,
+    WordTerm, integer, work,
 };
 
 use super::signs;
@@ -129,24 +130,32 @@ impl Matrices {
             View::Stack(entries) => self.stack(&entries, shape),
             View::Word(word) => self.scalar_word(&word),
             View::Trace(word) => self.trace(&word),
-            View::Transpose(a) => self.of_matrix(MatrixOperation::Transpose, a, shape),
-            View::Inverse(a) => self.of_matrix(MatrixOperation::Inverse, a, shape),
-            View::Analytic(function, a) => self.of_matrix(MatrixOperation::Analytic(function), a, shape),
             View::Opaque(_, output, arguments) => self.opaque(output, &arguments, shape),
-            View::Determinant(a) => self.of_matrix(MatrixOperation::Determinant, a, shape),
-            View::Function(function, a) => self.function(function, a),
-            View::Block(a, row, column) => self.block(a, row, column, shape),
-            View::Embed(a, row, column) if self.joins_blocks => self.embedded(a, (row, column), shape),
-            View::Embed(a, row, column) => self.of_matrix(MatrixOperation::Embedded(row, column), a, shape),
             View::Hadamard(a, b) => self.hadamard(a, b, shape),
-            View::DiagonalMatrix(a) => self.of_matrix(MatrixOperation::DiagonalMatrix, a, shape),
-            View::Diagonal(a) => self.of_matrix(MatrixOperation::Diagonal, a, shape),
-            View::Wedge(algebra, x) => self.wedge(graph, algebra, x, shape),
-            View::Components(algebra, a) => match self.outer(graph, algebra, a) {
-                Some(components) => components,
-                None => self.components_of(graph, algebra, a),
-            },
+            View::Of(operation, a) => self.made_of(operation, a, shape),
         }
+    }
+
+    fn made_of(&mut self, operation: Operation, a: Expr<'_>, shape: Shape) -> Code {
+        let graph = a.graph();
+        let operation = match operation {
+            Operation::Function(function) => return self.function(function, a),
+            Operation::Block(row, column) => return self.block(a, row, column, shape),
+            Operation::Embed(row, column) if self.joins_blocks => return self.embedded(a, (row, column), shape),
+            Operation::Wedge(algebra) => return self.wedge(graph, algebra, a, shape),
+            Operation::Components(algebra) => {
+                let outer = self.outer(graph, algebra, a);
+                return outer.unwrap_or_else(|| self.components_of(graph, algebra, a));
+            }
+            Operation::Transpose => MatrixOperation::Transpose,
+            Operation::Inverse => MatrixOperation::Inverse,
+            Operation::Analytic(function) => MatrixOperation::Analytic(function),
+            Operation::Determinant => MatrixOperation::Determinant,
+            Operation::Embed(row, column) => MatrixOperation::Embedded(row, column),
+            Operation::DiagonalMatrix => MatrixOperation::DiagonalMatrix,
+            Operation::Diagonal => MatrixOperation::Diagonal,
+        };
+        self.of_matrix(operation, a, shape)
     }
 
     /// An operation on one matrix.
@@ -264,15 +273,16 @@ impl Matrices {
         linear(constant, parts)
     }
 
-    fn powers(&mut self, scalars: &[(Expr<'_>, (i64, i64))]) -> Vec<Code> {
-        let power = |(base, (numerator, denominator)): &(Expr<'_>, (i64, i64))| {
+    fn powers(&mut self, scalars: &[(Expr<'_>, Fraction)]) -> Vec<Code> {
+        let power = |(base, exponent): &(Expr<'_>, Fraction)| {
+            let (numerator, denominator) = exponent.parts();
             let base = self.value(*base);
             let power = match (numerator.unsigned_abs() as usize, denominator) {
                 (1, 1) => base,
                 (count, 1) => Code::Product(vec![base; count]),
-                _ => Code::Root(Box::new(base), (numerator.abs(), *denominator)),
+                _ => Code::Root(Box::new(base), (numerator.abs(), denominator)),
             };
-            self.shared(if *numerator < 0 { Code::reciprocal(power) } else { power })
+            self.shared(if numerator < 0 { Code::reciprocal(power) } else { power })
         };
         scalars.iter().map(power).collect()
     }
@@ -356,7 +366,9 @@ impl Matrices {
         for term in terms {
             match term.word.as_slice() {
                 [letter] => match letter.view() {
-                    View::Components(algebra, inner) if outer_product(graph, algebra, inner).is_none() => {
+                    View::Of(Operation::Components(algebra), inner)
+                        if outer_product(graph, algebra, inner).is_none() =>
+                    {
                         under.entry(algebra).extend(term.over(inner));
                     }
                     _ => rest.push(term),
@@ -459,8 +471,8 @@ impl Matrices {
 /// ±1 and x of a letter ±x^ of rotations.
 fn skew_letter(letter: Expr<'_>) -> Option<(Rational, Expr<'_>)> {
     match letter.view() {
-        View::Wedge(algebra, x) => is_rotations(letter.graph(), algebra).then(|| (integer(1), x)),
-        View::Transpose(inner) => skew_letter(inner).map(|(sign, x)| (-sign, x)),
+        View::Of(Operation::Wedge(algebra), x) => is_rotations(letter.graph(), algebra).then(|| (integer(1), x)),
+        View::Of(Operation::Transpose, inner) => skew_letter(inner).map(|(sign, x)| (-sign, x)),
         View::Sum(terms) => match terms.as_slice() {
             [WordTerm { coefficient, scalars, word }] if scalars.is_empty() && coefficient.abs().is_one() => {
                 let [only] = word[..] else { return None };

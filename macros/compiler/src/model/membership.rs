@@ -1,6 +1,6 @@
 //! Whether an expression lies on a group for all values of its symbols.
 
-use clebsch_symbolic::{Chart, Expr, Group, One, View, identity};
+use clebsch_symbolic::{Chart, Expr, Group, One, Operation, View, identity};
 
 /// What is known.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -39,8 +39,8 @@ pub(super) fn lies_on(expr: Expr<'_>, group: Group) -> Verdict {
 fn is_product(expr: Expr<'_>, group: Group) -> bool {
     match expr.view() {
         View::Symbol(symbol) => symbol.property == group.element_property() && symbol.shape == group.element_shape(),
-        View::Inverse(inner) => is_product(inner, group),
-        View::Transpose(inner) => group.is_orthogonal() && is_product(inner, group),
+        View::Of(Operation::Inverse, inner) => is_product(inner, group),
+        View::Of(Operation::Transpose, inner) => group.is_orthogonal() && is_product(inner, group),
         View::Sum(terms) => match terms.as_slice() {
             [term] => {
                 term.coefficient.is_one()

@@ -28,7 +28,9 @@ pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
         }
         Group::UnitQuaternions => whole((0..3).map(|i| vec![(i, 0, rational(1, 2))]).collect()),
         Group::Heisenberg(n) => whole(heisenberg(n)),
-        Group::Declared(_) => Vec::new(),
+        Group::Declared(declared) => {
+            return vec![Block { algebra: graph.definition(declared).algebra, row: 0, column: 0, offset: 0 }];
+        }
     };
     let mut offset = 0;
     let block = |(shape, elements, row, column): (Shape, Vec<Sparse>, usize, usize)| {

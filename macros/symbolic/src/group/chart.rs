@@ -3,7 +3,7 @@
 use super::motion::{left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
-use crate::node::{Analytic, ExprNode};
+use crate::node::{Analytic, ExprNode, Operation};
 use crate::{Expr, Function, Graph, Shape, identity, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
@@ -29,7 +29,7 @@ impl Group {
     /// The chart in which the implicit equation is solved, unless a declaration chooses another.
     pub fn chart(self, graph: &Graph) -> Chart {
         match self {
-            Group::Declared(declared) => graph.definition_at(declared.index).chart,
+            Group::Declared(declared) => graph.definition(declared).chart,
             _ => self.row().chart,
         }
     }
@@ -145,7 +145,7 @@ impl Chart {
                 let z = combination(group, x);
                 let element = exponential(z);
                 match (&*element.node(), in_one_plane(z)) {
-                    (ExprNode::Analytic(Analytic::Exponential, inner), _) => {
+                    (ExprNode::Of(Operation::Analytic(Analytic::Exponential), inner), _) => {
                         let z = graph.expr(*inner);
                         (z * z.analytic(Analytic::Phi), one)
                     }

@@ -1,5 +1,7 @@
 //! Groups that a user declares, by an equation or by a basis of the Lie algebra.
 
+use std::rc::Rc;
+
 use num_traits::Zero;
 
 use super::chart::Chart;
@@ -47,22 +49,29 @@ impl Group {
 
 fn declare(graph: &Graph, name: &str, shape: Shape, basis: Vec<Sparse>, equation: Option<(Id, Id)>) -> Group {
     let algebra = graph.algebra(shape, basis);
-    let definition = Definition { name: name.to_string(), algebra, chart: Chart::Exponential, equation };
-    let declared = |definition: Definition| {
-        let index = graph.keep_definition(definition);
-        Group::Declared(Declared { index, size: shape.rows, dimension: algebra.dimension() })
+    let declared = |chart: Chart| {
+        let definition = Definition { name: name.to_string(), algebra, chart, equation };
+        let mut definitions = graph.definitions.borrow_mut();
+        definitions.push(Rc::new(definition));
+        Declared { index: definitions.len() as u32 - 1, size: shape.rows, dimension: algebra.dimension() }
     };
     // the chart is found for the group with the general one, and then kept with it
-    let group = declared(definition);
-    let chart = match () {
-        () if graph.is_closed_under_products(algebra) => Chart::Affine,
-        () if sample::is_cayley_tangent(graph, group) => Chart::Cayley,
-        () => Chart::Exponential,
+    let group = Group::Declared(declared(Chart::Exponential));
+    let chart = if graph.is_closed_under_products(algebra) {
+        Chart::Affine
+    } else if sample::is_cayley_tangent(graph, group) {
+        Chart::Cayley
+    } else {
+        Chart::Exponential
     };
-    declared(Definition { name: name.to_string(), algebra, chart, equation })
+    Group::Declared(declared(chart))
 }
 
 impl Graph {
+    pub(crate) fn definition(&self, declared: Declared) -> Rc<Definition> {
+        self.definitions.borrow()[declared.index as usize].clone()
+    }
+
     /// The coordinates of a matrix in a basis; `None` if it is outside of the span.
     pub fn coordinates(&self, algebra: Algebra, matrix: &[Rational]) -> Option<Vec<Rational>> {
         let basis = self.basis(algebra);
@@ -74,14 +83,11 @@ impl Graph {
         }
         rows.iter_mut().zip(matrix).for_each(|(row, value)| row[m] = value.clone());
         let pivots = reduce(&mut rows);
-        let solvable = pivots.last().is_none_or(|&last| last < m);
         let mut coordinates = vec![Rational::zero(); m];
-        pivots
-            .iter()
-            .zip(&rows)
-            .filter(|(pivot, _)| **pivot < m)
-            .for_each(|(&pivot, row)| coordinates[pivot] = row[m].clone());
-        solvable.then_some(coordinates)
+        for (pivot, row) in pivots.into_iter().zip(rows) {
+            *coordinates.get_mut(pivot)? = row[m].clone();
+        }
+        Some(coordinates)
     }
 
     /// The bracket E_i E_j − E_j E_i of two basis elements, row by row.
@@ -103,7 +109,7 @@ impl Graph {
     }
 
     /// Whether products of basis elements lie in their span, so that I + Z stays in the group.
-    pub fn is_closed_under_products(&self, algebra: Algebra) -> bool {
+    fn is_closed_under_products(&self, algebra: Algebra) -> bool {
         let (m, span) = (algebra.dimension(), self.span(algebra));
         (0..m).all(|i| (0..m).all(|j| span.holds(&self.basis_product(algebra, i, j))))
     }
@@ -141,14 +147,17 @@ impl Span {
     /// Whether a vector lies in the span.
     pub fn holds(&self, vector: &[Rational]) -> bool {
         let mut rest = vector.to_vec();
-        for (pivot, row) in &self.rows {
-            let factor = rest[*pivot].clone();
-            if !factor.is_zero() {
-                let others = rest.iter_mut().zip(row).filter(|(_, other)| !other.is_zero());
-                others.for_each(|(entry, other)| *entry -= &factor * other);
-            }
-        }
+        self.rows.iter().for_each(|(pivot, row)| eliminate(&mut rest, row, *pivot));
         rest.iter().all(Rational::is_zero)
+    }
+}
+
+/// Subtracts the multiple of a row, one at its pivot, with which another row is zero there.
+fn eliminate(row: &mut [Rational], pivot_row: &[Rational], pivot: usize) {
+    let factor = row[pivot].clone();
+    if !factor.is_zero() {
+        let others = row.iter_mut().zip(pivot_row).filter(|(_, other)| !other.is_zero());
+        others.for_each(|(entry, other)| *entry -= &factor * other);
     }
 }
 
@@ -163,13 +172,8 @@ pub fn reduce(rows: &mut [Vec<Rational>]) -> Vec<usize> {
         let scale = rows[rank][column].recip();
         rows[rank].iter_mut().for_each(|entry| *entry *= &scale);
         let pivot = rows[rank].clone();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != rank) {
-            let factor = row[column].clone();
-            if !factor.is_zero() {
-                let others = row.iter_mut().zip(&pivot).filter(|(_, other)| !other.is_zero());
-                others.for_each(|(entry, other)| *entry -= &factor * other);
-            }
-        }
+        let others = rows.iter_mut().enumerate().filter(|(index, _)| *index != rank);
+        others.for_each(|(_, row)| eliminate(row, &pivot, column));
         pivots.push(column);
     }
     pivots

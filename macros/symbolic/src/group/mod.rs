@@ -12,6 +12,7 @@ mod table;
 
 use std::rc::Rc;
 
+use crate::algebra::Sparse;
 use crate::{Algebra, Expr, Graph, Property, Shape, integer};
 
 pub use chart::Chart;
@@ -77,7 +78,7 @@ impl Group {
     /// The name that a declaration uses, `SO<3>`.
     pub fn name(self, graph: &Graph) -> String {
         match self {
-            Group::Declared(declared) => graph.definition_at(declared.index).name.clone(),
+            Group::Declared(declared) => graph.definition(declared).name.clone(),
             _ => {
                 let (name, sizes) = self.symbol();
                 let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
@@ -127,16 +128,11 @@ impl Group {
         matches!(self, Group::SpecialOrthogonal(_) | Group::Unitary(_) | Group::SpecialUnitary(_))
     }
 
-    /// Whether the group is abelian, so that both trivialisations agree.
-    pub fn is_abelian(self, graph: &Graph) -> bool {
-        match self {
-            Group::Translation(_) | Group::SpecialOrthogonal(2) => true,
-            Group::UnitQuaternions => false,
-            _ => {
-                let basis = graph.matrices(self);
-                basis.iter().all(|a| basis.iter().all(|b| *a * *b == *b * *a))
-            }
-        }
+    /// Whether elements are matrices of determinant one.
+    pub(crate) fn is_special(self) -> bool {
+        use Group::*;
+        let by_determinant = matches!(self, SpecialLinear(_) | Symplectic(_) | SpecialUnitary(_) | Unitary(_));
+        by_determinant || matches!(self, SpecialEuclidean(_) | Heisenberg(_))
     }
 
     /// The size of the linear part of a group of matrices (A b; 0 1).
@@ -151,11 +147,12 @@ impl Group {
 impl Graph {
     /// The blocks of a group's Lie algebra, in the order of its components.
     pub fn blocks(&self, group: Group) -> Rc<[Block]> {
-        if let Group::Declared(declared) = group {
-            let algebra = self.definition_at(declared.index).algebra;
-            return Rc::new([Block { algebra, row: 0, column: 0, offset: 0 }]);
+        if let Some(known) = self.blocks.borrow().get(&group) {
+            return known.clone();
         }
-        self.blocks_of(group, || bases::blocks(self, group))
+        let made: Rc<[Block]> = bases::blocks(self, group).into();
+        self.blocks.borrow_mut().insert(group, made.clone());
+        made
     }
 
     /// The only basis of a group whose algebra is one block; by its first block otherwise.
@@ -163,33 +160,32 @@ impl Graph {
         self.blocks(group)[0].algebra
     }
 
+    /// The basis of a group's Lie algebra, as matrices of the shape of its elements.
+    pub(crate) fn elements(&self, group: Group) -> Vec<Sparse> {
+        let placed = |block: &Block| -> Vec<Sparse> {
+            let moved = |(i, j, value): &(usize, usize, _)| (i + block.row, j + block.column, Clone::clone(value));
+            let basis = self.basis(block.algebra);
+            basis.elements.iter().map(|element| element.iter().map(moved).collect()).collect()
+        };
+        self.blocks(group).iter().flat_map(placed).collect()
+    }
+
     /// The basis of a group's Lie algebra as literal matrices.
     pub fn matrices(&self, group: Group) -> Vec<Expr<'_>> {
         let shape = group.element_shape();
-        let placed = |block: &Block| {
-            let (row, column) = (block.row, block.column);
-            self.basis(block.algebra)
-                .elements
-                .iter()
-                .map(|element| {
-                    let moved = element.iter().map(|(i, j, value)| (i + row, j + column, value.clone())).collect();
-                    self.sparse_literal(shape, &moved)
-                })
-                .collect::<Vec<_>>()
-        };
-        self.blocks(group).iter().flat_map(placed).collect()
+        self.elements(group).into_iter().map(|element| self.sparse_literal(shape, element)).collect()
     }
 
     /// (0 I; −I 0) of size 2n.
     pub(crate) fn symplectic_form(&self, size: usize) -> Expr<'_> {
         let n = size / 2;
-        let entries = (0..n).flat_map(|i| [(i, n + i, integer(1)), (n + i, i, integer(-1))]).collect();
-        self.sparse_literal(Shape::square(size), &entries)
+        let entries = (0..n).flat_map(|i| [(i, n + i, integer(1)), (n + i, i, integer(-1))]);
+        self.sparse_literal(Shape::square(size), entries)
     }
 
     /// diag(1 …, −1 …) with p ones.
     pub(crate) fn metric(&self, p: usize, q: usize) -> Expr<'_> {
-        let entries = (0..p + q).map(|i| (i, i, integer(if i < p { 1 } else { -1 }))).collect();
-        self.sparse_literal(Shape::square(p + q), &entries)
+        let entries = (0..p + q).map(|i| (i, i, integer(if i < p { 1 } else { -1 })));
+        self.sparse_literal(Shape::square(p + q), entries)
     }
 }

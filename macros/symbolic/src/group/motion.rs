@@ -2,7 +2,7 @@
 
 use super::{Block, Group};
 use crate::algebra::Sparse;
-use crate::{Algebra, Expr, Graph, Rational, Shape, integer};
+use crate::{Expr, Graph, Rational, Shape, integer};
 
 impl Group {
     /// The identity element.
@@ -35,31 +35,25 @@ impl Group {
 
     /// The inverse element without the inverse of a matrix, where the group has such a formula: η⁻¹FᵀηF = I, block elimination, a
     /// finite series.
-    pub fn explicit_inverse(self, f: Expr<'_>) -> Expr<'_> {
+    pub fn explicit_inverse<'g>(self, f: Expr<'g>) -> Expr<'g> {
         let graph = f.graph();
-        let n = self.element_shape().rows;
+        let linear = |n: usize| f.block(0, 0, Shape::square(n));
+        let moved_back = |n: usize, back: Expr<'g>| motion(back, -(back * f.block(0, n, Shape::vector(n))));
         match self {
             Group::PseudoOrthogonal(p, q) => graph.metric(p, q) * f.transpose() * graph.metric(p, q),
             // Ω⁻¹ = −Ω
             Group::Symplectic(n) => -(graph.symplectic_form(n) * f.transpose() * graph.symplectic_form(n)),
-            Group::SpecialEuclidean(n) => {
-                let turn = f.block(0, 0, Shape::square(n)).transpose();
-                motion(turn, -(turn * f.block(0, n, Shape::vector(n))))
-            }
+            Group::SpecialEuclidean(n) => moved_back(n, linear(n).transpose()),
             Group::Similarity(n) => {
-                let linear = f.block(0, 0, Shape::square(n));
-                let scale = linear.block(0, 0, Shape::vector(n)).norm_squared();
-                let back = linear.transpose() / scale;
-                motion(back, -(back * f.block(0, n, Shape::vector(n))))
+                let scale = linear(n).block(0, 0, Shape::vector(n)).norm_squared();
+                moved_back(n, linear(n).transpose() / scale)
             }
-            Group::Affine(n) => {
-                let back = f.block(0, 0, Shape::square(n)).inverse();
-                motion(back, -(back * f.block(0, n, Shape::vector(n))))
-            }
+            Group::Affine(n) => moved_back(n, linear(n).inverse()),
             Group::Heisenberg(_) => {
                 // F = I + Z with Z³ = 0
-                let z = f - graph.identity(n);
-                graph.identity(n) - z + z * z
+                let identity = self.identity(graph);
+                let z = f - identity;
+                identity - z + z * z
             }
             _ => self.inverse(f),
         }
@@ -67,18 +61,12 @@ impl Group {
 
     /// The tangent vector F·η, the derivative of F exp(εη): left translation of η.
     pub fn translate_left<'g>(self, f: Expr<'g>, eta: Expr<'g>) -> Expr<'g> {
-        match self {
-            Group::Translation(_) => eta,
-            _ => self.compose(f, eta),
-        }
+        if self.is_translation() { eta } else { self.compose(f, eta) }
     }
 
     /// The tangent vector η·F, the derivative of exp(εη) F.
     pub fn translate_right<'g>(self, f: Expr<'g>, eta: Expr<'g>) -> Expr<'g> {
-        match self {
-            Group::Translation(_) => eta,
-            _ => self.compose(eta, f),
-        }
+        if self.is_translation() { eta } else { self.compose(eta, f) }
     }
 
     /// An array whose components ⟨·, E_i⟩ are those of T*_id L_F D: FᵀD for a matrix group.
@@ -108,18 +96,21 @@ impl Group {
     pub(crate) fn placed<'g>(self, graph: &'g Graph, coordinates: impl Fn(&Block) -> Expr<'g>) -> Expr<'g> {
         let shape = self.element_shape();
         let part = |block: &Block| coordinates(block).wedge(block.algebra).embed(shape, block.row, block.column);
-        graph.blocks(self).iter().map(part).fold(graph.zero(shape), |sum, part| sum + part)
+        graph.total(shape, graph.blocks(self).iter().map(part))
+    }
+
+    /// The vector with the given components in each block.
+    fn by_blocks<'g>(self, graph: &'g Graph, components: impl Fn(&Block) -> Expr<'g>) -> Expr<'g> {
+        let shape = Shape::vector(self.dimension());
+        let part = |block: &Block| components(block).embed(shape, block.offset, 0);
+        graph.total(shape, graph.blocks(self).iter().map(part))
     }
 
     /// The components ⟨A, E_i⟩ of an array of the shape of elements.
     pub fn components(self, array: Expr<'_>) -> Expr<'_> {
-        let graph = array.graph();
-        let shape = Shape::vector(self.dimension());
-        let part = |block: &Block| {
-            let inner = array.block(block.row, block.column, block.algebra.matrix_shape());
-            inner.components(block.algebra).embed(shape, block.offset, 0)
-        };
-        graph.blocks(self).iter().map(part).fold(graph.zero(shape), |sum, part| sum + part)
+        self.by_blocks(array.graph(), |block| {
+            array.block(block.row, block.column, block.algebra.matrix_shape()).components(block.algebra)
+        })
     }
 
     /// The coordinates ξ of the element of the algebra that is nearest to an array: G⁻¹⟨A, E_i⟩.
@@ -135,11 +126,9 @@ impl Group {
     /// G⁻¹m, block by block.
     fn raised(self, mu: Expr<'_>) -> Expr<'_> {
         let graph = mu.graph();
-        let part = |block: &Block| {
-            let part = mu.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
-            graph.raise(block.algebra, part).embed(mu.shape(), block.offset, 0)
-        };
-        graph.blocks(self).iter().map(part).fold(graph.zero(mu.shape()), |sum, part| sum + part)
+        self.by_blocks(graph, |block| {
+            graph.raise(block.algebra, mu.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
+        })
     }
 
     /// The coordinates of Ad_F ξ = F ξ F⁻¹.
@@ -203,7 +192,7 @@ impl Group {
                 let z = f - graph.identity(n);
                 vec![z - self.wedge(self.projected_coordinates(z))]
             }
-            Group::Declared(declared) => graph.definition_at(declared.index).equation(f),
+            Group::Declared(declared) => graph.definition(declared).equation(f),
         }
     }
 }
@@ -233,19 +222,6 @@ pub(crate) fn motion<'g>(linear: Expr<'g>, shift: Expr<'g>) -> Expr<'g> {
     let n = linear.shape().rows;
     let shape = Shape::square(n + 1);
     linear.embed(shape, 0, 0) + shift.embed(shape, 0, n) + linear.graph().unit(shape, n, n)
-}
-
-impl Graph {
-    /// G⁻¹m for the components m with respect to a basis with Gram matrix G.
-    pub fn raise<'g>(&'g self, algebra: Algebra, mu: Expr<'g>) -> Expr<'g> {
-        let basis = self.basis(algebra);
-        if let Some(square) = basis.uniform_gram() {
-            return mu.times(&square.recip());
-        }
-        let gram = basis.gram();
-        let shape = Shape::square(gram.len());
-        self.literal(shape, gram.into_iter().flatten().collect()).inverse() * mu
-    }
 }
 
 /// The basis of the matrices q ↦ a q (or q a) of the quaternions a = i, j, k, 1 on (i, j, k, w).
@@ -281,6 +257,6 @@ pub fn quaternion_product<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
 
 /// The conjugate quaternion.
 pub fn conjugate(a: Expr<'_>) -> Expr<'_> {
-    let signs = (0..4).map(|i| (i, i, integer(if i < 3 { -1 } else { 1 }))).collect();
-    a.graph().sparse_literal(Shape::square(4), &signs) * a
+    let signs = (0..4).map(|i| (i, i, integer(if i < 3 { -1 } else { 1 })));
+    a.graph().sparse_literal(Shape::square(4), signs) * a
 }

@@ -1,6 +1,6 @@
 //! Jacobians of bodies on SO(n): Sylvester's linear map of skew matrices.
 
-use clebsch_symbolic::{Expr, Group, Shape, View};
+use clebsch_symbolic::{Expr, Group, Operation, Shape, View};
 
 use crate::derive::equation::MomentumEquation;
 use crate::derive::{MechanicsFormulas, Solution, Symbols};
@@ -26,9 +26,10 @@ impl<'g> MomentumEquation<'g> {
         let mut factor = model.graph.zero(Shape::square(n));
         for outer in self.directional.word_terms() {
             let [components] = outer.word[..] else { return None };
-            let View::Components(_, inner) = components.view() else { return None };
+            let View::Of(Operation::Components(_), inner) = components.view() else { return None };
             for term in outer.over(inner) {
-                let turns = |letter: &Expr<'g>| matches!(letter.view(), View::Wedge(_, x) if x == direction);
+                let turns =
+                    |letter: &Expr<'g>| matches!(letter.view(), View::Of(Operation::Wedge(_), x) if x == direction);
                 let at = term.word.iter().position(turns)?;
                 let (before, after) = (&term.word[..at], &term.word[at + 1..]);
                 let scale = term.scale(model.graph);

@@ -9,7 +9,6 @@ use super::super::scope::{Scope, check_reserved};
 use super::super::value::Value;
 use super::super::vectors::vectors;
 use super::kernel::kernel;
-use super::rational::is_rational;
 use super::{bracket_with, check_size, elaborate, empty_scope, fields_in, follow, not_literal, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::parse::{Closure, Pattern, spell, spell_type};
@@ -140,7 +139,7 @@ impl<'g> GroupEquation<'_, 'g> {
                 error.help(format!("write an equation for `{0}`, as in `{0}.transpose() * {0} == I`", self.symbol))
             );
         }
-        if expressions.iter().all(|expr| is_rational(*expr)) { Ok(()) } else { Err(self.not_rational()) }
+        if expressions.iter().all(|expr| expr.is_rational()) { Ok(()) } else { Err(self.not_rational()) }
     }
 
     fn holds_at_identity(&self, sides: &[(Expr<'g>, Expr<'g>)]) -> Result<(), Diagnostic> {

@@ -76,7 +76,7 @@ impl Number for Exact {
         Matrix::from_fn(argument.shape, |_| Exact(None))
     }
 
-    fn opaque(_: u32, _: usize, _: &[&Matrix<Exact>], shape: Shape) -> Matrix<Exact> {
+    fn opaque(_: &str, _: usize, _: &[&Matrix<Exact>], shape: Shape) -> Matrix<Exact> {
         Matrix::from_fn(shape, |_| Exact(None))
     }
 

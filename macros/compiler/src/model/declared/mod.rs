@@ -5,7 +5,6 @@ mod equation;
 mod exact;
 mod follow;
 mod kernel;
-mod rational;
 mod series;
 #[cfg(test)]
 mod tests;

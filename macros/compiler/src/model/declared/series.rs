@@ -60,7 +60,7 @@ impl<K: Number, const N: usize> Number for Series<K, N> {
         argument.clone()
     }
 
-    fn opaque(_: u32, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
+    fn opaque(_: &str, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
         Matrix::from_fn(shape, |_| Series::constant(K::from_rational(&integer(0))))
     }
 
