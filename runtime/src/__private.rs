@@ -19,7 +19,7 @@ pub use crate::free_rotation_4d::{FreeRotation4, KeptRotation4, free_momentum_4d
 pub use crate::implicit::{
     Equation, Jacobian, LinearEquation, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
 };
-pub use crate::linear::{solve_dense, solve_symmetric};
+pub use crate::linear::{matrix, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::matrices::{Blocks, axial, determinant, embedded, hat, matrix_of, shifted};
 pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
@@ -56,14 +56,7 @@ pub use core::result::Result::{self, Err, Ok};
 pub use nalgebra::{Quaternion, SMatrix, SVector};
 pub use num_traits::{One, Zero};
 
-use crate::linear::entry;
 use nalgebra::ArrayStorage;
-
-/// A matrix from its rows.
-#[inline]
-pub fn matrix<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
-    SMatrix::from_array_storage(ArrayStorage(core::array::from_fn(|j| core::array::from_fn(|i| entry(&rows, i, j)))))
-}
 
 /// A column vector from its entries.
 #[inline]

@@ -1,6 +1,6 @@
 //! Group elements from what a step computes.
 
-use crate::linear::{eliminate, multiple_of_identity, rows, undefined};
+use crate::linear::{eliminate, matrix, multiple_of_identity, rows, undefined};
 use crate::space::by_lane;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
@@ -33,7 +33,7 @@ pub fn inverse<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N,
     by_lane(a, |a| {
         let mut inverse = multiple_of_identity(T::Lane::one());
         match eliminate(rows(a), &mut inverse) {
-            Some(_) => SMatrix::from_fn(|i, j| inverse[i][j]),
+            Some(_) => matrix(inverse),
             None => undefined(),
         }
     })

@@ -8,7 +8,7 @@
 //! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4; Al-Mohy and Higham, *A New Scaling and Squaring
 //! Algorithm for the Matrix Exponential*, 2009, theorem 4.2.
 
-use crate::linear::{norm, product, rows, shifted, undefined};
+use crate::linear::{matrix, norm, product, rows, shifted, undefined};
 use crate::space::{by_lane, larger};
 use crate::{Real, Scalar, Space};
 use core::array::from_fn;
@@ -40,7 +40,7 @@ fn exponential_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<
     for _ in 0..halvings {
         power = product(&power, &power);
     }
-    SMatrix::from_fn(|i, j| power[i][j])
+    matrix(power)
 }
 
 /// φ(A) = Σ Aᵏ/(k+1)!, which is (exp A − I)A⁻¹ where A is regular; NaN where A is not finite.
@@ -63,7 +63,7 @@ fn phi_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
         value = from_fn(|i| from_fn(|j| value[i][j] + change[i][j] * half));
         scaled = scaled.map(|row| row.map(|x| x + x));
     }
-    SMatrix::from_fn(|i, j| value[i][j])
+    matrix(value)
 }
 
 /// A/2ˢ, of which all powers from the second on are at most one in norm (or A/2ˢ itself is), and s.

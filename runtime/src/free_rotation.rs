@@ -21,16 +21,18 @@
 //! Moser–Veselov algorithm for the free rigid body, revisited*, Found. Comput. Math. 5 (2005), for the first terms. The differential
 //! equation follows from d_i = ½τ|M| cot Ψ_i, where tan(Ψ_i − Ψ_j) = |M| (x_i − x_j) σσ_k/(σ_iσ_j) in Weierstrass' functions of τ/2.
 
-use crate::newton::Spectrum;
 use crate::root::root;
 use crate::space::{each_lane, lane_of, set_lane};
-use crate::{Error, Real, Scalar};
+use crate::{Error, Real, Scalar, Space};
+use axes::Axes;
+use core::array::from_fn;
 use duplication::{Functions, duplicated};
-use nalgebra::{Quaternion, SMatrix, SVector};
+use nalgebra::{ArrayStorage, Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
 use series::{Coefficients, coefficient};
-use turn::{balanced, ratio, turn, turn_of_tensor};
+use turn::{Turn, balanced, ratio, turn, turn_of_tensor};
 
+pub(crate) mod axes;
 mod duplication;
 mod series;
 mod turn;
@@ -60,22 +62,14 @@ pub struct FreeRotation<T> {
     inertia: [T; 3],
     /// x_i/x
     reciprocals: [T; 3],
-    axes: Axes<T>,
+    axes: Axes<T, Tensor<T>, 3>,
     series: Coefficients<T>,
     /// Up to which α a polynomial of each degree is enough.
     reach: [T; 9],
 }
 
-/// The axes in which vectors are written.
-#[derive(Clone, Copy, Debug)]
-enum Axes<T> {
-    /// Those of the coordinates, which are principal axes.
-    Coordinates,
-    /// The columns of this rotation, which are principal axes.
-    Principal(SMatrix<T, 3, 3>),
-    /// Those of the coordinates, with J/x and X = xJ⁻¹: numbers with derivatives know no principal axes.
-    Tensor { inertia: SMatrix<T, 3, 3>, reciprocal: SMatrix<T, 3, 3>, invariants: [T; 3] },
-}
+/// J/x and X = xJ⁻¹, and the symmetric functions of X.
+type Tensor<T> = (SMatrix<T, 3, 3>, SMatrix<T, 3, 3>, [T; 3]);
 
 impl<T: Scalar> FreeRotation<T> {
     /// The free motions over the time `h` of a body with the inertia tensor `inertia`, of which the lower triangle is read.
@@ -92,65 +86,24 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn to_tolerance(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
-        let of_lane = |lane: usize| {
-            FreeRotation::<T::Lane>::of_number(&inertia.map(|entry| entry.lane(lane)), h.lane(lane), tolerance)
-        };
-        let first = of_lane(0)?;
-        let everywhere = |number: T::Lane| T::from_lanes(|_| number);
         let mut all = Self {
-            scale: everywhere(first.scale),
-            inertia: first.inertia.map(everywhere),
-            reciprocals: first.reciprocals.map(everywhere),
-            axes: match first.axes {
-                Axes::Coordinates => Axes::Coordinates,
-                Axes::Principal(axes) => Axes::Principal(axes.map(everywhere)),
-                Axes::Tensor { inertia, reciprocal, invariants } => Axes::Tensor {
-                    inertia: inertia.map(everywhere),
-                    reciprocal: reciprocal.map(everywhere),
-                    invariants: invariants.map(everywhere),
-                },
-            },
-            series: first.series.map(|coefficients| coefficients.map(everywhere)),
-            reach: first.reach.map(everywhere),
+            scale: T::zero(),
+            inertia: Space::<T>::origin(),
+            reciprocals: Space::<T>::origin(),
+            axes: Axes::unset(),
+            series: Space::<T>::origin(),
+            reach: Space::<T>::origin(),
         };
-        for lane in 1..T::LANES {
-            all.put(lane, &of_lane(lane)?);
+        for lane in 0..T::LANES {
+            let own = FreeRotation::of_number(&lane_of(inertia, lane), h.lane(lane), tolerance)?;
+            all.scale.set_lane(lane, &own.scale);
+            all.inertia.set_lane(lane, &own.inertia);
+            all.reciprocals.set_lane(lane, &own.reciprocals);
+            all.axes.set_lane(lane, &own.axes);
+            all.series.set_lane(lane, &own.series);
+            all.reach.set_lane(lane, &own.reach);
         }
         Ok(all)
-    }
-
-    /// Puts the constants of one body into a lane.
-    #[cold]
-    fn put(&mut self, lane: usize, other: &FreeRotation<T::Lane>) {
-        let put = |number: &mut T, other: T::Lane| {
-            let before = *number;
-            *number = T::from_lanes(|i| if i == lane { other } else { before.lane(i) });
-        };
-        let put_all = |numbers: &mut [T], others: &[T::Lane]| {
-            numbers.iter_mut().zip(others).for_each(|(number, other)| put(number, *other));
-        };
-        put(&mut self.scale, other.scale);
-        put_all(&mut self.inertia, &other.inertia);
-        put_all(&mut self.reciprocals, &other.reciprocals);
-        put_all(&mut self.reach, &other.reach);
-        self.series.iter_mut().zip(&other.series).for_each(|(numbers, others)| put_all(numbers, others));
-        // the axes of the coordinates are those of the identity, by which nothing is rounded
-        match (&mut self.axes, &other.axes) {
-            (Axes::Coordinates, Axes::Coordinates) => {}
-            (
-                Axes::Tensor { inertia, reciprocal, invariants },
-                Axes::Tensor { inertia: other, reciprocal: inverse, invariants: symmetric },
-            ) => {
-                put_all(inertia.as_mut_slice(), other.as_slice());
-                put_all(reciprocal.as_mut_slice(), inverse.as_slice());
-                put_all(invariants, symmetric);
-            }
-            (before, other) => {
-                let mut axes = before.rotation();
-                put_all(axes.as_mut_slice(), other.rotation().as_slice());
-                *before = Axes::Principal(axes);
-            }
-        }
     }
 
     /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
@@ -171,146 +124,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
     #[inline(always)]
     pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
-        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let (w, x) = match T::LANES {
-            // no closure: it would be called, and the turn would go through memory
-            1 => in_one_lane(self.lane_turned(0, &m)?),
-            _ => in_lanes(|lane| self.lane_turned(lane, &m))?,
-        };
-        Ok((w, self.in_coordinates(x)))
-    }
-
-    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
-    ///
-    /// The inverse of [`gibbs_vector`](Self::gibbs_vector).
-    #[cold]
-    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
-        let c = self.in_principal_axes(gibbs_vector);
-        let found: Result<(T, [T; 3]), Error> =
-            in_lanes(|lane| Ok((<T::Lane as One>::one(), self.momentum_of_number(lane, &of_lane(&c, lane)))));
-        match found {
-            Ok((_, m)) => self.in_coordinates(m.map(|component| component * self.scale.recip())),
-            Err(_) => SVector::from_element(T::from_f64(f64::NAN)),
-        }
-    }
-
-    /// The same for one body, in principal axes and without units.
-    fn momentum_of_number(&self, lane: usize, c: &[T::Lane; 3]) -> [T::Lane; 3] {
-        let (one, nothing) = (<T::Lane as One>::one(), [T::Lane::from_f64(f64::NAN); 3]);
-        let reached = |m: &SVector<T::Lane, 3>| {
-            let m = [m[0], m[1], m[2]];
-            match self.modified_inertia(lane, &m) {
-                Some(d) => Some(self.turned(lane, &d, &m)),
-                None => self.long_turn(lane, &m).ok(),
-            }
-            .map(|(w, x)| ratio((w, SVector::from(x))))
-        };
-        // the equation of Moser and Veselov, which is right to second order
-        let c = SVector::from(*c);
-        let image = match &self.axes {
-            Axes::Tensor { inertia, .. } => lane_of(inertia, lane) * c,
-            _ => SVector::from(of_lane(&self.inertia, lane)).component_mul(&c),
-        };
-        let start = (image + c.cross(&image)) * (one + c.dot(&c)).recip();
-        // of the angle rather than of its tangent, which grows beyond all bounds towards half a turn
-        let scale = (one + c.dot(&c)).recip();
-        root(start, |m| Some((reached(m)? - c) * scale)).map_or(nothing, SVector::into)
-    }
-
-    /// d_i x of the whole time in a lane, or the coefficients of d; `None` where that is beyond the reach of the series.
-    #[inline(always)]
-    fn modified_inertia(&self, lane: usize, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
-        let invariants = self.invariants(lane, m);
-        self.sum_of_series(lane, invariants).map(|sum| self.scaled(lane, sum))
-    }
-
-    /// α = |m|² and ε = m·Xm.
-    #[inline(always)]
-    fn invariants(&self, lane: usize, m: &[T::Lane; 3]) -> [T::Lane; 2] {
-        let squares = m.map(|component| component * component);
-        let epsilon = match &self.axes {
-            Axes::Tensor { reciprocal, .. } if T::DERIVATIVES > 0 => {
-                let m = SVector::from(*m);
-                m.dot(&(lane_of(reciprocal, lane) * m))
-            }
-            _ => {
-                let [a, b, c] = of_lane(&self.reciprocals, lane);
-                a * squares[0] + b * squares[1] + c * squares[2]
-            }
-        };
-        [squares[0] + squares[1] + squares[2], epsilon]
-    }
-
-    /// x_i d_i, or the coefficients of X d, and τ²/4 ℘(τ/2), by the polynomial of the least degree that is enough.
-    #[inline(always)]
-    fn sum_of_series(&self, lane: usize, [alpha, epsilon]: [T::Lane; 2]) -> Option<[T::Lane; 4]> {
-        macro_rules! degrees {
-            ($($number:literal $degree:literal),*) => {$(
-                if alpha <= self.reach[$number].lane(lane) {
-                    return Some(self.polynomial::<$degree>(lane, alpha, epsilon));
-                }
-            )*};
-        }
-        degrees!(0 2, 1 3, 2 4, 3 5, 4 6, 5 8, 6 10, 7 12, 8 14);
-        None
-    }
-
-    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
-    #[inline(always)]
-    fn polynomial<const K: usize>(&self, lane: usize, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
-        let coefficients = |i: usize, j: usize| of_lane(&coefficient(&self.series, i, j), lane);
-        let mut sum = [<T::Lane as Zero>::zero(); 4];
-        for j in (0..=K).rev() {
-            let mut inner = coefficients(K - j, j);
-            for i in (0..K - j).rev() {
-                let next = coefficients(i, j);
-                inner = core::array::from_fn(|k| inner[k] * alpha + next[k]);
-            }
-            sum = core::array::from_fn(|k| sum[k] * epsilon + inner[k]);
-        }
-        sum
-    }
-
-    #[inline(always)]
-    fn scaled(&self, lane: usize, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
-        match &self.axes {
-            Axes::Tensor { .. } if T::DERIVATIVES > 0 => [a, b, c],
-            _ => {
-                let [x, y, z] = of_lane(&self.inertia, lane);
-                [a * x, b * y, c * z]
-            }
-        }
-    }
-
-    /// A multiple of the quaternion with d ρ − m × ρ = ρ₀ m.
-    #[inline(always)]
-    fn turned(&self, lane: usize, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> (T::Lane, [T::Lane; 3]) {
-        match &self.axes {
-            Axes::Tensor { inertia, reciprocal, .. } if T::DERIVATIVES > 0 => {
-                // X d = c₀ + c₁X + c₂X²
-                let (inertia, reciprocal) = (lane_of(inertia, lane), lane_of(reciprocal, lane));
-                let tensor = inertia * d[0] + SMatrix::identity() * d[1] + reciprocal * d[2];
-                turn_of_tensor(&tensor, m)
-            }
-            _ => turn(d, m),
-        }
-    }
-
-    /// What the motion with the momentum `momentum` keeps, for many steps of it.
-    pub fn motion(&self, momentum: &SVector<T, 3>) -> KeptRotation<T> {
-        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
-        let mut kept = KeptRotation::<T>::from_element(T::zero());
-        for lane in 0..T::LANES {
-            let m = of_lane(&m, lane);
-            let found = match self.modified_inertia(lane, &m) {
-                Some(inertia) => Ok((inertia, <T::Lane as One>::one())),
-                None => self.long_motion(lane, &m),
-            };
-            if let Ok(([a, b, c], part)) = found {
-                set_lane(&mut kept, lane, &SVector::from([a, b, c, part]));
-            }
-        }
-        kept
+        self.turn_by(None, momentum)
     }
 
     /// As [`gibbs_vector`](Self::gibbs_vector), of a motion that is known.
@@ -328,127 +142,65 @@ impl<T: Scalar> FreeRotation<T> {
     /// As [`turn`](Self::turn).
     #[inline(always)]
     pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
-        let m = self.in_principal_axes(momentum).map(|component| component * self.scale);
+        self.turn_by(Some(kept), momentum)
+    }
+
+    #[inline(always)]
+    fn turn_by(&self, kept: Option<&KeptRotation<T>>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
+        let m = self.without_units(momentum);
         let (w, x) = match T::LANES {
-            // as in `turn`
-            1 => in_one_lane(self.lane_turned_of(0, kept, &m)?),
-            _ => in_lanes(|lane| self.lane_turned_of(lane, kept, &m))?,
+            // no closure: it would be called, and the turn would go through memory
+            1 => {
+                let (w, x) = self.of_lane(0).turn(kept.map(|kept| lane_of(kept, 0)), &m.lane(0))?;
+                (T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry)))
+            }
+            _ => {
+                let nothing = T::Lane::from_f64(f64::NAN);
+                let all = each_lane::<T, _>((nothing, [nothing; 3]), |lane| {
+                    self.of_lane(lane).turn(kept.map(|kept| lane_of(kept, lane)), &m.lane(lane))
+                })?;
+                (T::from_lanes(|lane| all[lane].0), from_fn(|i| T::from_lanes(|lane| all[lane].1[i])))
+            }
         };
         Ok((w, self.in_coordinates(x)))
     }
 
-    /// The turn of one lane.
+    /// What the motion with the momentum `momentum` keeps, for many steps of it.
+    pub fn motion(&self, momentum: &SVector<T, 3>) -> KeptRotation<T> {
+        let m = self.without_units(momentum);
+        let mut kept = KeptRotation::<T>::from_element(T::zero());
+        for lane in 0..T::LANES {
+            let (body, m) = (self.of_lane(lane), m.lane(lane));
+            let found = match body.modified_inertia(&m) {
+                Some(inertia) => Ok((inertia, <T::Lane as One>::one())),
+                None => body.long_motion(&m),
+            };
+            if let Ok(([a, b, c], part)) = found {
+                set_lane(&mut kept, lane, &SVector::from([a, b, c, part]));
+            }
+        }
+        kept
+    }
+
+    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
     ///
-    /// # Errors
-    /// As [`turn`](Self::turn).
+    /// The inverse of [`gibbs_vector`](Self::gibbs_vector).
+    #[cold]
+    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+        let c = self.in_principal_axes(gibbs_vector);
+        let m = <[T; 3]>::side_by_side(|lane| self.of_lane(lane).momentum(&c.lane(lane)));
+        self.in_coordinates(m.map(|component| component * self.scale.recip()))
+    }
+
     #[inline(always)]
-    fn lane_turned(&self, lane: usize, m: &[T; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        let m = of_lane(m, lane);
-        match self.modified_inertia(lane, &m) {
-            Some(d) => Ok(self.turned(lane, &d, &m)),
-            None => self.long_turn(lane, &m),
-        }
+    fn of_lane(&self, lane: usize) -> OfLane<'_, T> {
+        OfLane { free: self, lane }
     }
 
-    /// The same of a motion that keeps `kept`.
-    ///
-    /// # Errors
-    /// As [`turn_of`](Self::turn_of).
+    /// m = h x M/2 in principal axes.
     #[inline(always)]
-    fn lane_turned_of(
-        &self,
-        lane: usize,
-        kept: &KeptRotation<T>,
-        m: &[T; 3],
-    ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        let ([[a, b, c, part]], m) = (lane_of(kept, lane).data.0, of_lane(m, lane));
-        match part == <T::Lane as One>::one() {
-            true => Ok(self.turned(lane, &[a, b, c], &m)),
-            false => self.long_turn_of(lane, &[a, b, c], part, &m),
-        }
-    }
-
-    /// The same for a lane whose motion was made longer by duplication, or is too long for that.
-    #[cold]
-    #[inline(never)]
-    fn long_turn_of(
-        &self,
-        lane: usize,
-        d: &[T::Lane; 3],
-        part: T::Lane,
-        m: &[T::Lane; 3],
-    ) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        match part == <T::Lane as Zero>::zero() {
-            true => self.long_turn(lane, m),
-            false => Ok(self.turned_by_part(lane, d, part, m)),
-        }
-    }
-
-    /// The turn of the whole time, of d over 2ⁿ and 2⁻ⁿ.
-    #[inline]
-    fn turned_by_part(
-        &self,
-        lane: usize,
-        d: &[T::Lane; 3],
-        part: T::Lane,
-        m: &[T::Lane; 3],
-    ) -> (T::Lane, [T::Lane; 3]) {
-        balanced(self.turned(lane, d, &m.map(|component| component * part)))
-    }
-
-    /// The turn of a motion beyond the reach of the series.
-    #[cold]
-    #[inline(never)]
-    fn long_turn(&self, lane: usize, m: &[T::Lane; 3]) -> Result<(T::Lane, [T::Lane; 3]), Error> {
-        let (d, part) = self.long_motion(lane, m)?;
-        Ok(self.turned_by_part(lane, &d, part, m))
-    }
-
-    /// d_i x over 2ⁿ, and 2⁻ⁿ, by n duplications: d ρ − m × ρ = ρ₀ m holds for multiples of d and m too.
-    #[cold]
-    fn long_motion(&self, lane: usize, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], T::Lane), Error> {
-        if m.iter().any(|component| !component.is_finite()) {
-            return Err(Error::NotFinite { name: "the momentum" });
-        }
-        let (mut size, mut part) = (<T::Lane as One>::one(), *m);
-        let most = duplications::<T>();
-        for times in 1..=most {
-            (size, part) = (half(size), part.map(half));
-            let invariants = self.invariants(lane, &part);
-            let sum = self.sum_of_series(lane, invariants);
-            if let Some(d) = sum.and_then(|sum| self.made_longer(lane, invariants, sum, times)) {
-                return Ok((d, size));
-            }
-        }
-        let [.., reach] = of_lane(&self.reach, lane);
-        let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
-        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach / square).sqrt();
-        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None })
-    }
-
-    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.
-    fn made_longer(
-        &self,
-        lane: usize,
-        invariants: [T::Lane; 2],
-        sum: [T::Lane; 4],
-        times: u32,
-    ) -> Option<[T::Lane; 3]> {
-        let [a, b, c, p] = sum;
-        match &self.axes {
-            Axes::Tensor { invariants: symmetric, .. } if T::DERIVATIVES > 0 => {
-                let e @ [first, second, third] = of_lane(symmetric, lane);
-                // X⁻¹ = (X² − e₁X + e₂)/e₃
-                let top = a / third;
-                let d = [b + top * second, c - top * first, top];
-                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times)?;
-                Some([c * third, a - c * second, b + c * first])
-            }
-            _ => {
-                let functions = Functions::OnAxes(of_lane(&self.reciprocals, lane));
-                duplicated(functions, invariants, self.scaled(lane, sum), p, times)
-            }
-        }
+    fn without_units(&self, momentum: &SVector<T, 3>) -> [T; 3] {
+        self.in_principal_axes(momentum).map(|component| component * self.scale)
     }
 
     #[inline]
@@ -468,17 +220,183 @@ impl<T: Scalar> FreeRotation<T> {
     }
 }
 
+/// The motions of one lane, in principal axes and without units.
+#[derive(Clone, Copy)]
+struct OfLane<'a, T> {
+    free: &'a FreeRotation<T>,
+    lane: usize,
+}
+
+impl<T: Scalar> OfLane<'_, T> {
+    /// A multiple of the quaternion of the turn, of a motion that keeps `kept` where it is known.
+    #[inline(always)]
+    fn turn(self, kept: Option<KeptRotation<T::Lane>>, m: &[T::Lane; 3]) -> Result<Turn<T::Lane>, Error> {
+        let inertia = match kept {
+            Some(SVector { data: ArrayStorage([[a, b, c, part]]), .. }) => {
+                (part == <T::Lane as One>::one()).then_some([a, b, c])
+            }
+            None => self.modified_inertia(m),
+        };
+        match inertia {
+            Some(d) => Ok(self.solution(&d, m)),
+            None => self.long_turn(kept, m),
+        }
+    }
+
+    /// The turn of a motion beyond the reach of the series, or of one that was made longer by duplication.
+    #[cold]
+    #[inline(never)]
+    fn long_turn(self, kept: Option<KeptRotation<T::Lane>>, m: &[T::Lane; 3]) -> Result<Turn<T::Lane>, Error> {
+        let (d, part) = match kept {
+            Some(kept) if kept[3] != <T::Lane as Zero>::zero() => ([kept[0], kept[1], kept[2]], kept[3]),
+            _ => self.long_motion(m)?,
+        };
+        Ok(balanced(self.solution(&d, &m.map(|component| component * part))))
+    }
+
+    /// d_i x over 2ⁿ, and 2⁻ⁿ, by n duplications: d ρ − m × ρ = ρ₀ m holds for multiples of d and m too.
+    #[cold]
+    fn long_motion(self, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], T::Lane), Error> {
+        if m.iter().any(|component| !component.is_finite()) {
+            return Err(Error::NotFinite { name: "the momentum" });
+        }
+        let (mut size, mut part) = (<T::Lane as One>::one(), *m);
+        let most = duplications::<T>();
+        for times in 1..=most {
+            (size, part) = (half(size), part.map(half));
+            let invariants = self.invariants(&part);
+            let sum = self.sum_of_series(invariants);
+            if let Some(d) = sum.and_then(|sum| self.made_longer(invariants, sum, times)) {
+                return Ok((d, size));
+            }
+        }
+        let [.., reach] = self.free.reach.lane(self.lane);
+        let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
+        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach / square).sqrt();
+        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None })
+    }
+
+    /// The m of the motion with the Gibbs vector `c`.
+    fn momentum(self, c: &[T::Lane; 3]) -> [T::Lane; 3] {
+        let (one, nothing) = (<T::Lane as One>::one(), [T::Lane::from_f64(f64::NAN); 3]);
+        let reached = |m: &SVector<T::Lane, 3>| {
+            let (w, x) = self.turn(None, &[m[0], m[1], m[2]]).ok()?;
+            Some(ratio((w, SVector::from(x))))
+        };
+        // the equation of Moser and Veselov, which is right to second order
+        let c = SVector::from(*c);
+        let image = match &self.free.axes {
+            Axes::Tensor((inertia, ..)) => lane_of(inertia, self.lane) * c,
+            _ => SVector::from(self.free.inertia.lane(self.lane)).component_mul(&c),
+        };
+        let start = (image + c.cross(&image)) * (one + c.dot(&c)).recip();
+        // of the angle rather than of its tangent, which grows beyond all bounds towards half a turn
+        let scale = (one + c.dot(&c)).recip();
+        root(start, |m| Some((reached(m)? - c) * scale)).map_or(nothing, SVector::into)
+    }
+
+    /// d_i x of the whole time, or the coefficients of d; `None` where that is beyond the reach of the series.
+    #[inline(always)]
+    fn modified_inertia(self, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
+        self.sum_of_series(self.invariants(m)).map(|sum| self.scaled(sum))
+    }
+
+    /// α = |m|² and ε = m·Xm.
+    #[inline(always)]
+    fn invariants(self, m: &[T::Lane; 3]) -> [T::Lane; 2] {
+        let squares = m.map(|component| component * component);
+        let epsilon = match &self.free.axes {
+            Axes::Tensor((_, reciprocal, _)) if T::DERIVATIVES > 0 => {
+                let m = SVector::from(*m);
+                m.dot(&(lane_of(reciprocal, self.lane) * m))
+            }
+            _ => {
+                let [a, b, c] = self.free.reciprocals.lane(self.lane);
+                a * squares[0] + b * squares[1] + c * squares[2]
+            }
+        };
+        [squares[0] + squares[1] + squares[2], epsilon]
+    }
+
+    /// x_i d_i, or the coefficients of X d, and τ²/4 ℘(τ/2), by the polynomial of the least degree that is enough.
+    #[inline(always)]
+    fn sum_of_series(self, [alpha, epsilon]: [T::Lane; 2]) -> Option<[T::Lane; 4]> {
+        macro_rules! degrees {
+            ($($number:literal $degree:literal),*) => {$(
+                if alpha <= self.free.reach[$number].lane(self.lane) {
+                    return Some(self.polynomial::<$degree>(alpha, epsilon));
+                }
+            )*};
+        }
+        degrees!(0 2, 1 3, 2 4, 3 5, 4 6, 5 8, 6 10, 7 12, 8 14);
+        None
+    }
+
+    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
+    #[inline(always)]
+    fn polynomial<const K: usize>(self, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
+        let coefficients = |i: usize, j: usize| coefficient(&self.free.series, i, j).lane(self.lane);
+        let mut sum = [<T::Lane as Zero>::zero(); 4];
+        for j in (0..=K).rev() {
+            let mut inner = coefficients(K - j, j);
+            for i in (0..K - j).rev() {
+                let next = coefficients(i, j);
+                inner = from_fn(|k| inner[k] * alpha + next[k]);
+            }
+            sum = from_fn(|k| sum[k] * epsilon + inner[k]);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn scaled(self, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
+        match &self.free.axes {
+            Axes::Tensor(_) if T::DERIVATIVES > 0 => [a, b, c],
+            _ => {
+                let [x, y, z] = self.free.inertia.lane(self.lane);
+                [a * x, b * y, c * z]
+            }
+        }
+    }
+
+    /// A multiple of the quaternion with d ρ − m × ρ = ρ₀ m.
+    #[inline(always)]
+    fn solution(self, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> Turn<T::Lane> {
+        match &self.free.axes {
+            Axes::Tensor((inertia, reciprocal, _)) if T::DERIVATIVES > 0 => {
+                // X d = c₀ + c₁X + c₂X²
+                let (inertia, reciprocal) = (lane_of(inertia, self.lane), lane_of(reciprocal, self.lane));
+                let tensor = inertia * d[0] + SMatrix::identity() * d[1] + reciprocal * d[2];
+                turn_of_tensor(&tensor, m)
+            }
+            _ => turn(d, m),
+        }
+    }
+
+    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.
+    fn made_longer(self, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> Option<[T::Lane; 3]> {
+        let [a, b, c, p] = sum;
+        match &self.free.axes {
+            Axes::Tensor((.., symmetric)) if T::DERIVATIVES > 0 => {
+                let e @ [first, second, third] = symmetric.lane(self.lane);
+                // X⁻¹ = (X² − e₁X + e₂)/e₃
+                let top = a / third;
+                let d = [b + top * second, c - top * first, top];
+                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times)?;
+                Some([c * third, a - c * second, b + c * first])
+            }
+            _ => {
+                let functions = Functions::OnAxes(self.free.reciprocals.lane(self.lane));
+                duplicated(functions, invariants, self.scaled(sum), p, times)
+            }
+        }
+    }
+}
+
 impl<T: Real> FreeRotation<T> {
     /// The constants of one body.
     fn of_number(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
-        let is_diagonal = [(1, 0), (2, 0), (2, 1)].iter().all(|&place| inertia[place] == T::zero());
-        let (moments, axes): ([T; 3], _) = match is_diagonal {
-            true => ([0, 1, 2].map(|i| inertia[(i, i)]), Axes::Coordinates),
-            false => {
-                let spectrum = Spectrum::of(inertia);
-                (spectrum.values.into(), Axes::Principal(spectrum.vectors))
-            }
-        };
+        let (moments, axes) = Axes::principal(inertia);
         if moments.iter().any(|moment| !moment.is_finite()) {
             return Err(Error::NotFinite { name: "the inertia" });
         }
@@ -509,24 +427,15 @@ impl<T: Real> FreeRotation<T> {
         let reach = series::reach(&x, &series::on_axes(&x), tolerance);
         let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| inertia[(i.max(j), i.min(j))]);
         let relative = symmetric * T::from_f64(least).recip();
-        let columns: [SVector<T, 3>; 3] = core::array::from_fn(|i| relative.column(i).into_owned());
+        let columns: [SVector<T, 3>; 3] = from_fn(|i| relative.column(i).into_owned());
         let minors =
             SMatrix::<T, 3, 3>::from_columns(&[0, 1, 2].map(|i| columns[(i + 1) % 3].cross(&columns[(i + 2) % 3])));
         // the symmetric functions of X are those of J over its determinant
         let inverse = columns[0].dot(&minors.column(0)).recip();
         let invariants = [minors.trace() * inverse, relative.trace() * inverse, inverse];
-        let axes = Axes::Tensor { inertia: relative, reciprocal: minors * inverse, invariants };
+        let axes = Axes::Tensor((relative, minors * inverse, invariants));
         let series = series::in_powers(&invariants);
         Some(Self { scale: half(h) * T::from_f64(least).recip(), inertia: values, reciprocals: x, axes, series, reach })
-    }
-}
-
-impl<T: Scalar> Axes<T> {
-    fn rotation(&self) -> SMatrix<T, 3, 3> {
-        match self {
-            Axes::Principal(axes) => *axes,
-            _ => SMatrix::identity(),
-        }
     }
 }
 
@@ -548,34 +457,6 @@ pub fn gibbs_vector_of_matrix<T: Scalar>(f: &SMatrix<T, 3, 3>) -> SVector<T, 3> 
 /// tan(θ/2) n of a rotation: the vector part over the scalar part.
 pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3> {
     SVector::from_fn(|i, _| f.coords[i] / f.coords[3])
-}
-
-/// The numbers of one lane.
-#[inline]
-fn of_lane<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane; N] {
-    numbers.map(|number| number.lane(lane))
-}
-
-/// The turn of a single number.
-#[inline(always)]
-fn in_one_lane<T: Scalar>((w, x): (T::Lane, [T::Lane; 3])) -> (T, [T; 3]) {
-    (T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry)))
-}
-
-/// What a function of the lane gives, side by side; NaN in the lanes that fail.
-///
-/// # Errors
-/// That of the first lane that is not merely NaN, where all of them fail.
-#[inline]
-fn in_lanes<T: Scalar>(
-    mut value: impl FnMut(usize) -> Result<(T::Lane, [T::Lane; 3]), Error>,
-) -> Result<(T, [T; 3]), Error> {
-    if T::LANES == 1 {
-        return Ok(in_one_lane(value(0)?));
-    }
-    let nothing = T::Lane::from_f64(f64::NAN);
-    let all = each_lane::<T, _>((nothing, [nothing; 3]), value)?;
-    Ok((T::from_lanes(|lane| all[lane].0), core::array::from_fn(|i| T::from_lanes(|lane| all[lane].1[i]))))
 }
 
 #[inline]

@@ -19,13 +19,14 @@
 //! n-dimensional rigid body*, Funct. Anal. Appl. 10 (1976). The constants of the motion follow from the theorem of Liouville and Arnold: the map is
 //! the flow of a function of the four integrals.
 
-use crate::newton::Spectrum;
+use crate::free_rotation::axes::Axes;
+use crate::linear::{matrix, rows};
+use crate::parameters::invert;
 use crate::root::root;
-use crate::space::{MOST_LANES, each_lane, lane_of, larger, set_lane};
-use crate::{Error, Mask, Real, Scalar};
-use flow::{Matrix, PLANES, above, dot, flow, identity, product, skew};
+use crate::space::{each_lane, lane_of, larger, set_lane};
+use crate::{Error, Mask, Real, Scalar, Space};
+use flow::{Matrix, PLANES, above, dot, flow, product, skew};
 use nalgebra::{SMatrix, SVector};
-use num_traits::Zero;
 use setup::Constants;
 use turn::{composed, turn};
 
@@ -37,7 +38,7 @@ mod turn;
 const PARTS: u32 = 1024;
 
 /// What a motion keeps: its constants, one after the other.
-pub type KeptRotation4<T> = SVector<T, { setup::LENGTH }>;
+pub type KeptRotation4<T> = setup::Numbers<T>;
 
 /// What no free motion of a body over a given time changes.
 #[derive(Clone, Copy, Debug)]
@@ -46,19 +47,11 @@ pub struct FreeRotation4<T> {
     moments: [T; 4],
     /// h/s: by it momenta are free of units.
     scale: T,
-    axes: Axes<T>,
+    axes: Axes<T, Tensor<T>, 4>,
 }
 
-/// The axes in which momenta are written.
-#[derive(Clone, Copy, Debug)]
-enum Axes<T> {
-    /// Those of the coordinates, which are principal axes.
-    Coordinates,
-    /// The columns of this rotation, which are principal axes.
-    Principal(Matrix<T>),
-    /// Those of the coordinates, with s Σ⁻¹: numbers with derivatives know no principal axes.
-    Tensor(SMatrix<T, 6, 6>),
-}
+/// s Σ⁻¹
+type Tensor<T> = SMatrix<T, 6, 6>;
 
 impl<T: Scalar> FreeRotation4<T> {
     /// The free motions over the time `h` of a body with the quadratic form `inertia` of velocities, of which the lower triangle is read.
@@ -66,38 +59,24 @@ impl<T: Scalar> FreeRotation4<T> {
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where Σ is singular, [`Error::NotFinite`].
     pub fn new(inertia: &SMatrix<T, 6, 6>, h: T) -> Result<Self, Error> {
-        let of_lane = |lane: usize| FreeRotation4::<T::Lane>::of_number(&lane_of(inertia, lane), h.lane(lane));
-        let first = of_lane(0)?;
-        let mut all = [first; MOST_LANES];
-        for (lane, place) in all.iter_mut().enumerate().take(T::LANES) {
-            *place = of_lane(lane)?;
+        let mut all = Self { moments: Space::<T>::origin(), scale: T::zero(), axes: Axes::unset() };
+        for lane in 0..T::LANES {
+            let own = FreeRotation4::of_number(&lane_of(inertia, lane), h.lane(lane))?;
+            all.moments.set_lane(lane, &own.moments);
+            all.scale.set_lane(lane, &own.scale);
+            all.axes.set_lane(lane, &own.axes);
         }
-        let axes = match first.axes {
-            Axes::Tensor(_) => Axes::Tensor(SMatrix::from_fn(|i, j| {
-                T::from_lanes(|lane| match &all[lane].axes {
-                    Axes::Tensor(inverse) => inverse[(i, j)],
-                    _ => <T::Lane as Zero>::zero(),
-                })
-            })),
-            _ if all.iter().all(|one| matches!(one.axes, Axes::Coordinates)) => Axes::Coordinates,
-            // the axes of the coordinates are those of the identity, by which nothing is rounded
-            _ => Axes::Principal(array(|i| array(|j| T::from_lanes(|lane| all[lane].axes.rotation()[i][j])))),
-        };
-        Ok(Self {
-            moments: array(|i| T::from_lanes(|lane| all[lane].moments[i])),
-            scale: T::from_lanes(|lane| all[lane].scale),
-            axes,
-        })
+        Ok(all)
     }
 
     /// The constants of the motion with the momentum `momentum`; those of a motion that is too long are 0.
     #[cold]
     pub fn motion(&self, momentum: &SVector<T, 6>) -> KeptRotation4<T> {
         let m = self.in_principal_axes(momentum);
-        let mut kept = KeptRotation4::<T>::from_element(T::zero());
+        let mut kept: KeptRotation4<T> = Space::<T>::origin();
         for lane in 0..T::LANES {
-            if let Ok(found) = self.of_lane(lane).constants(&lane_of_array(&m, lane)) {
-                set_lane(&mut kept, lane, &found.write());
+            if let Ok(found) = self.of_lane(lane).constants(&m.lane(lane)) {
+                kept.set_lane(lane, &found.write());
             }
         }
         kept
@@ -116,12 +95,11 @@ impl<T: Scalar> FreeRotation4<T> {
         let constants = Constants::read(kept);
         let m = self.in_principal_axes(momentum);
         let alone = constants.parts.equals(T::one()) & constants.by_series.equals(T::zero());
-        let (increment, next) = match alone.all() {
-            true => {
-                let (increment, next) = turn(&constants, &m.map(|entry| constants.step * entry));
-                (increment, scaled(&next, constants.step.recip()))
-            }
-            false => self.lane_by_lane(kept, &m)?,
+        let (increment, next) = if alone.all() {
+            let (increment, next) = turn(&constants, &scaled(&m, constants.step));
+            (increment, scaled(&next, constants.step.recip()))
+        } else {
+            self.lane_by_lane(kept, &m)?
         };
         Ok(self.in_coordinates(&increment, &next))
     }
@@ -132,24 +110,13 @@ impl<T: Scalar> FreeRotation4<T> {
     fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
         let nothing = T::Lane::from_f64(f64::NAN);
         let all = each_lane::<T, _>(([[nothing; 4]; 4], [nothing; 6]), |lane| {
-            self.of_lane(lane).in_parts(&Constants::read(&lane_of(kept, lane)), &lane_of_array(m, lane))
+            self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &m.lane(lane))
         })?;
-        Ok((
-            array(|i| array(|j| T::from_lanes(|lane| all[lane].0[i][j]))),
-            array(|i| T::from_lanes(|lane| all[lane].1[i])),
-        ))
+        Ok(Space::<T>::side_by_side(|lane| all[lane]))
     }
 
     fn of_lane(&self, lane: usize) -> FreeRotation4<T::Lane> {
-        FreeRotation4 {
-            moments: lane_of_array(&self.moments, lane),
-            scale: self.scale.lane(lane),
-            axes: match &self.axes {
-                Axes::Coordinates => Axes::Coordinates,
-                Axes::Principal(axes) => Axes::Principal(axes.map(|row| row.map(|entry| entry.lane(lane)))),
-                Axes::Tensor(inverse) => Axes::Tensor(lane_of(inverse, lane)),
-            },
-        }
+        FreeRotation4 { moments: self.moments.lane(lane), scale: self.scale.lane(lane), axes: self.axes.lane(lane) }
     }
 
     /// The entries above the diagonal of hM/s. Components are those below it.
@@ -158,10 +125,8 @@ impl<T: Scalar> FreeRotation4<T> {
         let [m] = momentum.data.0;
         let scaled = scaled(&m, -self.scale);
         match &self.axes {
-            Axes::Principal(axes) => {
-                let turned = product(&transposed(axes), &product(&skew(&scaled), axes));
-                above(&turned)
-            }
+            // columns, one after the other, are the rows of the transposed
+            Axes::Principal(axes) => above(&product(&axes.data.0, &product(&skew(&scaled), &rows(axes)))),
             _ => scaled,
         }
     }
@@ -171,11 +136,11 @@ impl<T: Scalar> FreeRotation4<T> {
         let inverse = -self.scale.recip();
         match &self.axes {
             Axes::Principal(axes) => {
-                let turned = |a: &Matrix<T>| product(axes, &product(a, &transposed(axes)));
+                let turned = |a: &Matrix<T>| product(&rows(axes), &product(a, &axes.data.0));
                 let (increment, body) = (turned(increment), turned(&skew(m)));
-                (matrix(&increment), scaled(&above(&body), inverse).into())
+                (matrix(increment), scaled(&above(&body), inverse).into())
             }
-            _ => (matrix(increment), scaled(m, inverse).into()),
+            _ => (matrix(*increment), scaled(m, inverse).into()),
         }
     }
 }
@@ -186,15 +151,7 @@ impl<T: Real> FreeRotation4<T> {
         if inertia.iter().any(|entry| !entry.is_finite()) {
             return Err(Error::NotFinite { name: "the inertia" });
         }
-        let mass = mass(inertia);
-        let is_diagonal = (0..4).all(|i| (0..i).all(|j| mass[(i, j)] == T::zero()));
-        let (moments, axes): ([T; 4], _) = match is_diagonal {
-            true => (array(|i| mass[(i, i)]), Axes::Coordinates),
-            false => {
-                let spectrum = Spectrum::of(&mass);
-                (spectrum.values.into(), Axes::Principal(array(|i| array(|j| spectrum.vectors[(i, j)]))))
-            }
-        };
+        let (moments, axes) = Axes::principal(&mass(inertia));
         let size = moments.iter().fold(T::zero(), |most, moment| larger(most, moment.abs()));
         let inverse = size.recip();
         let relative = moments.map(|moment| moment * inverse);
@@ -206,10 +163,7 @@ impl<T: Real> FreeRotation4<T> {
         if !is_regular {
             return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
         }
-        let axes = match T::DERIVATIVES > 0 {
-            true => Axes::Tensor(crate::parameters::invert(inertia)? * size),
-            false => axes,
-        };
+        let axes = if T::DERIVATIVES > 0 { Axes::Tensor(invert(inertia)? * size) } else { axes };
         Ok(Self { moments: relative, scale: h * inverse, axes })
     }
 
@@ -284,22 +238,11 @@ impl<T: Real> FreeRotation4<T> {
         let parts = constants.parts.to_f64() as u32;
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], scaled(m, constants.step));
         for _ in 0..parts {
-            let (increment, next) = match constants.by_series > T::zero() {
-                true => self.series(&m)?,
-                false => turn(&constants, &m),
-            };
+            let (increment, next) =
+                if constants.by_series > T::zero() { self.series(&m)? } else { turn(&constants, &m) };
             (whole, m) = (composed(&whole, &increment), next);
         }
         Ok((whole, scaled(&m, constants.step.recip())))
-    }
-}
-
-impl<T: Scalar> Axes<T> {
-    fn rotation(&self) -> Matrix<T> {
-        match self {
-            Axes::Principal(axes) => *axes,
-            _ => identity(),
-        }
     }
 }
 
@@ -330,29 +273,9 @@ fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) 
     root(below(&skew) * h.recip(), defect)
 }
 
-fn array<T, const N: usize>(entry: impl FnMut(usize) -> T) -> [T; N] {
-    core::array::from_fn(entry)
-}
-
 #[inline]
 fn scaled<T: Scalar, const N: usize>(vector: &[T; N], factor: T) -> [T; N] {
     vector.map(|entry| factor * entry)
-}
-
-#[inline]
-fn lane_of_array<T: Scalar, const N: usize>(numbers: &[T; N], lane: usize) -> [T::Lane; N] {
-    numbers.map(|number| number.lane(lane))
-}
-
-#[inline]
-fn transposed<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
-    array(|i| array(|j| a[j][i]))
-}
-
-#[inline]
-fn matrix<T: Scalar>(rows: &Matrix<T>) -> SMatrix<T, 4, 4> {
-    // columns, one after the other
-    SMatrix::from_array_storage(nalgebra::ArrayStorage(transposed(rows)))
 }
 
 /// The symmetric D of a quadratic form Σ with ΣΩ = DΩ + ΩD: from R_ij = Σ_k Σ(e_i∧e_k, e_j∧e_k) = 2D + tr D.

@@ -8,7 +8,7 @@ use crate::orientation::Orientation;
 use crate::space::larger;
 use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
 ///
@@ -234,6 +234,12 @@ pub fn solve_symmetric<T: Scalar, const M: usize>(
 #[inline]
 pub(crate) fn rows<T: Scalar, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> [[T; C]; R] {
     from_fn(|i| from_fn(|j| matrix.get((i, j)).copied().unwrap_or_else(T::zero)))
+}
+
+/// A matrix from its rows.
+#[inline]
+pub fn matrix<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
+    SMatrix::from_array_storage(ArrayStorage(from_fn(|j| from_fn(|i| entry(&rows, i, j)))))
 }
 
 /// Entry (i, j) of rows that have it: where the optimiser does not see that they do, no panic is left.

@@ -3,7 +3,7 @@
 //! Source: Higham, *Functions of Matrices*, 2008, chapters 6 (equation 6.29, the product form of the iteration of Denman and
 //! Beavers) and 11 (equation 11.31).
 
-use crate::linear::{eliminate, multiple_of_identity, norm, product, rows, shifted, undefined};
+use crate::linear::{eliminate, matrix, multiple_of_identity, norm, product, rows, shifted, undefined};
 use crate::space::by_lane;
 use crate::{Real, Scalar, Space};
 use core::array::from_fn;
@@ -32,7 +32,7 @@ fn logarithm_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T,
         return undefined();
     }
     match scaled_logarithm(rows(a)) {
-        Some(logarithm) => SMatrix::from_fn(|i, j| logarithm[i][j]),
+        Some(logarithm) => matrix(logarithm),
         None => undefined(),
     }
 }

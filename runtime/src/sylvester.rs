@@ -7,7 +7,7 @@
 //! Source: Bartels and Stewart, *Solution of the matrix equation AX + XB = C*, Communications of the ACM 15 (1972) 820–826.
 
 use crate::implicit::Jacobian;
-use crate::linear::{eliminate, entry, power_of_two_near, rows, solve_dense};
+use crate::linear::{eliminate, entry, matrix, power_of_two_near, rows, solve_dense};
 use crate::matrices::{matrix_of, skew, skew_components};
 use crate::orientation::Orientation;
 use crate::schur::Schur;
@@ -98,7 +98,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
 
     /// x with ⟨x^B, E⟩ = `right`, and the sign of the determinant of this map; `None` where it is 0.
     fn solve<const M: usize>(&self, right: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
-        let q = SMatrix::<T, N, N>::from_fn(|i, j| self.q[i][j]);
+        let q = matrix(self.q);
         let right: SMatrix<T, N, N> = skew(right);
         let right = rows(&(q.transpose() * right * q));
         // columns of T
@@ -124,7 +124,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
                 }
             }
         }
-        let y = SMatrix::<T, N, N>::from_fn(|i, j| y[i][j]);
+        let y = matrix(y);
         Some((skew_components(&(q * y * q.transpose())) * T::from_ratio(1, 2), orientation))
     }
 }

@@ -4,9 +4,12 @@ use crate::Scalar;
 use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
 
+/// A multiple of a quaternion: its scalar part and its vector part.
+pub(super) type Turn<T> = (T, [T; 3]);
+
 /// (p, r), a multiple of the quaternion with d r − m × r = p m.
 #[inline]
-pub(super) fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
+pub(super) fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> Turn<T> {
     let ([a, b, c], [x, y, z]) = (*d, *m);
     let (xx, yy, zz) = (x * x, y * y, z * z);
     let square = xx + yy + zz;
@@ -20,7 +23,7 @@ pub(super) fn turn<T: Scalar>(d: &[T; 3], m: &[T; 3]) -> (T, [T; 3]) {
 }
 
 /// The same for a symmetric matrix D: p = det D + m·Dm, r = (adj D + |m|²) m + (Dm) × m.
-pub(super) fn turn_of_tensor<T: Scalar>(d: &SMatrix<T, 3, 3>, m: &[T; 3]) -> (T, [T; 3]) {
+pub(super) fn turn_of_tensor<T: Scalar>(d: &SMatrix<T, 3, 3>, m: &[T; 3]) -> Turn<T> {
     let m = SVector::from(*m);
     let columns: [SVector<T, 3>; 3] = core::array::from_fn(|i| d.column(i).into_owned());
     let adjugate = SMatrix::from_fn(|i, j| columns[(i + 1) % 3].cross(&columns[(i + 2) % 3])[j]);
@@ -30,7 +33,7 @@ pub(super) fn turn_of_tensor<T: Scalar>(d: &SMatrix<T, 3, 3>, m: &[T; 3]) -> (T,
 }
 
 /// The same multiple of a quaternion with a largest entry of 1.
-pub(super) fn balanced<T: Scalar>((p, r): (T, [T; 3])) -> (T, [T; 3]) {
+pub(super) fn balanced<T: Scalar>((p, r): Turn<T>) -> Turn<T> {
     let size = r.iter().fold(p.abs(), |size, entry| larger(size, entry.abs())).recip();
     (p * size, r.map(|entry| entry * size))
 }

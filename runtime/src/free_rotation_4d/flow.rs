@@ -1,5 +1,6 @@
 //! Skew matrices of four dimensions, and free motions by the Taylor series in time.
 
+use crate::linear::multiple_of_identity;
 use crate::space::larger;
 use crate::{Real, Scalar};
 
@@ -65,10 +66,6 @@ pub(super) fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     })
 }
 
-pub(super) fn identity<T: Scalar>() -> Matrix<T> {
-    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { T::one() } else { T::zero() }))
-}
-
 /// The most terms of a series. Motions of a radian take some twenty.
 const TERMS: usize = 36;
 
@@ -78,7 +75,7 @@ pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) ->
     let zero = T::zero();
     let (mut rotations, mut momenta, mut velocities) =
         ([[[zero; 4]; 4]; TERMS], [[zero; 6]; TERMS], [[zero; 6]; TERMS]);
-    rotations[0] = identity();
+    rotations[0] = multiple_of_identity(T::one());
     (momenta[0], velocities[0]) = (*m, velocity(m));
     let small = T::from_ratio(1, 32) * T::EPSILON;
     let (mut whole, mut ends, mut derivatives) = (([[zero; 4]; 4], *m), 0, T::DERIVATIVES);

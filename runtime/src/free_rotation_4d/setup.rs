@@ -3,11 +3,10 @@
 use super::flow::{Matrix, PLANES, at, dot, dual, entry, flow, pfaffian, product, skew};
 use crate::space::larger;
 use crate::stumpff::stumpff;
-use crate::{Real, Scalar};
-use nalgebra::SVector;
+use crate::{Real, Scalar, Space};
 
-/// How many numbers a motion is given by.
-pub const LENGTH: usize = 25;
+/// The fields of [`Constants`], in their order.
+pub type Numbers<T> = (T, T, T, [T; 4], [T; 3], [[T; 3]; 3], [T; 2], [T; 4]);
 
 /// What a motion with m = h̃M keeps.
 #[derive(Clone, Copy, Debug)]
@@ -46,25 +45,13 @@ impl<T: Scalar> Constants<T> {
     }
 
     #[inline]
-    pub fn read(kept: &SVector<T, LENGTH>) -> Self {
-        let [[parts, by_series, step, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v]] = kept.data.0;
-        Self {
-            parts,
-            by_series,
-            step,
-            moments: [a, b, c, d],
-            origin: [e, f, g],
-            slopes: [[h, i, j], [k, l, m], [n, o, p]],
-            casimirs: [q, r],
-            turn: [s, t, u, v],
-        }
+    pub fn read(&(parts, by_series, step, moments, origin, slopes, casimirs, turn): &Numbers<T>) -> Self {
+        Self { parts, by_series, step, moments, origin, slopes, casimirs, turn }
     }
 
-    pub fn write(&self) -> SVector<T, LENGTH> {
-        let ([a, b, c, d], [e, f, g], [q, r], [s, t, u, v]) = (self.moments, self.origin, self.casimirs, self.turn);
-        let [[h, i, j], [k, l, m], [n, o, p]] = self.slopes;
-        let Self { parts, by_series, step, .. } = *self;
-        SVector::from([parts, by_series, step, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v])
+    pub fn write(&self) -> Numbers<T> {
+        let Self { parts, by_series, step, moments, origin, slopes, casimirs, turn } = *self;
+        (parts, by_series, step, moments, origin, slopes, casimirs, turn)
     }
 }
 
@@ -101,7 +88,7 @@ pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants
     let casimirs = [square + two * pf, square - two * pf].map(|c| if c > least { c.recip() } else { T::zero() });
     let turn = turn([delta / step, kappa / step], square, pf);
     let constants = Constants { parts: T::one(), by_series: T::zero(), step, moments, origin, slopes, casimirs, turn };
-    constants.write().iter().all(|number| number.is_finite()).then_some(constants)
+    Space::<T>::is_finite(&constants.write()).then_some(constants)
 }
 
 /// Ω of M = DΩ + ΩD.

@@ -123,7 +123,7 @@ fn steps_are_of_one_part() {
     for (what, mass) in bodies() {
         let free = FreeRotation4::new(&form(&mass), 1.0).expect("regular");
         let kept: KeptRotation4<f64> = free.motion(&Vector6::from(START));
-        assert_eq!((kept[0], kept[1]), (1.0, 0.0), "{what}");
+        assert_eq!((kept.0, kept.1), (1.0, 0.0), "{what}");
     }
 }
 
