@@ -1,10 +1,9 @@
 //! Group elements from what a step computes.
 
-use crate::linear::{eliminate, matrix, multiple_of_identity, rows, undefined};
+use crate::linear::{divided, undefined};
 use crate::space::by_lane;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
-use num_traits::One;
 
 /// I + D.
 pub fn from_increment<T: Scalar, const N: usize>(d: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -30,13 +29,7 @@ pub fn quaternion_from_increment<T: Scalar>(d: &Quaternion<T>) -> Quaternion<T> 
 
 /// The inverse of a matrix, by elimination with partial pivoting; NaN where the matrix is singular.
 pub fn inverse<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    by_lane(a, |a| {
-        let mut inverse = multiple_of_identity(T::Lane::one());
-        match eliminate(rows(a), &mut inverse) {
-            Some(_) => matrix(inverse),
-            None => undefined(),
-        }
-    })
+    by_lane(a, |a| divided(a, &SMatrix::identity()).unwrap_or_else(undefined))
 }
 
 /// The solution `x` where the step exists, whose angle θ has this sin²θ: below one, it does. Lanes in which it does not are NaN.

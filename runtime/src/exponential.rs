@@ -8,11 +8,12 @@
 //! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4; Al-Mohy and Higham, *A New Scaling and Squaring
 //! Algorithm for the Matrix Exponential*, 2009, theorem 4.2.
 
-use crate::linear::{matrix, norm, product, rows, shifted, undefined};
-use crate::space::{by_lane, larger};
-use crate::{Real, Scalar, Space};
-use core::array::from_fn;
+use crate::linear::{function, norm, product};
+use crate::matrices::shifted;
+use crate::space::larger;
+use crate::{Real, Scalar};
 use nalgebra::SMatrix;
+use num_traits::One;
 
 /// More terms than any precision asks for: 1/40! is 10⁻⁴⁸.
 const TERMS: i64 = 40;
@@ -22,60 +23,49 @@ const HALVINGS: u32 = 1100;
 
 /// exp A = Σ Aᵏ/k!; NaN where A is not finite.
 pub fn exponential<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    by_lane(a, exponential_of_one)
-}
-
-fn exponential_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    if !a.is_finite() {
-        return undefined();
-    }
-    let (scaled, mut halvings) = scale(rows(a));
-    let mut increment = series(&scaled, 0);
-    // exp A itself is squared only once it is small, else the digits of its difference from I would be lost.
-    while halvings > 0 && !is_small(&increment) {
-        increment = double(&increment);
-        halvings -= 1;
-    }
-    let mut power = shifted(&increment, T::one());
-    for _ in 0..halvings {
-        power = product(&power, &power);
-    }
-    matrix(power)
+    function(a, |a| {
+        let (scaled, mut halvings) = scale(a);
+        let mut increment = series(&scaled, 0);
+        // exp A itself is squared only once it is small, else the digits of its difference from I would be lost.
+        while halvings > 0 && !is_small(&increment) {
+            // exp 2A − I = 2E + E², E = exp A − I
+            increment = increment + increment + product(&increment, &increment);
+            halvings -= 1;
+        }
+        let mut power = shifted(&increment, T::Lane::one());
+        for _ in 0..halvings {
+            power = product(&power, &power);
+        }
+        Some(power)
+    })
 }
 
 /// φ(A) = Σ Aᵏ/(k+1)!, which is (exp A − I)A⁻¹ where A is regular; NaN where A is not finite.
 ///
 /// φ(ad_ξ) is the right-trivialised derivative of exp at ξ: the derivative of exp(ξ + εη) by ε is (φ(ad_ξ)η) exp ξ.
 pub fn phi<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    by_lane(a, phi_of_one)
-}
-
-fn phi_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    if !a.is_finite() {
-        return undefined();
-    }
-    let (mut scaled, halvings) = scale(rows(a));
-    let mut value = shifted(&series(&scaled, 1), T::one());
-    let half = T::from_ratio(1, 2);
-    for _ in 0..halvings {
-        // φ(2z) = φ(z)(1 + z φ(z)/2)
-        let change = product(&value, &product(&scaled, &value));
-        value = from_fn(|i| from_fn(|j| value[i][j] + change[i][j] * half));
-        scaled = scaled.map(|row| row.map(|x| x + x));
-    }
-    matrix(value)
+    function(a, |a| {
+        let (mut scaled, halvings) = scale(a);
+        let mut value = shifted(&series(&scaled, 1), T::Lane::one());
+        for _ in 0..halvings {
+            // φ(2z) = φ(z)(1 + z φ(z)/2)
+            value += product(&value, &product(&scaled, &value)) * T::Lane::from_ratio(1, 2);
+            scaled += scaled;
+        }
+        Some(value)
+    })
 }
 
 /// A/2ˢ, of which all powers from the second on are at most one in norm (or A/2ˢ itself is), and s.
-fn scale<T: Real, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
+fn scale<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, u32) {
     let (one, half) = (T::one(), T::from_ratio(1, 2));
-    let mut first = norm(&a);
+    let mut first = norm(a);
     if first <= one {
-        return (a, 0);
+        return (*a, 0);
     }
     // Every k ≥ 2 is a sum of twos and threes. Where these overflow the norm of A decides.
-    let square = product(&a, &a);
-    let (mut second, mut third) = (norm(&square), norm(&product(&square, &a)));
+    let square = product(a, a);
+    let (mut second, mut third) = (norm(&square), norm(&product(&square, a)));
     let (mut factor, mut halvings) = (one, 0);
     while first > one && !(second <= one && third <= one) && halvings < HALVINGS {
         first *= half;
@@ -84,20 +74,18 @@ fn scale<T: Real, const N: usize>(a: [[T; N]; N]) -> ([[T; N]; N], u32) {
         factor *= half;
         halvings += 1;
     }
-    (a.map(|row| row.map(|x| x * factor)), halvings)
+    (a * factor, halvings)
 }
 
 /// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms, and their derivatives, cannot be seen.
-fn series<T: Real, const N: usize>(a: &[[T; N]; N], shift: i64) -> [[T; N]; N] {
-    let first = T::from_ratio(1, 1 + shift);
-    let mut term = a.map(|row| row.map(|x| x * first));
+fn series<T: Real, const N: usize>(a: &SMatrix<T, N, N>, shift: i64) -> SMatrix<T, N, N> {
+    let mut term = a * T::from_ratio(1, 1 + shift);
     let mut sum = term;
     let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(&term);
     let mut derivatives = T::DERIVATIVES;
     for k in 2..=TERMS {
-        let factor = T::from_ratio(1, k + shift);
-        term = product(&term, a).map(|row| row.map(|x| x * factor));
-        sum = from_fn(|i| from_fn(|j| sum[i][j] + term[i][j]));
+        term = product(&term, a) * T::from_ratio(1, k + shift);
+        sum += term;
         if norm(&term) <= negligible {
             if derivatives == 0 {
                 break;
@@ -108,15 +96,9 @@ fn series<T: Real, const N: usize>(a: &[[T; N]; N], shift: i64) -> [[T; N]; N] {
     sum
 }
 
-/// exp 2A − I = 2E + E², E = exp A − I.
-fn double<T: Real, const N: usize>(increment: &[[T; N]; N]) -> [[T; N]; N] {
-    let square = product(increment, increment);
-    from_fn(|i| from_fn(|j| increment[i][j] + increment[i][j] + square[i][j]))
-}
-
 /// Whether I + E is at most ½ on its diagonal.
-fn is_small<T: Real, const N: usize>(increment: &[[T; N]; N]) -> bool {
-    let largest = (0..N).fold(T::zero(), |max, i| larger(max, (increment[i][i] + T::one()).abs()));
+fn is_small<T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> bool {
+    let largest = increment.diagonal().iter().fold(T::zero(), |max, x| larger(max, (*x + T::one()).abs()));
     largest <= T::from_ratio(1, 2)
 }
 

@@ -5,7 +5,7 @@
 
 use crate::cofactors;
 use crate::orientation::Orientation;
-use crate::space::larger;
+use crate::space::{by_lane, larger};
 use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
@@ -248,28 +248,42 @@ pub(crate) fn entry<T: Scalar, const R: usize, const C: usize>(rows: &[[T; C]; R
     rows.get(i).and_then(|row| row.get(j)).copied().unwrap_or_else(T::zero)
 }
 
-/// A B of square matrices by rows.
+/// A⁻¹B, by elimination with partial pivoting; `None` where A is singular or not finite in all lanes.
 #[inline]
-pub(crate) fn product<T: Scalar, const N: usize>(a: &[[T; N]; N], b: &[[T; N]; N]) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| (0..N).fold(T::zero(), |sum, k| sum + entry(a, i, k) * entry(b, k, j))))
+pub(crate) fn divided<T: Scalar, const M: usize, const K: usize>(
+    a: &SMatrix<T, M, M>,
+    b: &SMatrix<T, M, K>,
+) -> Option<SMatrix<T, M, K>> {
+    let mut quotient = rows(b);
+    eliminate(rows(a), &mut quotient).map(|_| matrix(quotient))
 }
 
-/// c I
+/// A B, each entry summed from the first term.
 #[inline]
-pub(crate) fn multiple_of_identity<T: Scalar, const N: usize>(c: T) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| if i == j { c } else { T::zero() }))
-}
-
-/// A + c I
-#[inline]
-pub(crate) fn shifted<T: Scalar, const N: usize>(a: &[[T; N]; N], c: T) -> [[T; N]; N] {
-    from_fn(|i| from_fn(|j| if i == j { entry(a, i, j) + c } else { entry(a, i, j) }))
+pub(crate) fn product<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    let mut product = SMatrix::from_element(T::zero());
+    for (column, factors) in product.data.0.iter_mut().zip(&b.data.0) {
+        for (factor, terms) in factors.iter().zip(&a.data.0) {
+            column.iter_mut().zip(terms).for_each(|(sum, term)| *sum += *term * *factor);
+        }
+    }
+    product
 }
 
 /// The largest Σ_j |A_ij| of a row i: a norm with |AB| ≤ |A||B|. NaN are passed over.
 #[inline]
-pub(crate) fn norm<T: Scalar, const N: usize>(a: &[[T; N]; N]) -> T {
-    a.iter().fold(T::zero(), |max, row| larger(max, row.iter().fold(T::zero(), |sum, x| sum + x.abs())))
+pub(crate) fn norm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
+    let mut sums = [T::zero(); N];
+    a.data.0.iter().for_each(|column| sums.iter_mut().zip(column).for_each(|(sum, x)| *sum += x.abs()));
+    sums.into_iter().fold(T::zero(), larger)
+}
+
+/// f(A), lane by lane; NaN where A is not finite or f has no value.
+pub(crate) fn function<T: Scalar, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    f: impl Fn(&SMatrix<T::Lane, N, N>) -> Option<SMatrix<T::Lane, N, N>>,
+) -> SMatrix<T, N, N> {
+    by_lane(a, |a| if Space::<T::Lane>::is_finite(a) { f(a) } else { None }.unwrap_or_else(undefined))
 }
 
 /// The matrix of NaN: what a function of a matrix is where it has no value.

@@ -3,13 +3,10 @@
 //! Source: Higham, *Functions of Matrices*, 2008, chapters 6 (equation 6.29, the product form of the iteration of Denman and
 //! Beavers) and 11 (equation 11.31).
 
-use crate::linear::{eliminate, matrix, multiple_of_identity, norm, product, rows, shifted, undefined};
-use crate::space::by_lane;
-use crate::{Real, Scalar, Space};
-use core::array::from_fn;
+use crate::linear::{divided, function, norm, product};
+use crate::matrices::shifted;
+use crate::{Real, Scalar};
 use nalgebra::SMatrix;
-
-type Square<T, const N: usize> = [[T; N]; N];
 
 /// Square roots that bring every matrix of finite `f64` near the identity whose entries off the diagonal are not much larger
 /// than those on it.
@@ -24,38 +21,26 @@ const TERMS: i64 = 40;
 /// square roots have lost half of the digits, as for eigenvalues that only round-off keeps from that axis. For an angle θ near π
 /// the error grows like ε/(π − θ), for so ill-conditioned is the logarithm there.
 pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    by_lane(a, logarithm_of_one)
-}
-
-fn logarithm_of_one<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    if !a.is_finite() {
-        return undefined();
-    }
-    match scaled_logarithm(rows(a)) {
-        Some(logarithm) => matrix(logarithm),
-        None => undefined(),
-    }
-}
-
-fn scaled_logarithm<T: Real, const N: usize>(a: Square<T, N>) -> Option<Square<T, N>> {
-    let (mut root, mut factor) = (a, T::from_f64(2.0));
-    let mut roots = 0;
-    while !is_near_identity(&root) {
-        if roots == ROOTS {
-            return None;
+    function(a, |a| {
+        let mut root = *a;
+        let mut factor = T::Lane::from_f64(2.0);
+        let mut roots = 0;
+        while !is_near_identity(&root) {
+            if roots == ROOTS {
+                return None;
+            }
+            root = square_root(&root)?;
+            factor += factor;
+            roots += 1;
         }
-        root = square_root(&root)?;
-        factor += factor;
-        roots += 1;
-    }
-    let half_logarithm = inverse_hyperbolic_tangent(&root)?;
-    Some(half_logarithm.map(|row| row.map(|x| x * factor)))
+        Some(inverse_hyperbolic_tangent(&root)? * factor)
+    })
 }
 
 /// Whether |X − I| ≤ ½, or at least its powers N and N + 1 are as small: then the series converges like 9⁻ᵏ.
 ///
 /// These powers vanish for a unipotent X, whose series is finite however large its entries are.
-fn is_near_identity<T: Real, const N: usize>(x: &Square<T, N>) -> bool {
+fn is_near_identity<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> bool {
     let difference = shifted(x, -T::one());
     let half = T::from_ratio(1, 2);
     let (mut power, mut bound) = (difference, half);
@@ -70,17 +55,15 @@ fn is_near_identity<T: Real, const N: usize>(x: &Square<T, N>) -> bool {
 }
 
 /// ½ log X = Y + Y³/3 + Y⁵/5 + …, Y = (X + I)⁻¹(X − I).
-fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &Square<T, N>) -> Option<Square<T, N>> {
-    let mut y = shifted(x, -T::one());
-    eliminate(shifted(x, T::one()), &mut y)?;
+fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    let y = divided(&shifted(x, T::one()), &shifted(x, -T::one()))?;
     let square = product(&y, &y);
     let (mut power, mut sum) = (y, y);
     let first = norm(&y);
     let mut derivatives = T::DERIVATIVES;
     for k in 1..=TERMS {
         power = product(&power, &square);
-        let factor = T::from_ratio(1, 2 * k + 1);
-        sum = from_fn(|i| from_fn(|j| sum[i][j] + power[i][j] * factor));
+        sum += power * T::from_ratio(1, 2 * k + 1);
         if norm(&power) <= T::EPSILON * T::from_ratio(1, 8) * first {
             if derivatives == 0 {
                 break;
@@ -98,26 +81,22 @@ const ITERATIONS: u32 = 40;
 /// to one.
 ///
 /// The product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
-fn square_root<T: Real, const N: usize>(a: &Square<T, N>) -> Option<Square<T, N>> {
-    let (mut x, mut y) = (*a, multiple_of_identity(T::one()));
+fn square_root<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    let identity = SMatrix::identity();
+    let (mut x, mut y) = (*a, identity);
     let (half, hundredth) = (T::from_ratio(1, 2), T::from_ratio(1, 100));
     let mut before = T::one() / T::zero();
     for _ in 0..ITERATIONS {
-        let (mut x_inverse, mut y_inverse) = (multiple_of_identity(T::one()), multiple_of_identity(T::one()));
-        eliminate(x, &mut x_inverse)?;
-        eliminate(y, &mut y_inverse)?;
+        let (x_inverse, y_inverse) = (divided(&x, &identity)?, divided(&y, &identity)?);
         // Far off, a scaling makes eigenvalues and their inverses alike large.
         let scale = if before > hundredth {
             ((norm(&x_inverse) * norm(&y_inverse)).sqrt() / (norm(&x) * norm(&y)).sqrt()).sqrt()
         } else {
             T::one()
         };
-        let mean = |x: &Square<T, N>, inverse: &Square<T, N>| -> Square<T, N> {
-            from_fn(|i| from_fn(|j| (x[i][j] * scale + inverse[i][j] / scale) * half))
-        };
+        let mean = |x: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| (x * scale + inverse / scale) * half;
         let (next, next_y) = (mean(&x, &y_inverse), mean(&y, &x_inverse));
-        let change: Square<T, N> = from_fn(|i| from_fn(|j| next[i][j] - x[i][j]));
-        let distance = norm(&change) / norm(&next);
+        let distance = norm(&(next - x)) / norm(&next);
         (x, y) = (next, next_y);
         // The iteration after the last one that helps is made, for derivatives are behind by one.
         if distance <= T::EPSILON || before < hundredth && distance > before * half {
@@ -129,10 +108,8 @@ fn square_root<T: Real, const N: usize>(a: &Square<T, N>) -> Option<Square<T, N>
 }
 
 /// Whether X² is A to half of the digits at least.
-fn is_root<T: Real, const N: usize>(root: &Square<T, N>, a: &Square<T, N>) -> bool {
-    let square = product(root, root);
-    let difference: Square<T, N> = from_fn(|i| from_fn(|j| square[i][j] - a[i][j]));
-    norm(&difference) <= T::EPSILON.sqrt() * norm(a)
+fn is_root<T: Real, const N: usize>(root: &SMatrix<T, N, N>, a: &SMatrix<T, N, N>) -> bool {
+    norm(&(product(root, root) - a)) <= T::EPSILON.sqrt() * norm(a)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a stepper checks and computes from the fields of a struct, once.
 
-use crate::linear::{eliminate, multiple_of_identity, power_of_two_near, rows};
+use crate::linear::{eliminate, power_of_two_near, rows};
 use crate::orientation::Orientation;
 use crate::space::{check_lanes, lane_of, larger, set_lane};
 use crate::{Error, Mask, Real, Scalar, Space};
@@ -142,7 +142,7 @@ pub fn distance_of_projection<T: Scalar, const M: usize>(
 }
 
 fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
-    let mut inverse: [[T; N]; N] = multiple_of_identity(T::one());
+    let mut inverse = rows(&SMatrix::<T, N, N>::identity());
     let rows = rows(matrix);
     eliminate(rows, &mut inverse).ok_or(SINGULAR)?;
     let mut condition = T::zero();

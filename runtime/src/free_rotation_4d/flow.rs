@@ -1,8 +1,9 @@
 //! Skew matrices of four dimensions, and free motions by the Taylor series in time.
 
-use crate::linear::multiple_of_identity;
+use crate::linear::rows;
 use crate::space::larger;
 use crate::{Real, Scalar};
+use nalgebra::SMatrix;
 
 /// The entries (i, j) above the diagonal, in the order of the components.
 pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
@@ -75,7 +76,7 @@ pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) ->
     let zero = T::zero();
     let (mut rotations, mut momenta, mut velocities) =
         ([[[zero; 4]; 4]; TERMS], [[zero; 6]; TERMS], [[zero; 6]; TERMS]);
-    rotations[0] = multiple_of_identity(T::one());
+    rotations[0] = rows(&SMatrix::identity());
     (momenta[0], velocities[0]) = (*m, velocity(m));
     let small = T::from_ratio(1, 32) * T::EPSILON;
     let (mut whole, mut ends, mut derivatives) = (([[zero; 4]; 4], *m), 0, T::DERIVATIVES);

@@ -16,8 +16,9 @@ fn systems_are_solved_by_rows_and_products_made() {
     let solution = solve_linear(&Matrix2::new(0.0, 2.0, 4.0, 8.0), &Vector2::new(2.0, 0.0));
     assert_eq!(solution, Some(Vector2::new(-2.0, 1.0)));
     assert_eq!(solve_linear(&Matrix2::new(1.0, 2.0, 2.0, 4.0), &Vector2::x()), None);
-    assert_eq!(product(&[[1.0, 2.0], [3.0, 4.0]], &[[0.0, 1.0], [-1.0, 5.0]]), [[-2.0, 11.0], [-4.0, 23.0]]);
-    assert_eq!(norm(&[[1.0, -2.0], [-3.0, -4.0]]), 7.0);
+    let matrices = (Matrix2::new(1.0, 2.0, 3.0, 4.0), Matrix2::new(0.0, 1.0, -1.0, 5.0));
+    assert_eq!(product(&matrices.0, &matrices.1), Matrix2::new(-2.0, 11.0, -4.0, 23.0));
+    assert_eq!(norm(&Matrix2::new(1.0, -2.0, -3.0, -4.0)), 7.0);
 }
 
 /// Units of powers of two change no digit, up to the ends of the exponent range, where determinants leave it.
