@@ -1,7 +1,6 @@
 //! Numbers of twice the precision of `f64`, for reference runs: pairs of the crate `qd`.
 
 use crate::Scalar;
-use crate::scalar::power;
 use crate::stumpff::series;
 use core::fmt::{self, Display, Formatter};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -179,10 +178,6 @@ impl Scalar for DoubleDouble {
     fn sqrt(self) -> Self {
         if self.to_f64() == f64::INFINITY { self } else { Self(self.0.sqrt()) }
     }
-    #[inline]
-    fn recip(self) -> Self {
-        Self::one() / self
-    }
     fn sin(self) -> Self {
         self.sine(0)
     }
@@ -240,10 +235,6 @@ impl Scalar for DoubleDouble {
         }
         let power = near.exp();
         near + Self::from(2.0) * (self - power) / (self + power)
-    }
-    #[inline]
-    fn powi(self, exponent: i32) -> Self {
-        power(self, exponent)
     }
     fn powf(self, exponent: Self) -> Self {
         let whole = libm::round(exponent.to_f64());

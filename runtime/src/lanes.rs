@@ -3,17 +3,16 @@
 //! Every operation gives in each lane the bits that it gives for a single number: sums, products, quotients and roots are rounded as
 //! IEEE 754 says, nothing is contracted or approximated, and functions without a vector form of that kind are taken lane by lane.
 
-use crate::scalar::power;
 use crate::{Mask, Scalar};
 use core::fmt::{self, Display, Formatter};
 use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4, f64x8};
 
-/// A binary operator and the one that assigns, for lanes that wrap a vector.
+/// Binary operators of the vector that a type wraps, and those that assign.
 macro_rules! operators {
-    ($lanes:ident; $($trait:ident $method:ident $assign:ident $assign_method:ident),*) => {$(
-        impl $trait for $lanes {
+    ($type:ident; $($trait:ident $method:ident $($assign:ident $assign_method:ident)?),*) => {$(
+        impl $trait for $type {
             type Output = Self;
 
             #[inline]
@@ -22,12 +21,12 @@ macro_rules! operators {
             }
         }
 
-        impl $assign for $lanes {
+        $(impl $assign for $type {
             #[inline]
             fn $assign_method(&mut self, other: Self) {
                 self.0 = $trait::$method(self.0, other.0);
             }
-        }
+        })?
     )*};
 }
 
@@ -41,72 +40,7 @@ macro_rules! elementary {
     )*};
 }
 
-/// The mask of lanes that wrap a vector.
-macro_rules! mask {
-    ($mask:ident, $lanes:ident, $vector:ident, $number:ident, $bits:ident, $count:literal) => {
-        #[doc = concat!("A truth value for each lane of [`", stringify!($lanes), "`].")]
-        #[derive(Clone, Copy, Debug)]
-        pub struct $mask($vector);
-
-        impl BitAnd for $mask {
-            type Output = Self;
-
-            #[inline]
-            fn bitand(self, other: Self) -> Self {
-                Self(self.0 & other.0)
-            }
-        }
-
-        impl BitOr for $mask {
-            type Output = Self;
-
-            #[inline]
-            fn bitor(self, other: Self) -> Self {
-                Self(self.0 | other.0)
-            }
-        }
-
-        impl BitXor for $mask {
-            type Output = Self;
-
-            #[inline]
-            fn bitxor(self, other: Self) -> Self {
-                Self(self.0 ^ other.0)
-            }
-        }
-
-        impl Not for $mask {
-            type Output = Self;
-
-            #[inline]
-            fn not(self) -> Self {
-                Self(!self.0)
-            }
-        }
-
-        impl Mask for $mask {
-            #[inline]
-            fn from_bits(bits: u16) -> Self {
-                let lane = |lane| if bits >> lane & 1 == 1 { $bits::MAX } else { 0 };
-                Self($vector::new(core::array::from_fn(|i| $number::from_bits(lane(i)))))
-            }
-            #[inline]
-            fn bits(self) -> u16 {
-                self.0.to_bitmask() as u16
-            }
-            #[inline]
-            fn any(self) -> bool {
-                self.0.any()
-            }
-            #[inline]
-            fn all(self) -> bool {
-                self.0.all()
-            }
-        }
-    };
-}
-
-/// Lanes that wrap a vector of `count` numbers.
+/// Lanes that wrap a vector of `count` numbers, and their mask.
 macro_rules! lanes {
     ($lanes:ident, $mask:ident, $vector:ident, $number:ident, $bits:ident, $count:literal) => {
         #[doc = concat!(stringify!($count), " numbers of type `", stringify!($number), "` side by side: the scalar of ", stringify!($count), " bodies that are stepped at once.")]
@@ -195,7 +129,40 @@ macro_rules! lanes {
             }
         }
 
-        mask!($mask, $lanes, $vector, $number, $bits, $count);
+        #[doc = concat!("A truth value for each lane of [`", stringify!($lanes), "`].")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $mask($vector);
+
+        operators!($mask; BitAnd bitand, BitOr bitor, BitXor bitxor);
+
+        impl Not for $mask {
+            type Output = Self;
+
+            #[inline]
+            fn not(self) -> Self {
+                Self(!self.0)
+            }
+        }
+
+        impl Mask for $mask {
+            #[inline]
+            fn from_bits(bits: u16) -> Self {
+                let lane = |lane| if bits >> lane & 1 == 1 { $bits::MAX } else { 0 };
+                Self($vector::new(core::array::from_fn(|i| $number::from_bits(lane(i)))))
+            }
+            #[inline]
+            fn bits(self) -> u16 {
+                self.0.to_bitmask() as u16
+            }
+            #[inline]
+            fn any(self) -> bool {
+                self.0.any()
+            }
+            #[inline]
+            fn all(self) -> bool {
+                self.0.all()
+            }
+        }
 
         impl Scalar for $lanes {
             type Lane = $number;
@@ -257,14 +224,6 @@ macro_rules! lanes {
             #[inline]
             fn sqrt(self) -> Self {
                 Self(self.0.sqrt())
-            }
-            #[inline]
-            fn recip(self) -> Self {
-                Self::one() / self
-            }
-            #[inline]
-            fn powi(self, exponent: i32) -> Self {
-                power(self, exponent)
             }
             #[inline]
             fn powf(self, exponent: Self) -> Self {

@@ -84,7 +84,10 @@ pub trait Scalar:
     /// √x, NaN for x < 0
     fn sqrt(self) -> Self;
     /// 1 / x
-    fn recip(self) -> Self;
+    #[inline]
+    fn recip(self) -> Self {
+        Self::one() / self
+    }
     /// sin x
     fn sin(self) -> Self;
     /// cos x
@@ -107,8 +110,21 @@ pub trait Scalar:
     fn exp(self) -> Self;
     /// Natural logarithm, NaN for x < 0
     fn ln(self) -> Self;
-    /// xⁿ by repeated multiplication
-    fn powi(self, exponent: i32) -> Self;
+    /// xⁿ by squaring; negative exponents through the reciprocal.
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        let mut square = if exponent < 0 { self.recip() } else { self };
+        let mut rest = exponent.unsigned_abs();
+        let mut power = Self::one();
+        while rest > 0 {
+            if rest & 1 == 1 {
+                power *= square;
+            }
+            square *= square;
+            rest >>= 1;
+        }
+        power
+    }
     /// xʸ, NaN for x < 0 and y no integer
     fn powf(self, exponent: Self) -> Self;
 }
@@ -159,96 +175,52 @@ macro_rules! one_number {
     };
 }
 
-/// xⁿ by squaring; negative exponents through the reciprocal.
-#[inline]
-pub(crate) fn power<T: Scalar>(base: T, exponent: i32) -> T {
-    let mut square = if exponent < 0 { base.recip() } else { base };
-    let mut rest = exponent.unsigned_abs();
-    let mut power = T::one();
-    while rest > 0 {
-        if rest & 1 == 1 {
-            power *= square;
-        }
-        square *= square;
-        rest >>= 1;
-    }
-    power
-}
-
-/// One function per line: the method, its name in `std`, its name in `libm`.
-macro_rules! elementary {
-    ($scalar:ident; $($method:ident $libm:ident),* $(,)?) => {$(
-        #[inline]
-        fn $method(self) -> Self {
-            #[cfg(feature = "std")]
-            { <$scalar>::$method(self) }
-            #[cfg(not(feature = "std"))]
-            { libm::$libm(self) }
-        }
-    )*};
-}
-
-/// What is the same for every floating point type.
+/// A floating point type, whose functions are those of `std`, or of `libm` by the name that stands behind.
 macro_rules! floating_point {
-    ($scalar:ident, $pow:ident) => {
-        $crate::one_number!();
+    ($scalar:ident; $($method:ident $(($argument:ident))? $libm:ident),*) => {
+        impl Scalar for $scalar {
+            $crate::one_number!();
 
-        const EPSILON: Self = $scalar::EPSILON;
-        const PI: Self = core::$scalar::consts::PI;
+            const EPSILON: Self = $scalar::EPSILON;
+            const PI: Self = core::$scalar::consts::PI;
 
-        #[inline]
-        fn from_ratio(numerator: i64, denominator: i64) -> Self {
-            numerator as $scalar / denominator as $scalar
-        }
-        #[inline]
-        fn from_f64(value: f64) -> Self {
-            value as $scalar
-        }
-        #[inline]
-        fn to_f64(self) -> f64 {
-            f64::from(self)
-        }
-        #[inline]
-        fn is_finite(self) -> bool {
-            $scalar::is_finite(self)
-        }
-        #[inline]
-        fn abs(self) -> Self {
-            $scalar::abs(self)
-        }
-        #[inline]
-        fn recip(self) -> Self {
-            1.0 / self
-        }
-        #[inline]
-        fn powi(self, exponent: i32) -> Self {
-            power(self, exponent)
-        }
-        #[inline]
-        fn powf(self, exponent: Self) -> Self {
-            #[cfg(feature = "std")]
-            {
-                $scalar::powf(self, exponent)
+            #[inline]
+            fn from_ratio(numerator: i64, denominator: i64) -> Self {
+                numerator as $scalar / denominator as $scalar
             }
-            #[cfg(not(feature = "std"))]
-            {
-                libm::$pow(self, exponent)
+            #[inline]
+            fn from_f64(value: f64) -> Self {
+                value as $scalar
             }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline]
+            fn is_finite(self) -> bool {
+                $scalar::is_finite(self)
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                $scalar::abs(self)
+            }
+            $(
+                #[inline]
+                fn $method(self $(, $argument: Self)?) -> Self {
+                    #[cfg(feature = "std")]
+                    { <$scalar>::$method(self $(, $argument)?) }
+                    #[cfg(not(feature = "std"))]
+                    { libm::$libm(self $(, $argument)?) }
+                }
+            )*
         }
     };
 }
 
-impl Scalar for f64 {
-    floating_point!(f64, pow);
-    elementary!(f64; sqrt sqrt, sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
-                sinh sinh, cosh cosh, tanh tanh, exp exp, ln log);
-}
-
-impl Scalar for f32 {
-    floating_point!(f32, powf);
-    elementary!(f32; sqrt sqrtf, sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
-                sinh sinhf, cosh coshf, tanh tanhf, exp expf, ln logf);
-}
+floating_point!(f64; sqrt sqrt, sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
+                sinh sinh, cosh cosh, tanh tanh, exp exp, ln log, powf(exponent) pow);
+floating_point!(f32; sqrt sqrtf, sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
+                sinh sinhf, cosh coshf, tanh tanhf, exp expf, ln logf, powf(exponent) powf);
 
 #[cfg(test)]
 mod tests;
