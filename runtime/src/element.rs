@@ -79,11 +79,7 @@ pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
 #[cold]
 pub(crate) fn beyond_right_angle<T: Scalar>(sine_squared: T) -> Error {
     match (0..T::LANES).map(|lane| sine_squared.lane(lane)).find(|square| square.is_finite()) {
-        Some(square) => Error::Unsolvable {
-            solvable_fraction: square.sqrt().recip().to_f64(),
-            step_size: None,
-            solvable_step: None,
-        },
+        Some(square) => Error::unsolvable(square.sqrt().recip()),
         None => Error::NotFinite { name: "the momentum" },
     }
 }

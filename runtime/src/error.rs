@@ -1,5 +1,6 @@
 //! Everything that can go wrong, with the numbers that a person needs.
 
+use crate::Scalar;
 use core::fmt::{self, Display, Formatter};
 
 /// Why a stepper could not be made, a state not be taken, a step not be done or an extremal not be found. The state that was passed in is unchanged.
@@ -168,6 +169,14 @@ pub enum Error {
         /// The step size.
         step_size: f64,
     },
+}
+
+impl Error {
+    /// The step's equation has a solution up to this fraction of the momentum.
+    #[cold]
+    pub(crate) fn unsolvable<T: Scalar>(fraction: T) -> Self {
+        Self::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None }
+    }
 }
 
 impl Display for Error {

@@ -21,6 +21,7 @@
 //! Moser–Veselov algorithm for the free rigid body, revisited*, Found. Comput. Math. 5 (2005), for the first terms. The differential
 //! equation follows from d_i = ½τ|M| cot Ψ_i, where tan(Ψ_i − Ψ_j) = |M| (x_i − x_j) σσ_k/(σ_iσ_j) in Weierstrass' functions of τ/2.
 
+use crate::matrices::axial;
 use crate::root::root;
 use crate::space::{each_lane, lane_of, set_lane};
 use crate::{Error, Real, Scalar, Space};
@@ -30,7 +31,7 @@ use duplication::{Functions, duplicated};
 use nalgebra::{ArrayStorage, Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
 use series::{Coefficients, coefficient};
-use turn::{Turn, balanced, ratio, turn, turn_of_tensor};
+use turn::{Turn, balanced, minors, ratio, turn, turn_of_tensor};
 
 pub(crate) mod axes;
 mod duplication;
@@ -53,15 +54,17 @@ fn duplications<T: Scalar>() -> u32 {
 /// What a motion keeps: d_i x over 2ⁿ, and 2⁻ⁿ, by which m is multiplied too; 0 where the motion is too long.
 pub type KeptRotation<T> = SVector<T, 4>;
 
+type Vector<T> = SVector<T, 3>;
+
 /// What no free motion of a body over a given time changes.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeRotation<T> {
     /// h x/2 with the largest x of x_i = 1/J_i by size: m = `scale` M is free of units.
     scale: T,
     /// J_i x
-    inertia: [T; 3],
+    inertia: Vector<T>,
     /// x_i/x
-    reciprocals: [T; 3],
+    reciprocals: Vector<T>,
     axes: Axes<T, Tensor<T>, 3>,
     series: Coefficients<T>,
     /// Up to which α a polynomial of each degree is enough.
@@ -69,7 +72,7 @@ pub struct FreeRotation<T> {
 }
 
 /// J/x and X = xJ⁻¹, and the symmetric functions of X.
-type Tensor<T> = (SMatrix<T, 3, 3>, SMatrix<T, 3, 3>, [T; 3]);
+type Tensor<T> = (SMatrix<T, 3, 3>, SMatrix<T, 3, 3>, Vector<T>);
 
 impl<T: Scalar> FreeRotation<T> {
     /// The free motions over the time `h` of a body with the inertia tensor `inertia`, of which the lower triangle is read.
@@ -111,7 +114,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// As [`turn`](Self::turn).
     #[inline]
-    pub fn gibbs_vector(&self, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+    pub fn gibbs_vector(&self, momentum: &Vector<T>) -> Result<Vector<T>, Error> {
         self.turn(momentum).map(ratio)
     }
 
@@ -123,7 +126,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
     #[inline(always)]
-    pub fn turn(&self, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
+    pub fn turn(&self, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
         self.turn_by(None, momentum)
     }
 
@@ -132,7 +135,7 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// As [`turn`](Self::turn).
     #[inline]
-    pub fn gibbs_vector_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<SVector<T, 3>, Error> {
+    pub fn gibbs_vector_of(&self, kept: &KeptRotation<T>, momentum: &Vector<T>) -> Result<Vector<T>, Error> {
         self.turn_of(kept, momentum).map(ratio)
     }
 
@@ -141,42 +144,43 @@ impl<T: Scalar> FreeRotation<T> {
     /// # Errors
     /// As [`turn`](Self::turn).
     #[inline(always)]
-    pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
+    pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
         self.turn_by(Some(kept), momentum)
     }
 
     #[inline(always)]
-    fn turn_by(&self, kept: Option<&KeptRotation<T>>, momentum: &SVector<T, 3>) -> Result<(T, SVector<T, 3>), Error> {
+    fn turn_by(&self, kept: Option<&KeptRotation<T>>, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
         let m = self.without_units(momentum);
         let (w, x) = match T::LANES {
             // no closure: it would be called, and the turn would go through memory
             1 => {
-                let (w, x) = self.of_lane(0).turn(kept.map(|kept| lane_of(kept, 0)), &m.lane(0))?;
+                let (w, x) = self.of_lane(0).turn(kept.map(|kept| lane_of(kept, 0)), &lane_of(&m, 0))?;
                 (T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry)))
             }
             _ => {
                 let nothing = T::Lane::from_f64(f64::NAN);
-                let all = each_lane::<T, _>((nothing, [nothing; 3]), |lane| {
-                    self.of_lane(lane).turn(kept.map(|kept| lane_of(kept, lane)), &m.lane(lane))
+                let all = each_lane::<T, _>((nothing, SVector::from_element(nothing)), |lane| {
+                    self.of_lane(lane).turn(kept.map(|kept| lane_of(kept, lane)), &lane_of(&m, lane))
                 })?;
-                (T::from_lanes(|lane| all[lane].0), from_fn(|i| T::from_lanes(|lane| all[lane].1[i])))
+                let x = SVector::from_fn(|i, _| T::from_lanes(|lane| all[lane].1[i]));
+                (T::from_lanes(|lane| all[lane].0), x)
             }
         };
         Ok((w, self.in_coordinates(x)))
     }
 
     /// What the motion with the momentum `momentum` keeps, for many steps of it.
-    pub fn motion(&self, momentum: &SVector<T, 3>) -> KeptRotation<T> {
+    pub fn motion(&self, momentum: &Vector<T>) -> KeptRotation<T> {
         let m = self.without_units(momentum);
         let mut kept = KeptRotation::<T>::from_element(T::zero());
         for lane in 0..T::LANES {
-            let (body, m) = (self.of_lane(lane), m.lane(lane));
+            let (body, m) = (self.of_lane(lane), lane_of(&m, lane));
             let found = match body.modified_inertia(&m) {
                 Some(inertia) => Ok((inertia, <T::Lane as One>::one())),
                 None => body.long_motion(&m),
             };
-            if let Ok(([a, b, c], part)) = found {
-                set_lane(&mut kept, lane, &SVector::from([a, b, c, part]));
+            if let Ok((d, part)) = found {
+                set_lane(&mut kept, lane, &SVector::from([d[0], d[1], d[2], part]));
             }
         }
         kept
@@ -186,10 +190,10 @@ impl<T: Scalar> FreeRotation<T> {
     ///
     /// The inverse of [`gibbs_vector`](Self::gibbs_vector).
     #[cold]
-    pub fn momentum(&self, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+    pub fn momentum(&self, gibbs_vector: &Vector<T>) -> Vector<T> {
         let c = self.in_principal_axes(gibbs_vector);
-        let m = <[T; 3]>::side_by_side(|lane| self.of_lane(lane).momentum(&c.lane(lane)));
-        self.in_coordinates(m.map(|component| component * self.scale.recip()))
+        let m: Vector<T> = Space::side_by_side(|lane| self.of_lane(lane).momentum(&lane_of(&c, lane)));
+        self.in_coordinates(m * self.scale.recip())
     }
 
     #[inline(always)]
@@ -199,23 +203,23 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// m = h x M/2 in principal axes.
     #[inline(always)]
-    fn without_units(&self, momentum: &SVector<T, 3>) -> [T; 3] {
-        self.in_principal_axes(momentum).map(|component| component * self.scale)
+    fn without_units(&self, momentum: &Vector<T>) -> Vector<T> {
+        self.in_principal_axes(momentum) * self.scale
     }
 
     #[inline]
-    fn in_principal_axes(&self, vector: &SVector<T, 3>) -> [T; 3] {
+    fn in_principal_axes(&self, vector: &Vector<T>) -> Vector<T> {
         match &self.axes {
-            Axes::Principal(axes) => axes.tr_mul(vector).into(),
-            _ => [vector[0], vector[1], vector[2]],
+            Axes::Principal(axes) => axes.tr_mul(vector),
+            _ => *vector,
         }
     }
 
     #[inline]
-    fn in_coordinates(&self, vector: [T; 3]) -> SVector<T, 3> {
+    fn in_coordinates(&self, vector: Vector<T>) -> Vector<T> {
         match &self.axes {
-            Axes::Principal(axes) => axes * SVector::from(vector),
-            _ => SVector::from(vector),
+            Axes::Principal(axes) => axes * vector,
+            _ => vector,
         }
     }
 }
@@ -230,10 +234,10 @@ struct OfLane<'a, T> {
 impl<T: Scalar> OfLane<'_, T> {
     /// A multiple of the quaternion of the turn, of a motion that keeps `kept` where it is known.
     #[inline(always)]
-    fn turn(self, kept: Option<KeptRotation<T::Lane>>, m: &[T::Lane; 3]) -> Result<Turn<T::Lane>, Error> {
+    fn turn(self, kept: Option<KeptRotation<T::Lane>>, m: &Vector<T::Lane>) -> Result<Turn<T::Lane>, Error> {
         let inertia = match kept {
             Some(SVector { data: ArrayStorage([[a, b, c, part]]), .. }) => {
-                (part == <T::Lane as One>::one()).then_some([a, b, c])
+                (part == <T::Lane as One>::one()).then_some(SVector::from([a, b, c]))
             }
             None => self.modified_inertia(m),
         };
@@ -246,17 +250,17 @@ impl<T: Scalar> OfLane<'_, T> {
     /// The turn of a motion beyond the reach of the series, or of one that was made longer by duplication.
     #[cold]
     #[inline(never)]
-    fn long_turn(self, kept: Option<KeptRotation<T::Lane>>, m: &[T::Lane; 3]) -> Result<Turn<T::Lane>, Error> {
+    fn long_turn(self, kept: Option<KeptRotation<T::Lane>>, m: &Vector<T::Lane>) -> Result<Turn<T::Lane>, Error> {
         let (d, part) = match kept {
-            Some(kept) if kept[3] != <T::Lane as Zero>::zero() => ([kept[0], kept[1], kept[2]], kept[3]),
+            Some(kept) if kept[3] != <T::Lane as Zero>::zero() => (SVector::from([kept[0], kept[1], kept[2]]), kept[3]),
             _ => self.long_motion(m)?,
         };
-        Ok(balanced(self.solution(&d, &m.map(|component| component * part))))
+        Ok(balanced(self.solution(&d, &(m * part))))
     }
 
     /// d_i x over 2ⁿ, and 2⁻ⁿ, by n duplications: d ρ − m × ρ = ρ₀ m holds for multiples of d and m too.
     #[cold]
-    fn long_motion(self, m: &[T::Lane; 3]) -> Result<([T::Lane; 3], T::Lane), Error> {
+    fn long_motion(self, m: &Vector<T::Lane>) -> Result<(Vector<T::Lane>, T::Lane), Error> {
         if m.iter().any(|component| !component.is_finite()) {
             return Err(Error::NotFinite { name: "the momentum" });
         }
@@ -270,52 +274,40 @@ impl<T: Scalar> OfLane<'_, T> {
                 return Ok((d, size));
             }
         }
-        let [.., reach] = self.free.reach.lane(self.lane);
+        let [.., reach] = self.free.reach;
         let square = m.iter().fold(<T::Lane as Zero>::zero(), |sum, component| sum + *component * *component);
-        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach / square).sqrt();
-        Err(Error::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None })
+        let fraction = T::Lane::from_f64(0.999 * f64::from(1 << most)) * (reach.lane(self.lane) / square).sqrt();
+        Err(Error::unsolvable(fraction))
     }
 
     /// The m of the motion with the Gibbs vector `c`.
-    fn momentum(self, c: &[T::Lane; 3]) -> [T::Lane; 3] {
-        let (one, nothing) = (<T::Lane as One>::one(), [T::Lane::from_f64(f64::NAN); 3]);
-        let reached = |m: &SVector<T::Lane, 3>| {
-            let (w, x) = self.turn(None, &[m[0], m[1], m[2]]).ok()?;
-            Some(ratio((w, SVector::from(x))))
-        };
+    fn momentum(self, c: &Vector<T::Lane>) -> Vector<T::Lane> {
         // the equation of Moser and Veselov, which is right to second order
-        let c = SVector::from(*c);
         let image = match &self.free.axes {
             Axes::Tensor((inertia, ..)) => lane_of(inertia, self.lane) * c,
-            _ => SVector::from(self.free.inertia.lane(self.lane)).component_mul(&c),
+            _ => lane_of(&self.free.inertia, self.lane).component_mul(c),
         };
-        let start = (image + c.cross(&image)) * (one + c.dot(&c)).recip();
         // of the angle rather than of its tangent, which grows beyond all bounds towards half a turn
-        let scale = (one + c.dot(&c)).recip();
-        root(start, |m| Some((reached(m)? - c) * scale)).map_or(nothing, SVector::into)
+        let scale = (<T::Lane as One>::one() + c.dot(c)).recip();
+        let start = (image + c.cross(&image)) * scale;
+        let found = root(start, |m| Some((ratio(self.turn(None, m).ok()?) - c) * scale));
+        found.unwrap_or(SVector::from_element(T::Lane::from_f64(f64::NAN)))
     }
 
     /// d_i x of the whole time, or the coefficients of d; `None` where that is beyond the reach of the series.
     #[inline(always)]
-    fn modified_inertia(self, m: &[T::Lane; 3]) -> Option<[T::Lane; 3]> {
+    fn modified_inertia(self, m: &Vector<T::Lane>) -> Option<Vector<T::Lane>> {
         self.sum_of_series(self.invariants(m)).map(|sum| self.scaled(sum))
     }
 
     /// α = |m|² and ε = m·Xm.
     #[inline(always)]
-    fn invariants(self, m: &[T::Lane; 3]) -> [T::Lane; 2] {
-        let squares = m.map(|component| component * component);
+    fn invariants(self, m: &Vector<T::Lane>) -> [T::Lane; 2] {
         let epsilon = match &self.free.axes {
-            Axes::Tensor((_, reciprocal, _)) if T::DERIVATIVES > 0 => {
-                let m = SVector::from(*m);
-                m.dot(&(lane_of(reciprocal, self.lane) * m))
-            }
-            _ => {
-                let [a, b, c] = self.free.reciprocals.lane(self.lane);
-                a * squares[0] + b * squares[1] + c * squares[2]
-            }
+            Axes::Tensor((_, reciprocal, _)) if T::DERIVATIVES > 0 => m.dot(&(lane_of(reciprocal, self.lane) * m)),
+            _ => lane_of(&self.free.reciprocals, self.lane).dot(&m.component_mul(m)),
         };
-        [squares[0] + squares[1] + squares[2], epsilon]
+        [m.dot(m), epsilon]
     }
 
     /// x_i d_i, or the coefficients of X d, and τ²/4 ℘(τ/2), by the polynomial of the least degree that is enough.
@@ -335,7 +327,8 @@ impl<T: Scalar> OfLane<'_, T> {
     /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
     #[inline(always)]
     fn polynomial<const K: usize>(self, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
-        let coefficients = |i: usize, j: usize| coefficient(&self.free.series, i, j).lane(self.lane);
+        let coefficients =
+            |i: usize, j: usize| coefficient(&self.free.series, i, j).map(|number| number.lane(self.lane));
         let mut sum = [<T::Lane as Zero>::zero(); 4];
         for j in (0..=K).rev() {
             let mut inner = coefficients(K - j, j);
@@ -349,19 +342,17 @@ impl<T: Scalar> OfLane<'_, T> {
     }
 
     #[inline(always)]
-    fn scaled(self, [a, b, c, _]: [T::Lane; 4]) -> [T::Lane; 3] {
+    fn scaled(self, [a, b, c, _]: [T::Lane; 4]) -> Vector<T::Lane> {
+        let sum = SVector::from([a, b, c]);
         match &self.free.axes {
-            Axes::Tensor(_) if T::DERIVATIVES > 0 => [a, b, c],
-            _ => {
-                let [x, y, z] = self.free.inertia.lane(self.lane);
-                [a * x, b * y, c * z]
-            }
+            Axes::Tensor(_) if T::DERIVATIVES > 0 => sum,
+            _ => sum.component_mul(&lane_of(&self.free.inertia, self.lane)),
         }
     }
 
     /// A multiple of the quaternion with d ρ − m × ρ = ρ₀ m.
     #[inline(always)]
-    fn solution(self, d: &[T::Lane; 3], m: &[T::Lane; 3]) -> Turn<T::Lane> {
+    fn solution(self, d: &Vector<T::Lane>, m: &Vector<T::Lane>) -> Turn<T::Lane> {
         match &self.free.axes {
             Axes::Tensor((inertia, reciprocal, _)) if T::DERIVATIVES > 0 => {
                 // X d = c₀ + c₁X + c₂X²
@@ -374,19 +365,20 @@ impl<T: Scalar> OfLane<'_, T> {
     }
 
     /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.
-    fn made_longer(self, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> Option<[T::Lane; 3]> {
+    fn made_longer(self, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> Option<Vector<T::Lane>> {
         let [a, b, c, p] = sum;
         match &self.free.axes {
             Axes::Tensor((.., symmetric)) if T::DERIVATIVES > 0 => {
-                let e @ [first, second, third] = symmetric.lane(self.lane);
+                let e = lane_of(symmetric, self.lane);
+                let [[first, second, third]] = e.data.0;
                 // X⁻¹ = (X² − e₁X + e₂)/e₃
                 let top = a / third;
-                let d = [b + top * second, c - top * first, top];
-                let [a, b, c] = duplicated(Functions::InPowers(e), invariants, d, p, times)?;
-                Some([c * third, a - c * second, b + c * first])
+                let d = SVector::from([b + top * second, c - top * first, top]);
+                let [[a, b, c]] = duplicated(Functions::InPowers(e), invariants, d, p, times)?.data.0;
+                Some(SVector::from([c * third, a - c * second, b + c * first]))
             }
             _ => {
-                let functions = Functions::OnAxes(self.free.reciprocals.lane(self.lane));
+                let functions = Functions::OnAxes(lane_of(&self.free.reciprocals, self.lane));
                 duplicated(functions, invariants, self.scaled(sum), p, times)
             }
         }
@@ -406,7 +398,7 @@ impl<T: Real> FreeRotation<T> {
         if T::DERIVATIVES > 0 {
             return Self::of_tensor(inertia, h, (moments.map(T::to_f64), least.to_f64()), tolerance).ok_or(singular);
         }
-        let relative = moments.map(|moment| moment / least);
+        let relative = moments / least;
         if !relative.iter().all(|moment| moment.is_finite()) {
             return Err(singular);
         }
@@ -418,7 +410,12 @@ impl<T: Real> FreeRotation<T> {
 
     /// Those with derivatives: by the values of the moments alone it is decided how far series reach.
     #[cold]
-    fn of_tensor(inertia: &SMatrix<T, 3, 3>, h: T, (moments, least): ([f64; 3], f64), tolerance: f64) -> Option<Self> {
+    fn of_tensor(
+        inertia: &SMatrix<T, 3, 3>,
+        h: T,
+        (moments, least): (SVector<f64, 3>, f64),
+        tolerance: f64,
+    ) -> Option<Self> {
         let values = moments.map(|moment| T::from_f64(moment / least));
         if !values.iter().all(|moment| moment.is_finite()) {
             return None;
@@ -427,12 +424,10 @@ impl<T: Real> FreeRotation<T> {
         let reach = series::reach(&x, &series::on_axes(&x), tolerance);
         let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| inertia[(i.max(j), i.min(j))]);
         let relative = symmetric * T::from_f64(least).recip();
-        let columns: [SVector<T, 3>; 3] = from_fn(|i| relative.column(i).into_owned());
-        let minors =
-            SMatrix::<T, 3, 3>::from_columns(&[0, 1, 2].map(|i| columns[(i + 1) % 3].cross(&columns[(i + 2) % 3])));
+        let minors = minors(&relative);
         // the symmetric functions of X are those of J over its determinant
-        let inverse = columns[0].dot(&minors.column(0)).recip();
-        let invariants = [minors.trace() * inverse, relative.trace() * inverse, inverse];
+        let inverse = relative.column(0).dot(&minors.column(0)).recip();
+        let invariants = SVector::from([minors.trace() * inverse, relative.trace() * inverse, inverse]);
         let axes = Axes::Tensor((relative, minors * inverse, invariants));
         let series = series::in_powers(&invariants);
         Some(Self { scale: half(h) * T::from_f64(least).recip(), inertia: values, reciprocals: x, axes, series, reach })
@@ -441,7 +436,7 @@ impl<T: Real> FreeRotation<T> {
 
 /// The momentum of the free motion over the time `h` that makes the rotation with this Gibbs vector; NaN where there is none.
 #[cold]
-pub fn free_momentum<T: Scalar>(inertia: &SMatrix<T, 3, 3>, h: T, gibbs_vector: &SVector<T, 3>) -> SVector<T, 3> {
+pub fn free_momentum<T: Scalar>(inertia: &SMatrix<T, 3, 3>, h: T, gibbs_vector: &Vector<T>) -> Vector<T> {
     match FreeRotation::new(inertia, h) {
         Ok(free) => free.momentum(gibbs_vector),
         Err(_) => SVector::from_element(T::from_f64(f64::NAN)),
@@ -449,13 +444,12 @@ pub fn free_momentum<T: Scalar>(inertia: &SMatrix<T, 3, 3>, h: T, gibbs_vector: 
 }
 
 /// tan(θ/2) n of a rotation: (F − Fᵀ)^∨/(1 + tr F).
-pub fn gibbs_vector_of_matrix<T: Scalar>(f: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
-    let twice = SVector::from([f[(2, 1)] - f[(1, 2)], f[(0, 2)] - f[(2, 0)], f[(1, 0)] - f[(0, 1)]]);
-    twice * (T::one() + f[(0, 0)] + f[(1, 1)] + f[(2, 2)]).recip()
+pub fn gibbs_vector_of_matrix<T: Scalar>(f: &SMatrix<T, 3, 3>) -> Vector<T> {
+    axial(f) * (T::one() + f[(0, 0)] + f[(1, 1)] + f[(2, 2)]).recip()
 }
 
 /// tan(θ/2) n of a rotation: the vector part over the scalar part.
-pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> SVector<T, 3> {
+pub fn gibbs_vector_of_quaternion<T: Scalar>(f: &Quaternion<T>) -> Vector<T> {
     SVector::from_fn(|i, _| f.coords[i] / f.coords[3])
 }
 

@@ -156,7 +156,7 @@ impl<T: Real> FreeRotation4<T> {
         let inverse = size.recip();
         let relative = moments.map(|moment| moment * inverse);
         // Σ_(ij) = d_i + d_j
-        let [p, q, r, s] = relative;
+        let [[p, q, r, s]] = relative.data.0;
         let least = [p + q, p + r, p + s, q + r, q + s, r + s].into_iter().map(T::abs);
         let least = least.fold(T::one(), |least, sum| if sum < least { sum } else { least });
         let is_regular = least > T::EPSILON;
@@ -164,7 +164,7 @@ impl<T: Real> FreeRotation4<T> {
             return Err(Error::SingularKineticEnergy { condition: f64::INFINITY });
         }
         let axes = if T::DERIVATIVES > 0 { Axes::Tensor(invert(inertia)? * size) } else { axes };
-        Ok(Self { moments: relative, scale: h * inverse, axes })
+        Ok(Self { moments: relative.into(), scale: h * inverse, axes })
     }
 
     /// The constants of the motion with m = hM/s: as few parts as will do.
@@ -180,11 +180,7 @@ impl<T: Real> FreeRotation4<T> {
         let angle = dot(&velocity, &velocity).sqrt().to_f64();
         let is_short = angle < f64::from(PARTS);
         if !is_short {
-            return Err(Error::Unsolvable {
-                solvable_fraction: 0.999 * f64::from(PARTS) / angle,
-                step_size: None,
-                solvable_step: None,
-            });
+            return Err(Error::unsolvable(0.999 * f64::from(PARTS) / angle));
         }
         // parts of no more than a radian, or so few that their series end
         let fewest = (0..10).fold(1, |parts, _| if f64::from(parts) < angle { 2 * parts } else { parts });

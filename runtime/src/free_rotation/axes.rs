@@ -3,8 +3,7 @@
 use crate::newton::Spectrum;
 use crate::space::Space;
 use crate::{Real, Scalar};
-use core::array::from_fn;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// The axes of a body in N dimensions.
 #[derive(Clone, Copy, Debug)]
@@ -19,12 +18,12 @@ pub(crate) enum Axes<T, D, const N: usize> {
 
 impl<T: Real, D, const N: usize> Axes<T, D, N> {
     /// The principal moments of a tensor, of which the lower triangle is read, and their axes.
-    pub fn principal(tensor: &SMatrix<T, N, N>) -> ([T; N], Self) {
+    pub fn principal(tensor: &SMatrix<T, N, N>) -> (SVector<T, N>, Self) {
         if (0..N).all(|i| (0..i).all(|j| tensor[(i, j)] == T::zero())) {
-            return (from_fn(|i| tensor[(i, i)]), Self::Coordinates);
+            return (tensor.diagonal(), Self::Coordinates);
         }
         let Spectrum { values, vectors } = Spectrum::of(tensor);
-        (values.into(), Self::Principal(vectors))
+        (values, Self::Principal(vectors))
     }
 }
 

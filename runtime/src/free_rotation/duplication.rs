@@ -24,25 +24,28 @@
 use super::half;
 use super::series::{product, trace};
 use crate::Real;
+use nalgebra::SVector;
+
+type Vector<T> = SVector<T, 3>;
 
 /// Functions of X = J⁻¹.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Functions<T> {
     /// Their values at x₁, x₂ and x₃.
-    OnAxes([T; 3]),
+    OnAxes(Vector<T>),
     /// The coefficients of c₀ + c₁X + c₂X², where (e₁, e₂, e₃) are the symmetric functions of the x_i.
-    InPowers([T; 3]),
+    InPowers(Vector<T>),
 }
 
 /// What stays the same from one duplication to the next.
 struct Curve<T> {
     functions: Functions<T>,
     alpha: T,
-    e: [T; 3],
-    v: [T; 3],
-    b: [T; 3],
+    e: Vector<T>,
+    v: Vector<T>,
+    b: Vector<T>,
     /// Pβ: (e_i − e_j)(e_i − e_k)
-    gaps: [T; 3],
+    gaps: Vector<T>,
     /// A = −½ Σ e_k²
     linear: T,
     /// C = −e₁e₂e₃
@@ -51,7 +54,7 @@ struct Curve<T> {
 
 /// (Q, Y, Z) with ℘ − e = Q/Z² and ½℘′ = Y/Z³: poles of ℘ are points as others.
 struct CurvePoint<T> {
-    q: [T; 3],
+    q: Vector<T>,
     y: T,
     z: T,
 }
@@ -61,42 +64,41 @@ struct CurvePoint<T> {
 pub(super) fn duplicated<T: Real>(
     functions: Functions<T>,
     invariants: [T; 2],
-    mut d: [T; 3],
+    mut d: Vector<T>,
     p: T,
     times: u32,
-) -> Option<[T; 3]> {
+) -> Option<Vector<T>> {
     let curve = Curve::new(functions, invariants);
     let mut point = curve.start(p)?;
     for _ in 1..times {
-        let (above, below) = curve.twice(&d, &point);
-        d = functions.quotient(&above, &below);
+        d = functions.quotient(curve.twice(&d, &point));
         point = curve.settled(curve.point_twice(&point));
     }
-    let (above, below) = curve.twice(&d, &point);
+    let fraction = curve.twice(&d, &point);
     Some(match functions {
-        Functions::OnAxes(x) => curve.on_all_axes(&x, &above, &below, &curve.point_twice(&point)),
-        Functions::InPowers(_) => functions.quotient(&above, &below),
+        Functions::OnAxes(x) => curve.on_all_axes(&x, fraction, &curve.point_twice(&point)),
+        Functions::InPowers(_) => functions.quotient(fraction),
     })
 }
 
 impl<T: Real> Functions<T> {
-    fn product(&self, a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    fn product(&self, a: &Vector<T>, b: &Vector<T>) -> Vector<T> {
         match self {
-            Self::OnAxes(_) => core::array::from_fn(|i| a[i] * b[i]),
+            Self::OnAxes(_) => a.component_mul(b),
             Self::InPowers(e) => product(a, b, e),
         }
     }
 
     /// `f` + `number`
-    fn plus(&self, f: &[T; 3], number: T) -> [T; 3] {
+    fn plus(&self, f: &Vector<T>, number: T) -> Vector<T> {
         match self {
-            Self::OnAxes(_) => f.map(|value| value + number),
-            Self::InPowers(_) => [f[0] + number, f[1], f[2]],
+            Self::OnAxes(_) => f.add_scalar(number),
+            Self::InPowers(_) => SVector::from([f[0] + number, f[1], f[2]]),
         }
     }
 
     /// The sum of the values on the axes.
-    fn trace(&self, f: &[T; 3]) -> T {
+    fn trace(&self, f: &Vector<T>) -> T {
         match self {
             Self::OnAxes(_) => f[0] + f[1] + f[2],
             Self::InPowers(e) => trace(f, e),
@@ -104,48 +106,45 @@ impl<T: Real> Functions<T> {
     }
 
     /// The values on the axes but one, multiplied: f² − tr f f + ½ (tr² f − tr f²).
-    fn adjugate(&self, f: &[T; 3]) -> [T; 3] {
+    fn adjugate(&self, f: &Vector<T>) -> Vector<T> {
         match self {
-            Self::OnAxes(_) => [f[1] * f[2], f[2] * f[0], f[0] * f[1]],
+            Self::OnAxes(_) => SVector::from([f[1] * f[2], f[2] * f[0], f[0] * f[1]]),
             Self::InPowers(_) => {
                 let (square, sum) = (self.product(f, f), self.trace(f));
                 let second = half(sum * sum - self.trace(&square));
-                self.plus(&core::array::from_fn(|i| square[i] - sum * f[i]), second)
+                self.plus(&square.zip_map(f, |square, f| square - sum * f), second)
             }
         }
     }
 
     /// The product of the values on the axes.
-    fn determinant(&self, f: &[T; 3]) -> T {
+    fn determinant(&self, f: &Vector<T>) -> T {
         match self {
             Self::OnAxes(_) => f[0] * f[1] * f[2],
             Self::InPowers(_) => T::from_ratio(1, 3) * self.trace(&self.product(f, &self.adjugate(f))),
         }
     }
 
-    fn quotient(&self, a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    fn quotient(&self, (a, b): (Vector<T>, Vector<T>)) -> Vector<T> {
         match self {
-            Self::OnAxes(_) => core::array::from_fn(|i| quotient(a[i], b[i])),
-            Self::InPowers(_) => {
-                let inverse = self.determinant(b).recip();
-                self.product(a, &self.adjugate(b)).map(|entry| entry * inverse)
-            }
+            Self::OnAxes(_) => a.zip_map(&b, quotient),
+            Self::InPowers(_) => self.product(&a, &self.adjugate(&b)) * self.determinant(&b).recip(),
         }
     }
 
     /// x, the x_jx_k, and P_i = (x_i − x_j)(x_i − x_k).
-    fn of_reciprocals(&self) -> [[T; 3]; 3] {
+    fn of_reciprocals(&self) -> [Vector<T>; 3] {
         let (zero, one) = (T::zero(), T::one());
         match self {
             Self::OnAxes(x) => {
-                let [a, b, c] = *x;
-                let differences = [(a, b, c), (b, c, a), (c, a, b)].map(|(x, y, z)| (x - y) * (x - z));
-                [*x, self.adjugate(x), differences]
+                let differences =
+                    [(x.x, x.y, x.z), (x.y, x.z, x.x), (x.z, x.x, x.y)].map(|(x, y, z)| (x - y) * (x - z));
+                [*x, self.adjugate(x), differences.into()]
             }
             // x_jx_k = X² − e₁X + e₂
-            Self::InPowers([first, second, _]) => {
-                let differences = [*second, -(*first + *first), T::from_f64(3.0)];
-                [[zero, one, zero], [*second, -*first, one], differences]
+            Self::InPowers(e) => {
+                let differences = [e.y, -(e.x + e.x), T::from_f64(3.0)];
+                [[zero, one, zero], [e.y, -e.x, one], differences].map(SVector::from)
             }
         }
     }
@@ -155,14 +154,14 @@ impl<T: Real> Curve<T> {
     fn new(functions: Functions<T>, [alpha, epsilon]: [T; 2]) -> Self {
         let f = functions;
         let [x, products, differences] = f.of_reciprocals();
-        let raw = core::array::from_fn(|i| alpha * products[i] + epsilon * x[i]);
+        let raw = products.zip_map(&x, |product, x| alpha * product + epsilon * x);
         let e = f.plus(&raw, -(T::from_ratio(1, 3) * f.trace(&raw)));
         let excess = f.plus(&x.map(|x| -(alpha * x)), epsilon);
         Self {
             functions,
             alpha,
             e,
-            v: core::array::from_fn(|i| e[i] - alpha * differences[i]),
+            v: e.zip_map(&differences, |e, difference| e - alpha * difference),
             b: f.product(&differences, &excess),
             gaps: f.product(&differences, &f.adjugate(&excess)),
             linear: -half(f.trace(&f.product(&e, &e))),
@@ -174,13 +173,13 @@ impl<T: Real> Curve<T> {
     ///
     /// Half a period is at least π/2 over the root of the largest difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
     fn start(&self, p: T) -> Option<CurvePoint<T>> {
-        let q = self.functions.plus(&self.e.map(|e| -e), p);
+        let q = self.functions.plus(&-self.e, p);
         let y = -self.functions.determinant(&q).sqrt();
         (-self.linear < T::from_ratio(36, 100)).then_some(CurvePoint { q, y, z: T::one() })
     }
 
     /// d of twice the time: what is above and below the bar.
-    fn twice(&self, d: &[T; 3], point: &CurvePoint<T>) -> ([T; 3], [T; 3]) {
+    fn twice(&self, d: &Vector<T>, point: &CurvePoint<T>) -> (Vector<T>, Vector<T>) {
         let f = self.functions;
         let CurvePoint { y, z, .. } = *point;
         let two = T::one() + T::one();
@@ -192,15 +191,15 @@ impl<T: Real> Curve<T> {
         let difference = f.plus(&f.product(d, d), -self.alpha);
         let (cosine, sine) = (f.product(&difference, &n), f.product(&difference, &g));
         let (dn, dg) = (f.product(d, &n), f.product(d, &g));
-        let above = core::array::from_fn(|i| cosine[i] - two * self.alpha * dg[i]);
-        (above, core::array::from_fn(|i| sine[i] + two * dn[i]))
+        let above = cosine.zip_map(&dg, |cosine, dg| cosine - two * self.alpha * dg);
+        (above, sine.zip_map(&dn, |sine, dn| sine + two * dn))
     }
 
     /// The point at twice the time.
     fn point_twice(&self, CurvePoint { q, y, z }: &CurvePoint<T>) -> CurvePoint<T> {
         let f = self.functions;
         let (squares, quartic) = (f.product(q, q), *z * *z * *z * *z);
-        let n = core::array::from_fn(|i| squares[i] - quartic * self.gaps[i]);
+        let n = squares.zip_map(&self.gaps, |square, gap| square - quartic * gap);
         CurvePoint { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
     }
 
@@ -209,13 +208,11 @@ impl<T: Real> Curve<T> {
     fn settled(&self, CurvePoint { q, y, z }: CurvePoint<T>) -> CurvePoint<T> {
         let size = (self.functions.trace(&q) + z * z).recip();
         let scale = size.sqrt();
-        let point = CurvePoint { q: q.map(|entry| entry * size), y: y * size * scale, z: z * scale };
+        let point = CurvePoint { q: q * size, y: y * size * scale, z: z * scale };
         let (x, zz) = (self.abscissa(&point), point.z * point.z);
         let from_mean = self.functions.plus(&self.e.map(|e| -(e * zz)), x);
         let q = match self.functions {
-            Functions::OnAxes(_) => {
-                core::array::from_fn(|i| if from_mean[i] < half(x) { point.q[i] } else { from_mean[i] })
-            }
+            Functions::OnAxes(_) => from_mean.zip_map(&point.q, |mean, own| if mean < half(x) { own } else { mean }),
             Functions::InPowers(_) => from_mean,
         };
         CurvePoint { q, ..point }
@@ -229,35 +226,22 @@ impl<T: Real> Curve<T> {
     /// All d_i from d_j on the axis where |x_j| is least, as the error of the angle is.
     fn on_all_axes(
         &self,
-        x: &[T; 3],
-        above: &[T; 3],
-        below: &[T; 3],
+        x: &Vector<T>,
+        (above, below): (Vector<T>, Vector<T>),
         CurvePoint { q, y, z }: &CurvePoint<T>,
-    ) -> [T; 3] {
-        let [a, b, c] = x.map(|x| x.abs());
-        let best = match (b < a, c < a && c < b) {
-            (_, true) => 2,
-            (true, false) => 1,
-            (false, false) => 0,
-        };
-        let from_best = |[a, b, c]: [T; 3]| match best {
-            0 => [a, b, c],
-            1 => [b, c, a],
-            _ => [c, a, b],
-        };
-        let ([x, next, last], [_, q_next, q_last]) = (from_best(*x), from_best(*q));
-        let ([above, ..], [below, ..]) = (from_best(*above), from_best(*below));
+    ) -> Vector<T> {
+        let [[a, b, c]] = x.map(T::abs).data.0;
+        let best = if c < a && c < b { 2 } else { usize::from(b < a) };
+        // the axes in turn, from one of them on
+        let from = |first: usize, of: &Vector<T>| -> [T; 3] { core::array::from_fn(|i| of[(first + i) % 3]) };
+        let ([x, next, last], [_, q_next, q_last]) = (from(best, x), from(best, q));
+        let ([above, ..], [below, ..]) = (from(best, &above), from(best, &below));
         // the d of the axis with `other`, where `third` is the Q of the third axis
         let on = |other: T, third: T| {
             let t = (x - other) * third * *z;
             quotient(above * *y - self.alpha * below * t, below * *y + above * t)
         };
-        let [a, b, c] = [quotient(above, below), on(next, q_last), on(last, q_next)];
-        match best {
-            0 => [a, b, c],
-            1 => [c, a, b],
-            _ => [b, c, a],
-        }
+        from(3 - best, &SVector::from([quotient(above, below), on(next, q_last), on(last, q_next)])).into()
     }
 }
 

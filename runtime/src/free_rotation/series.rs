@@ -6,6 +6,7 @@
 
 use crate::space::larger;
 use crate::{Real, Scalar};
+use nalgebra::{SVector, Vector1};
 
 /// The degree up to which the series are known.
 const DEGREE: usize = 14;
@@ -20,7 +21,7 @@ const DEGREES: [usize; 9] = [2, 3, 4, 5, 6, 8, 10, 12, 14];
 pub(super) type Coefficients<T> = [[T; 4]; MONOMIALS];
 
 /// A function of X: its value on one axis, or its three coefficients.
-type Function<T, const N: usize> = [T; N];
+type Function<T, const N: usize> = SVector<T, N>;
 
 /// A homogeneous polynomial in α and ε, of which entry j belongs to ε^j.
 type Polynomial<T, const N: usize> = [Function<T, N>; DEGREE + 1];
@@ -42,42 +43,42 @@ pub(super) fn coefficient<T: Scalar>(series: &Coefficients<T>, i: usize, j: usiz
 
 /// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
 #[cold]
-pub(super) fn on_axes<T: Scalar>(x: &[T; 3]) -> Coefficients<T> {
-    let [x0, x1, x2] = *x;
+pub(super) fn on_axes<T: Scalar>(x: &SVector<T, 3>) -> Coefficients<T> {
+    let [[x0, x1, x2]] = x.data.0;
     let others = [(x1, x2), (x2, x0), (x0, x1)];
     // e_i, less their mean: coefficients of α and of ε
     let pairs = others.map(|(y, z)| y * z);
     let third = T::from_ratio(1, 3);
     let mean = |[a, b, c]: [T; 3]| third * (a + b + c);
-    let means = [mean(pairs), mean(*x)];
+    let means = [mean(pairs), mean([x0, x1, x2])];
     let [a, b, g] = pairs.map(|pair| pair - means[0]);
-    let [p, q, r] = x.map(|x| x - means[1]);
+    let [p, q, r] = [x0, x1, x2].map(|x| x - means[1]);
     let squares = [a * a + b * b + g * g, T::from_f64(2.0) * (a * p + b * q + g * r), p * p + q * q + r * r];
     let products = [a * b * g, p * b * g + a * q * g + a * b * r, p * q * g + p * b * r + a * q * r, p * q * r];
     let elliptic = elliptic(&squares, &products);
     // values on an axis are multiplied as they are
-    let nothing = [T::zero(); 3];
+    let nothing = SVector::from_element(T::zero());
     let mut all = [[T::zero(); 4]; MONOMIALS];
-    each_coefficient(&elliptic, &mut all, |entry, [value]| entry[3] = value);
-    let roots = [[[a], [p]], [[b], [q]], [[g], [r]]];
+    each_coefficient(&elliptic, &mut all, |entry, value| entry[3] = value.x);
+    let roots = [[a, p], [b, q], [g, r]];
     for (i, ((&x, (y, z)), roots)) in x.iter().zip(others).zip(roots).enumerate() {
-        let differences = (x - y) * (x - z);
-        let series = of_function(&nothing, [x], [x.recip()], [differences], roots, &elliptic);
+        let [x, reciprocal, differences] = [x, x.recip(), (x - y) * (x - z)].map(Vector1::new);
+        let series = of_function(&nothing, x, reciprocal, differences, roots.map(Vector1::new), &elliptic);
         // one of the first three
-        each_coefficient(&series, &mut all, |entry, [value]| entry[i % 4] = value);
+        each_coefficient(&series, &mut all, |entry, value| entry[i % 4] = value.x);
     }
     all
 }
 
 /// The same for c₀, c₁ and c₂ of X d = c₀ + c₁X + c₂X², where e = (e₁, e₂, e₃) are the sum of the x_i, that of x_jx_k, and their product.
 #[cold]
-pub(super) fn in_powers<T: Scalar>(e: &[T; 3]) -> Coefficients<T> {
-    let [first, second, third] = *e;
+pub(super) fn in_powers<T: Scalar>(e: &SVector<T, 3>) -> Coefficients<T> {
+    let [[first, second, third]] = e.data.0;
     let (zero, one, two) = (T::zero(), T::one(), T::from_f64(2.0));
     let part = T::from_ratio(1, 3);
     // x_jx_k = X² − e₁X + e₂, and X, less their means
-    let roots = [[second - part * second, -first, one], [-part * first, one, zero]];
-    let trace = |f: [T; 3]| trace(&f, e);
+    let roots = [[second - part * second, -first, one], [-part * first, one, zero]].map(SVector::from);
+    let trace = |f| trace(&f, e);
     let [a, b] = roots;
     let squares = [product(&a, &a, e), product(&a, &b, e), product(&b, &b, e)];
     let (aa, ab, bb) = (trace(squares[0]), trace(squares[1]), trace(squares[2]));
@@ -89,14 +90,14 @@ pub(super) fn in_powers<T: Scalar>(e: &[T; 3]) -> Coefficients<T> {
         part * trace(product(&squares[2], &b, e)),
     ];
     let elliptic = elliptic(&[aa, two * ab, bb], &cubes);
-    let x = [zero, one, zero];
+    let x = SVector::from([zero, one, zero]);
     let inverse = third.recip();
-    let reciprocal = [inverse * second, -inverse * first, inverse];
-    let differences = [second, -two * first, T::from_f64(3.0)];
+    let reciprocal = SVector::from([inverse * second, -inverse * first, inverse]);
+    let differences = SVector::from([second, -two * first, T::from_f64(3.0)]);
     let series = of_function(e, x, reciprocal, differences, roots, &elliptic);
     let mut all = [[zero; 4]; MONOMIALS];
-    each_coefficient(&series, &mut all, |entry, [a, b, c]| *entry = [a, b, c, zero]);
-    each_coefficient(&elliptic, &mut all, |entry, [value]| entry[3] = value);
+    each_coefficient(&series, &mut all, |entry, value| *entry = [value.x, value.y, value.z, zero]);
+    each_coefficient(&elliptic, &mut all, |entry, value| entry[3] = value.x);
     all
 }
 
@@ -116,24 +117,23 @@ fn each_coefficient<T: Scalar, const N: usize>(
 
 /// x d of a function X and 1/X, (x − x_j)(x − x_k) on each axis, the coefficients of α and ε in the roots, and those of τ²/4 ℘(τ/2).
 fn of_function<T: Scalar, const N: usize>(
-    e: &[T; 3],
+    e: &SVector<T, 3>,
     x: Function<T, N>,
     reciprocal: Function<T, N>,
     differences: Function<T, N>,
     roots: [Function<T, N>; 2],
     elliptic: &Series<T, 1>,
 ) -> Series<T, N> {
-    let zero = [T::zero(); N];
     // p = 1 + α P − e + …
-    let mut p = elliptic.map(|row| row.map(|[value]| core::array::from_fn(|k| if k == 0 { value } else { T::zero() })));
-    p[1][0] = sum(&differences, &scaled(&roots[0], -T::one()));
-    p[1][1] = scaled(&roots[1], -T::one());
+    let mut p = elliptic.map(|row| row.map(|value| unity() * value.x));
+    p[1][0] = differences - roots[0];
+    p[1][1] = -roots[1];
     let inverse = inverse(&p, e);
-    let mut rate: Series<T, N> = [[zero; DEGREE + 1]; DEGREE + 1];
+    let mut rate = zero();
     rate[0][0] = x;
     // (ε − x α) P times the polynomial of one degree less
-    let mut factor = [zero; DEGREE + 1];
-    (factor[0], factor[1]) = (scaled(&product(&differences, &x, e), -T::one()), differences);
+    let mut factor = [SVector::from_element(T::zero()); DEGREE + 1];
+    (factor[0], factor[1]) = (-product(&differences, &x, e), differences);
     for (n, row) in rate.iter_mut().enumerate().skip(1) {
         add_product(row, (&factor, 1), term(&inverse, n - 1), e);
     }
@@ -144,46 +144,47 @@ fn of_function<T: Scalar, const N: usize>(
 ///
 /// c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k − 3)) Σ c_m c_{k−m}; g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃.
 fn elliptic<T: Scalar>(squares: &[T; 3], products: &[T; 4]) -> Series<T, 1> {
-    let mut c: Series<T, 1> = [[[T::zero()]; DEGREE + 1]; DEGREE + 1];
+    let mut c: Series<T, 1> = zero();
     let (tenth, seventh) = (T::from_ratio(1, 10), T::from_ratio(1, 7));
-    c[2].iter_mut().zip(squares).for_each(|(entry, square)| *entry = [tenth * *square]);
-    c[3].iter_mut().zip(products).for_each(|(entry, product)| *entry = [seventh * *product]);
+    c[2].iter_mut().zip(squares).for_each(|(entry, square)| entry.x = tenth * *square);
+    c[3].iter_mut().zip(products).for_each(|(entry, product)| entry.x = seventh * *product);
     for k in 4..=DEGREE {
-        let mut row = [[T::zero()]; DEGREE + 1];
+        let mut row = c[0];
         for m in 2..=k - 2 {
-            add_product(&mut row, term(&c, m), term(&c, k - m), &[T::zero(); 3]);
+            add_product(&mut row, term(&c, m), term(&c, k - m), &SVector::from_element(T::zero()));
         }
         let factor = T::from_ratio(3, ((2 * k + 1) * (k - 3)) as i64);
-        c[k] = row.map(|coefficient| scaled(&coefficient, factor));
+        c[k] = row.map(|coefficient| coefficient * factor);
     }
-    c[0][0] = [T::one()];
+    c[0][0] = unity();
     c
+}
+
+/// 0 of all degrees.
+fn zero<T: Scalar, const N: usize>() -> Series<T, N> {
+    [[SVector::from_element(T::zero()); DEGREE + 1]; DEGREE + 1]
 }
 
 /// 1
 fn unity<T: Scalar, const N: usize>() -> Function<T, N> {
-    core::array::from_fn(|k| if k == 0 { T::one() } else { T::zero() })
-}
-
-fn sum<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>) -> Function<T, N> {
-    core::array::from_fn(|k| a[k] + b[k])
-}
-
-fn scaled<T: Scalar, const N: usize>(a: &Function<T, N>, factor: T) -> Function<T, N> {
-    a.map(|coefficient| factor * coefficient)
+    SVector::from_fn(|k, _| if k == 0 { T::one() } else { T::zero() })
 }
 
 /// tr f of f = c₀ + c₁X + c₂X²: 3c₀ + e₁c₁ + (e₁² − 2e₂)c₂.
-pub(super) fn trace<T: Scalar>(f: &[T; 3], [first, second, _]: &[T; 3]) -> T {
+pub(super) fn trace<T: Scalar>(f: &SVector<T, 3>, e: &SVector<T, 3>) -> T {
     let two = T::one() + T::one();
-    T::from_f64(3.0) * f[0] + *first * f[1] + (*first * *first - two * *second) * f[2]
+    T::from_f64(3.0) * f.x + e.x * f.y + (e.x * e.x - two * e.y) * f.z
 }
 
 /// The product of two functions: of their values, or of polynomials, the powers from X³ on reduced.
-pub(super) fn product<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Function<T, N>, e: &[T; 3]) -> Function<T, N> {
+pub(super) fn product<T: Scalar, const N: usize>(
+    a: &Function<T, N>,
+    b: &Function<T, N>,
+    e: &SVector<T, 3>,
+) -> Function<T, N> {
     let mut all = [T::zero(); 5];
     for (i, a) in a.iter().enumerate() {
-        for (entry, b) in all.iter_mut().skip(i).zip(b) {
+        for (entry, b) in all.iter_mut().skip(i).zip(b.iter()) {
             *entry += *a * *b;
         }
     }
@@ -194,19 +195,19 @@ pub(super) fn product<T: Scalar, const N: usize>(a: &Function<T, N>, b: &Functio
         all[1] += e[2] * fourth - e[1] * all[3];
         all[0] += e[2] * all[3];
     }
-    core::array::from_fn(|k| all.get(k).copied().unwrap_or_else(T::zero))
+    SVector::from_fn(|k, _| all.get(k).copied().unwrap_or_else(T::zero))
 }
 
 /// 1/p for p = 1 + ….
-fn inverse<T: Scalar, const N: usize>(p: &Series<T, N>, e: &[T; 3]) -> Series<T, N> {
-    let mut inverse: Series<T, N> = [[[T::zero(); N]; DEGREE + 1]; DEGREE + 1];
+fn inverse<T: Scalar, const N: usize>(p: &Series<T, N>, e: &SVector<T, 3>) -> Series<T, N> {
+    let mut inverse = zero();
     inverse[0][0] = unity();
     for n in 1..=DEGREE {
-        let mut row = [[T::zero(); N]; DEGREE + 1];
+        let mut row = inverse[n];
         for k in 1..=n {
             add_product(&mut row, term(p, k), term(&inverse, n - k), e);
         }
-        inverse[n] = row.map(|coefficient| scaled(&coefficient, -T::one()));
+        inverse[n] = row.map(|coefficient| -coefficient);
     }
     inverse
 }
@@ -216,37 +217,34 @@ fn riccati<T: Scalar, const N: usize>(
     start: Function<T, N>,
     x: Function<T, N>,
     rate: &Series<T, N>,
-    e: &[T; 3],
+    e: &SVector<T, 3>,
 ) -> Series<T, N> {
-    let mut v: Series<T, N> = [[[T::zero(); N]; DEGREE + 1]; DEGREE + 1];
+    let mut v = zero();
     let mut square = v;
     v[0][0] = start;
     square[0][0] = product(&start, &start, e);
     for n in 1..=DEGREE {
-        let mut row = [[T::zero(); N]; DEGREE + 1];
+        let mut row = v[n];
         // both halves of the square are the same
         for k in 1..n.div_ceil(2) {
             add_product(&mut row, term(&v, k), term(&v, n - k), e);
         }
-        row = row.map(|coefficient| sum(&coefficient, &coefficient));
+        row = row.map(|coefficient| coefficient + coefficient);
         if n % 2 == 0 {
             add_product(&mut row, term(&v, n / 2), term(&v, n / 2), e);
         }
         if n == 1 {
-            row[0] = sum(&row[0], &unity());
+            row[0] += unity();
         }
         let mut right = row.map(|coefficient| product(&coefficient, &x, e));
         for k in 1..=n {
             add_product(&mut right, term(&square, n - k), term(rate, k), e);
         }
         let factor = -T::from_ratio(1, (2 * n + 1) as i64);
-        let found = right.map(|coefficient| scaled(&coefficient, factor));
-        let twice = scaled(&start, T::from_f64(2.0));
+        v[n] = right.map(|coefficient| coefficient * factor);
+        let twice = start * T::from_f64(2.0);
         square[n] = row;
-        for (entry, value) in square[n].iter_mut().zip(&found) {
-            *entry = sum(entry, &product(&twice, value, e));
-        }
-        v[n] = found;
+        square[n].iter_mut().zip(&v[n]).for_each(|(entry, value)| *entry += product(&twice, value, e));
     }
     v
 }
@@ -263,11 +261,11 @@ fn add_product<T: Scalar, const N: usize>(
     sum: &mut Polynomial<T, N>,
     one: (&Polynomial<T, N>, usize),
     other: (&Polynomial<T, N>, usize),
-    e: &[T; 3],
+    e: &SVector<T, 3>,
 ) {
     for (i, a) in one.0.iter().enumerate().take(one.1 + 1) {
         for (entry, b) in sum.iter_mut().skip(i).zip(other.0.iter().take(other.1 + 1)) {
-            *entry = self::sum(entry, &product(a, b, e));
+            *entry += product(a, b, e);
         }
     }
 }
@@ -276,7 +274,7 @@ fn add_product<T: Scalar, const N: usize>(
 ///
 /// Then the first terms that are left, those of one degree more and of the next, are below `tolerance` or cannot be seen.
 #[cold]
-pub(super) fn reach<T: Real>(x: &[T; 3], series: &Coefficients<T>, tolerance: f64) -> [T; 9] {
+pub(super) fn reach<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>, tolerance: f64) -> [T; 9] {
     let negligible = larger(T::from_f64(tolerance), T::from_ratio(1, 8) * T::EPSILON);
     let sizes = sizes(x, series);
     let root = |size: T, n: usize| match size > T::zero() {
@@ -297,10 +295,10 @@ pub(super) fn reach<T: Real>(x: &[T; 3], series: &Coefficients<T>, tolerance: f6
 }
 
 /// The largest sum of the terms of each degree where α = 1.
-fn sizes<T: Real>(x: &[T; 3], series: &Coefficients<T>) -> [T; DEGREE + 1] {
+fn sizes<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>) -> [T; DEGREE + 1] {
     const SAMPLES: i64 = 16;
     let (mut low, mut high) = (x[0], x[0]);
-    for &other in x {
+    for &other in x.iter() {
         low = if other < low { other } else { low };
         high = if other > high { other } else { high };
     }

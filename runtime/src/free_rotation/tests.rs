@@ -310,10 +310,10 @@ proptest! {
         momentum in prop::array::uniform3(-1.0_f64..1.0),
     ) {
         let free = body(moments, 0.2);
-        let m = momentum.map(|component| component * free.scale);
+        let m = Vector3::from(momentum) * free.scale;
         let whole = free.gibbs_vector(&Vector3::from(momentum)).expect("solved");
         let (w, x) = free.of_lane(0).long_turn(None, &m).expect("solved");
-        let twice = Vector3::from(x) / w;
+        let twice = x / w;
         prop_assert!((whole - twice).norm() < 1e-15);
     }
 }

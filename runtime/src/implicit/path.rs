@@ -55,15 +55,10 @@ pub(super) fn follow<T: Real, const M: usize, const N: usize>(
         }
         // Steps that cannot be seen: the path ends here, in a point where several folds meet.
         if length <= T::from_f64(8.0) * T::EPSILON * homotopy.distance(&here.xi, here.s) {
-            return Err(unsolvable(here.s));
+            return Err(Error::unsolvable(here.s));
         }
     }
     Err(homotopy.exhausted(&here))
-}
-
-/// The error for a path that ends at s.
-fn unsolvable<T: Real>(s: T) -> Error {
-    Error::Unsolvable { solvable_fraction: s.to_f64(), step_size: None, solvable_step: None }
 }
 
 impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {

@@ -1,7 +1,6 @@
 //! The end of the path: s = 1 or the end of the branch, whichever comes first, lies between two points.
 
 use super::point::{Homotopy, Parameter, PathPoint};
-use super::unsolvable;
 use crate::implicit::Equation;
 use crate::{Error, Real};
 use nalgebra::SVector;
@@ -28,10 +27,10 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
         let width = (parameter.of(&after) - parameter.of(&before)) / parameter.slope(&before);
         let rise = width * before.slope_s;
         if after.s < T::one() && rise <= T::from_ratio(1, 1000) * before.s && before.s + rise < T::one() {
-            return Err(unsolvable(before.s + rise * half));
+            return Err(Error::unsolvable(before.s + rise * half));
         }
         if width <= round_off * homotopy.distance(&before.xi, before.s) {
-            return Err(unsolvable(before.s));
+            return Err(Error::unsolvable(before.s));
         }
         if let Some(xi) = homotopy.land(&before, width) {
             return Ok(xi);
@@ -46,7 +45,7 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
             Some(middle) if !middle.is_past && (middle.s - T::one()).abs() <= round_off => return Ok(middle.xi),
             Some(middle) if middle.is_past || middle.s > T::one() => after = middle,
             Some(middle) => before = middle,
-            None => return Err(unsolvable(before.s)),
+            None => return Err(Error::unsolvable(before.s)),
         }
     }
     Err(homotopy.exhausted(&before))

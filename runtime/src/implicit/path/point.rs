@@ -1,6 +1,5 @@
 //! Points of the path, and Newton's method with one unknown held fixed.
 
-use super::unsolvable;
 use crate::implicit::{Equation, Jacobian, is_much_smaller, size};
 use crate::orientation::Orientation;
 use crate::space::larger;
@@ -64,10 +63,10 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         if !(jacobian.all_finite() && rate.is_finite()) {
             return Err(Error::NotFinite { name: "the implicit equation of the step" });
         }
-        let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(unsolvable(T::zero()))?;
-        self.branch = self.equation.orientation().ok_or(unsolvable(T::zero()))?;
+        let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(Error::unsolvable(T::zero()))?;
+        self.branch = self.equation.orientation().ok_or(Error::unsolvable(T::zero()))?;
         if orientation != self.branch || !slope_xi.is_finite() {
-            return Err(unsolvable(T::zero()));
+            return Err(Error::unsolvable(T::zero()));
         }
         (self.scale, self.weight) = (slope_xi.max_abs(), size(&rate));
         Ok(PathPoint { xi: zero, s: T::zero(), slope_xi, slope_s: T::one(), is_past: false })
