@@ -1,6 +1,6 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
-use crate::linear::{eliminate, multiple_of_identity, rows};
+use crate::linear::divided;
 use crate::scheme::Scheme;
 use crate::{Carried, Clebsch, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
 use nalgebra::{SMatrix, SVector};
@@ -116,9 +116,7 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
 /// derivatives along η at fixed F. `None` where ∂F⁻ℓd/∂η′ is singular.
 #[inline]
 pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
-    let mut rows_of_inverse = multiple_of_identity(T::one());
-    eliminate(rows(&edge.before_by_end), &mut rows_of_inverse)?;
-    let inverse = SMatrix::from_fn(|i, j| rows_of_inverse[i][j]);
+    let inverse = divided(&edge.before_by_end, &SMatrix::identity())?;
     let turned = times(&inverse, &edge.before);
     Some(Tangent {
         motion_by_motion: edge.adjoint - turned,
