@@ -30,9 +30,9 @@ pub use extremal::{Extremal, Node, States};
 pub use guess::Guess;
 pub use several::Way;
 
-use crate::newton::{Bracket, Sample, Trial};
+use crate::newton::{Bracket, Trial};
 use crate::parameters::check_finite;
-use crate::scheme::{Constants, Scheme};
+use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
 use core::iter::once;
 use core::ops::RangeInclusive;
@@ -148,9 +148,10 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         'a: 'p,
     {
         self.check(start, &guess, path.len())?;
-        let mut search = self.search(self.stepper.h, &self.stepper.constants, start, target, path);
-        search.prepare(&guess)?;
-        let (summary, iterations) = search.newton(guess != Guess::Geodesic)?;
+        let Stepper { system, h, constants } = self.stepper;
+        let problem = Endpoints { system, h: *h, constants, time: self.time, start, target };
+        let mut search = Search { problem, path, last: *start };
+        let (summary, iterations) = search.newton(&guess)?;
         let end = search.last;
         Ok(Extremal {
             stepper: self.stepper,
@@ -191,36 +192,20 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         let accuracy = S::Scalar::from_f64(4.0) * third * third;
         let mut guess = guess;
         let trial = |h| {
-            let constants = S::Scheme::constants(&self.stepper.system, h)?;
-            let mut search = self.search(h, &constants, start, target, path);
-            search.prepare(&guess)?;
-            let (_, sweeps) = search.newton(guess != Guess::Geodesic)?;
+            let system = &self.stepper.system;
+            let constants = S::Scheme::constants(system, h)?;
+            let problem = Endpoints { system, h, constants: &constants, time: self.time, start, target };
+            let mut search = Search { problem, path, last: *start };
+            let (_, sweeps) = search.newton(&guess)?;
             guess = Guess::Path;
             let step = third * h;
             let longer = search.sum_at(h + step)?;
             let shorter = search.sum_at(h - step)?;
             let size = (longer.abs() + shorter.abs()) / h;
-            let sample = Sample { h, slope: (longer - shorter) / (step + step), size };
-            Ok(Trial { answer: h, sample, sweeps })
+            Ok(Trial { answer: h, sweeps, slope: (longer - shorter) / (step + step), size })
         };
         let (h, _) = bracket.critical(self.stepper.h, accuracy, false, trial)?;
         Ok(h)
-    }
-
-    /// The search of an extremal with the step size `h`, for which there are these constants.
-    fn search<'p>(
-        &self,
-        h: S::Scalar,
-        constants: &'p Constants<S>,
-        start: &'p S::Configuration,
-        target: Option<&'p S::Configuration>,
-        path: &'p mut [Node<S, M>],
-    ) -> Search<'p, S, M>
-    where
-        'a: 'p,
-    {
-        let problem = Endpoints { system: &self.stepper.system, h, constants, time: self.time, start, target };
-        Search { problem, path, last: *start }
     }
 
     /// Start and guess are finite, the start on the declared space, nodes those of whole steps.
@@ -230,12 +215,10 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
             return Err(Error::PathLength { nodes, per_step });
         }
         self.stepper.check_configuration(start)?;
-        match guess {
-            Guess::Velocity(velocity) if !velocity.is_finite() => {
-                Err(Error::NotFinite { name: "the guessed velocity" })
-            }
-            _ => Ok(()),
+        if matches!(guess, Guess::Velocity(velocity) if !velocity.is_finite()) {
+            return Err(Error::NotFinite { name: "the guessed velocity" });
         }
+        Ok(())
     }
 }
 

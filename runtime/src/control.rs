@@ -13,8 +13,7 @@
 //! | `iterate` | what is known between sweeps, and decided by it |
 //! | `sweep` | linearises and eliminates backward |
 //! | `quadratic` | the model of one step, its elimination, and the U×U linear algebra of one input |
-//! | `gramian` | the D×D linear algebra of the target |
-//! | `end` | the gap to the target and the changes that close it |
+//! | `end` | the gap to the target, the changes that close it, and the multipliers of the target |
 //! | `barrier` | bounds: slacks, multipliers and their sequence of barriers |
 //! | `search` | follows corrected inputs forward: how much of a correction is made, and how saddles are left |
 //! | `optimum` | what the caller stores for each step, and what a problem is answered with |
@@ -22,7 +21,6 @@
 mod attempt;
 mod barrier;
 mod end;
-mod gramian;
 mod iterate;
 mod newton;
 mod optimum;
@@ -33,11 +31,10 @@ mod sweep;
 pub use optimum::{Optimum, Stage};
 
 use crate::fields::getters;
-use crate::newton::{Bracket, Sample, Trial};
+use crate::newton::{Bracket, Trial};
 use crate::parameters::check_finite;
 use crate::{Controlled, Error, Real, Scalar, Space};
 use core::ops::RangeInclusive;
-use end::Goal;
 use nalgebra::SVector;
 use num_traits::Zero;
 use sweep::{Plan, Problem};
@@ -93,7 +90,6 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     getters! {
         /// The system.
         ref system: S;
-
         /// The step size h.
         copy step_size: S::Scalar;
     }
@@ -142,7 +138,10 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let solved = self.plan(start, &target, self.step_size, &self.constants, plan).attempt()?;
+        let Self { system, step_size: h, constants, time } = self;
+        let (target, lengths) = (&target, Problem::lengths(system, &target));
+        let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
+        let solved = Plan { problem, stages: plan, last: *start, sweeps: 0 }.attempt()?;
         Ok(Optimum { stages: plan, ..solved })
     }
 
@@ -168,28 +167,19 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let bracket = Bracket::within(&steps)?;
         self.check(start, &target, plan)?;
         let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
+        let system = &self.system;
+        let lengths = Problem::lengths(system, &target);
         let trial = |h| {
-            let constants = self.system.prepare(h)?;
-            let mut plan = self.plan(start, &target, h, &constants, plan);
+            let constants = system.prepare(h)?;
+            let problem =
+                Problem { system, constants: &constants, h, time: self.time, start, target: &target, lengths };
+            let mut plan = Plan { problem, stages: plan, last: *start, sweeps: 0 };
             let answer = plan.attempt()?;
-            Ok(Trial { sample: plan.slope(&answer.end)?, sweeps: answer.iterations, answer })
+            let (slope, size) = plan.slope()?;
+            Ok(Trial { sweeps: answer.iterations, answer, slope, size })
         };
         let (solved, iterations) = bracket.critical(self.step_size, accuracy, true, trial)?;
         Ok(Optimum { stages: plan, iterations, ..solved })
-    }
-
-    /// A plan for the step size `h`, for which there are these constants.
-    fn plan<'a>(
-        &'a self,
-        start: &'a S::Place,
-        target: &'a Target<S::Place>,
-        h: S::Scalar,
-        constants: &'a S::Constants,
-        stages: &'a mut [Stage<S, D, U, C>],
-    ) -> Plan<'a, S, D, U, C> {
-        let goal = Goal::of(&self.system, target);
-        let problem = Problem { system: &self.system, constants, h, time: self.time, start, goal };
-        Plan { problem, stages, sweeps: 0 }
     }
 
     /// Start, target and guess are finite and where places are.
@@ -198,9 +188,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             return Err(Error::PathLength { nodes: 0, per_step: 1 });
         }
         self.system.check_place(start)?;
-        if let Some(goal) = target.place() {
-            self.system.check_place(goal)?;
-        }
+        target.place().map_or(Ok(()), |goal| self.system.check_place(goal))?;
         if plan.iter().all(|stage| stage.input.is_finite()) {
             Ok(())
         } else {
@@ -210,11 +198,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// dV/dh of a solution.
-    fn slope(&self, last: &S::Place) -> Result<Sample<T>, Error> {
+    /// dV/dh of a solution, and the sum of the sizes of its terms.
+    fn slope(&self) -> Result<(T, T), Error> {
         let Problem { system, constants, h, .. } = self.problem;
         let steps = self.stages.len();
-        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), last);
+        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), &self.last);
         let mut slope = endpoint.by_time * T::from_f64(steps as f64);
         let mut size = slope.abs();
         for (index, stage) in self.stages.iter().enumerate() {
@@ -231,6 +219,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             slope += part;
             size += part.abs();
         }
-        Ok(Sample { h, slope, size })
+        Ok((slope, size))
     }
 }

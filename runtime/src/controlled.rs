@@ -185,14 +185,6 @@ pub struct EndpointExpansion<T, const D: usize> {
     pub curvature: SMatrix<T, D, D>,
 }
 
-impl<T: Scalar, const D: usize> EndpointExpansion<T, D> {
-    /// No price of the end.
-    pub(crate) fn none() -> Self {
-        let zero = T::zero();
-        Self { price: zero, by_time: zero, slope: SVector::from_element(zero), curvature: SMatrix::from_element(zero) }
-    }
-}
-
 /// What separates a place from a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival<T, const D: usize> {

@@ -5,13 +5,11 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `curvature` | what is made of a Hessian that is not definite, and its damping |
 //! | `ldl` | L Δ Lᵀ of a definite pivot |
 //! | `spectrum` | eigenvalues of a pivot that is not definite |
 //! | `gap` | what separates an end from its target |
 //! | `free_time` | the step size at which the action or the price is critical |
 
-mod curvature;
 mod free_time;
 mod gap;
 mod ldl;
@@ -19,8 +17,45 @@ mod spectrum;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use curvature::{Curvature, adapted};
-pub(crate) use free_time::{Bracket, Sample, Trial};
+pub(crate) use free_time::{Bracket, Trial};
 pub(crate) use gap::{arc_per_chord, is_reached, shortest};
 pub(crate) use ldl::{Ldl, UNITS};
 pub(crate) use spectrum::{Equilibrated, Spectrum};
+
+use crate::Real;
+use crate::space::larger;
+
+/// How a sweep takes the Hessian, and what it adds to its diagonal: multiples of a stiffness that path or plan have by themselves.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Curvature<T> {
+    /// Whether eigenvalues of the wrong sign are turned over, so that steps go downhill. Otherwise steps go to the critical point of the
+    /// quadratic model.
+    pub is_mirrored: bool,
+    pub damping: T,
+    /// A small one keeps directions without curvature from being left to round-off.
+    pub steadiness: T,
+}
+
+impl<T: Real> Curvature<T> {
+    /// As it is, but for this steadiness.
+    pub fn exact(steadiness: T) -> Self {
+        Self { is_mirrored: false, damping: T::zero(), steadiness }
+    }
+
+    /// Downhill.
+    pub fn mirrored(damping: T, steadiness: T) -> Self {
+        Self { is_mirrored: true, damping, steadiness }
+    }
+}
+
+/// The damping after a correction that was halved so many times: eight times less where it was not, eight times more where only an eighth or
+/// less was made. Below `least` it is none.
+pub(crate) fn adapted<T: Real>(damping: T, least: T, halvings: usize) -> T {
+    let factor = T::from_f64(8.0);
+    match halvings {
+        0 if damping > least => damping / factor,
+        0 => T::zero(),
+        1 | 2 => damping,
+        _ => larger(damping, least) * factor,
+    }
+}

@@ -1,19 +1,15 @@
 //! What steered systems have in common, for generated code: checks, and the second derivatives of an implicit step.
 
 use crate::linear::{eliminate, rows};
+use crate::matrices::{Blocks, embedded};
 use crate::newton::shortest;
 use crate::scheme::{At, Constants, Scheme};
 use crate::space::{lane_of, set_lane};
-use crate::stepper::{check_configuration, check_momentum, check_on_orbit as on_orbit};
+use crate::stepper::{check_configuration, check_momentum};
 use crate::tangent::{of_edge, times};
 use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
-
-/// Whether a configuration is finite and, by its defect, where configurations are.
-pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
-    on_orbit(q, defect)
-}
 
 /// A place that a step has reached, where it is finite.
 #[inline]
@@ -84,12 +80,12 @@ pub fn endpoint<T: Scalar, const M: usize, const D: usize>(
     slope: &SVector<T, M>,
     curvature: &SMatrix<T, M, M>,
 ) -> EndpointExpansion<T, D> {
-    EndpointExpansion { price, by_time, slope: extended(slope), curvature: extended(curvature) }
+    EndpointExpansion { price, by_time, slope: embedded(slope, 0, 0), curvature: embedded(curvature, 0, 0) }
 }
 
 /// No price of the end.
 pub fn no_endpoint<T: Scalar, const D: usize>() -> EndpointExpansion<T, D> {
-    EndpointExpansion::none()
+    EndpointExpansion { price: T::zero(), by_time: T::zero(), slope: SVector::zeros(), curvature: SMatrix::zeros() }
 }
 
 /// Bounds as functions of a place of which q is the first part.
@@ -103,26 +99,12 @@ pub fn bounds<T: Scalar, const M: usize, const D: usize, const U: usize, const C
 ) -> BoundsExpansion<T, D, U, C> {
     BoundsExpansion {
         values,
-        by_place: extended(by_motion),
+        by_place: embedded(by_motion, 0, 0),
         by_input,
-        place_curvature: extended(motions),
-        mixed_curvature: extended(mixed),
+        place_curvature: embedded(motions, 0, 0),
+        mixed_curvature: embedded(mixed, 0, 0),
         input_curvature,
     }
-}
-
-/// A matrix with zeros to the right of it and below.
-#[inline]
-fn extended<T: Scalar, const R: usize, const C: usize, const R2: usize, const C2: usize>(
-    a: &SMatrix<T, R, C>,
-) -> SMatrix<T, R2, C2> {
-    SMatrix::from_fn(|i, j| if i < R && j < C { a[(i, j)] } else { T::zero() })
-}
-
-/// A + B
-#[inline]
-fn plus<T: Scalar, const R: usize, const C: usize>(a: &SMatrix<T, R, C>, b: &SMatrix<T, R, C>) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|i, j| a[(i, j)] + b[(i, j)])
 }
 
 /// ℓ of a step with its derivatives along motions of q and along inputs.
@@ -170,8 +152,8 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         let tangent = of_edge(edge)?;
         let motion_by_input = -times(&tangent.motion_by_momentum, before);
         let momentum_by_input = after + times(&edge.after_by_end, &motion_by_input);
-        let beta = SVector::from_fn(|i, _| costate[M + i]);
-        let alpha = SVector::<T, M>::from_fn(|i, _| costate[i]);
+        let alpha: SVector<T, M> = costate.block(0, 0);
+        let beta = costate.block(M, 0);
         let wanted = alpha + times(&edge.after_by_end.transpose(), &beta);
         let mut multiplier: [[T; 1]; M] = from_fn(|i| [wanted[i]]);
         eliminate(rows(&edge.before_by_end.transpose()), &mut multiplier)?;
@@ -197,53 +179,32 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
             _ => curvature[(i, j)],
         });
         // how η, ζ and the inputs change with (η, ν) and with u
-        let by_place = SMatrix::<T, W, D>::from_fn(|i, j| self.of_place(i, j));
-        let by_input = SMatrix::<T, W, U>::from_fn(|i, j| self.of_input(i, j));
+        let tangent = &self.tangent;
+        let carried = tangent.motion_by_motion - self.adjoint;
+        let by_place: SMatrix<T, W, D> = embedded(&SMatrix::<T, M, M>::identity(), 0, 0)
+            + embedded(&carried, M, 0)
+            + embedded(&tangent.motion_by_momentum, M, M);
+        let by_input: SMatrix<T, W, U> =
+            embedded(&self.motion_by_input, M, 0) + embedded(&SMatrix::<T, U, U>::identity(), 2 * M, 0);
         let (bent_places, bent_inputs) = (times(curvature, &by_place), times(curvature, &by_input));
         let (places, inputs) = (by_place.transpose(), by_input.transpose());
         Expansion {
             next,
-            by_place: SMatrix::from_fn(|i, j| self.tangent_entry(i, j)),
-            by_input: SMatrix::from_fn(|i, j| match i < M {
-                true => self.motion_by_input[(i, j)],
-                false => self.momentum_by_input[(i - M, j)],
+            by_place: SMatrix::from_fn(|i, j| match (i < M, j < M) {
+                (true, true) => tangent.motion_by_motion[(i, j)],
+                (true, false) => tangent.motion_by_momentum[(i, j - M)],
+                (false, true) => tangent.momentum_by_motion[(i - M, j)],
+                (false, false) => tangent.momentum_by_momentum[(i - M, j - M)],
+            }),
+            by_input: SMatrix::from_fn(|i, j| {
+                if i < M { self.motion_by_input[(i, j)] } else { self.momentum_by_input[(i - M, j)] }
             }),
             price: price.price,
-            price_by_place: extended(&price.by_motion),
+            price_by_place: embedded(&price.by_motion, 0, 0),
             price_by_input: price.by_input,
-            place_curvature: plus(&times(&places, &bent_places), &extended(&price.motions)),
-            mixed_curvature: plus(&times(&inputs, &bent_places), &extended(&price.mixed)),
-            input_curvature: plus(&times(&inputs, &bent_inputs), &price.inputs),
-        }
-    }
-
-    /// ∂(η, ζ, u)_i/∂(η, ν)_j
-    fn of_place(&self, i: usize, j: usize) -> T {
-        match (i < M, i < 2 * M) {
-            (true, _) if i == j => T::one(),
-            (false, true) if j < M => self.tangent.motion_by_motion[(i - M, j)] - self.adjoint[(i - M, j)],
-            (false, true) => self.tangent.motion_by_momentum[(i - M, j - M)],
-            _ => T::zero(),
-        }
-    }
-
-    /// ∂(η, ζ, u)_i/∂u_j
-    fn of_input(&self, i: usize, j: usize) -> T {
-        match (i < M, i < 2 * M) {
-            (false, true) => self.motion_by_input[(i - M, j)],
-            (false, false) if i - 2 * M == j => T::one(),
-            _ => T::zero(),
-        }
-    }
-
-    /// ∂(η′, N⁺)_i/∂(η, ν)_j
-    fn tangent_entry(&self, i: usize, j: usize) -> T {
-        let tangent = &self.tangent;
-        match (i < M, j < M) {
-            (true, true) => tangent.motion_by_motion[(i, j)],
-            (true, false) => tangent.motion_by_momentum[(i, j - M)],
-            (false, true) => tangent.momentum_by_motion[(i - M, j)],
-            (false, false) => tangent.momentum_by_momentum[(i - M, j - M)],
+            place_curvature: times(&places, &bent_places) + embedded(&price.motions, 0, 0),
+            mixed_curvature: times(&inputs, &bent_places) + embedded(&price.mixed, 0, 0),
+            input_curvature: times(&inputs, &bent_inputs) + price.inputs,
         }
     }
 }

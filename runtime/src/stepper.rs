@@ -70,8 +70,8 @@ pub(crate) fn check_configuration<S: Clebsch>(system: &S, q: &S::Configuration) 
     check_on_orbit(q, system.orbit_defect(q))
 }
 
-/// The same with the defect of q.
-pub(crate) fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
+/// q is finite and, by this defect, on its orbit, up to √ε.
+pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
     check_finite("the configuration", q)?;
     let tolerance = T::Lane::EPSILON.sqrt();
     check_lanes::<T>(|lane| {

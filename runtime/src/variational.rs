@@ -3,6 +3,7 @@
 use crate::parts::Varied;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, Ends, FirstDerivatives, SecondDerivatives};
 use crate::scheme::{At, Constants};
+use crate::steered::no_endpoint;
 use crate::{Clebsch, EndpointExpansion, Error};
 use nalgebra::{SMatrix, SVector};
 
@@ -105,7 +106,7 @@ pub trait Variational<const M: usize>:
     /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
     #[inline]
     fn endpoint(&self, _t: Self::Scalar, _q: &Self::Configuration) -> EndpointExpansion<Self::Scalar, M> {
-        EndpointExpansion::none()
+        no_endpoint()
     }
 
     /// ξ_Q(q), the velocity of q that moves along exp(sξ), at s = 0.

@@ -1,8 +1,9 @@
 //! The last vertex: what separates it from the target and which of its motions are free.
 
+use super::sweep::Endpoints;
 use crate::newton::{arc_per_chord, is_reached, shortest};
 use crate::space::larger;
-use crate::{EndpointExpansion, Real, Space, Variational};
+use crate::{Error, Real, Space, Variational};
 use nalgebra::{SMatrix, SVector};
 
 /// What is known where a path ends.
@@ -26,49 +27,45 @@ pub(super) struct PathEnd<T, const M: usize> {
     pub curvature: Option<SMatrix<T, M, M>>,
 }
 
-impl<T: Real, const M: usize> PathEnd<T, M> {
-    /// The end of a path at `q`.
+impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M> {
+    /// The end of a path of so many edges at `q`. Where it may end anywhere, all motions are free, and there is no gap.
     ///
     /// The kernel is of eigenvalues below √ε of the largest.
     #[inline]
-    pub fn of<S: Variational<M, Scalar = T>>(system: &S, q: &S::Configuration, target: &S::Configuration) -> Self {
-        let approach = system.approach(q, target);
-        let (closing, kernel) = shortest(&system.orbit_metric(q), &approach);
+    pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<T, M> {
+        let Some(target) = self.target else {
+            let endpoint = self.system.endpoint(self.time_of_end(edges), q);
+            return PathEnd {
+                closing: SVector::zeros(),
+                kernel: Some(SMatrix::identity()),
+                distance: T::zero(),
+                along: T::zero(),
+                scale: q.max_abs(),
+                price: endpoint.price,
+                slope: endpoint.slope,
+                curvature: Some(endpoint.curvature),
+            };
+        };
+        let approach = self.system.approach(q, target);
+        let (closing, kernel) = shortest(&self.system.orbit_metric(q), &approach);
         // Rounding makes the square of 0 negative.
         let along = larger(T::zero(), closing.dot(&approach)).sqrt();
         let scale = larger(target.max_abs(), q.max_abs());
         let is_round_off = along <= T::from_f64(4.0) * T::EPSILON * scale;
-        Self {
-            closing: if is_round_off { SVector::from_element(T::zero()) } else { closing },
+        PathEnd {
+            closing: if is_round_off { SVector::zeros() } else { closing },
             kernel,
             distance: q.distance_squared(target).sqrt(),
             along,
             scale,
             price: T::zero(),
-            slope: SVector::from_element(T::zero()),
+            slope: SVector::zeros(),
             curvature: None,
         }
     }
+}
 
-    /// The end of a path that may end anywhere: all motions are free, and there is no gap.
-    pub fn free(endpoint: &EndpointExpansion<T, M>, scale: T) -> Self {
-        Self {
-            closing: SVector::from_element(T::zero()),
-            kernel: Some(SMatrix::identity()),
-            distance: T::zero(),
-            along: T::zero(),
-            scale,
-            price: endpoint.price,
-            slope: endpoint.slope,
-            curvature: Some(endpoint.curvature),
-        }
-    }
-
-    /// The derivative of the momentum at the end, with that of the price.
-    pub fn bent(&self, momentum: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
-        self.curvature.map_or(*momentum, |curvature| momentum + curvature)
-    }
-
+impl<T: Real, const M: usize> PathEnd<T, M> {
     /// Whether nothing is left that motions along the orbit can close.
     #[inline]
     pub fn is_closed(&self) -> bool {
@@ -89,6 +86,11 @@ impl<T: Real, const M: usize> PathEnd<T, M> {
     /// Whether the gap stands at a right angle to the orbit, so that no small motion of q_N closes it.
     pub fn is_orthogonal(&self) -> bool {
         !self.is_reached() && self.along <= T::EPSILON.sqrt() * self.distance
+    }
+
+    /// The error where none of the gap can be closed.
+    pub fn unreachable(&self) -> Error {
+        Error::Unreachable { distance: self.distance.to_f64() }
     }
 
     /// The closing motion with the length of the arc over the gap.

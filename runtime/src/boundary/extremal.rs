@@ -39,10 +39,8 @@ impl<S: Clebsch, const M: usize> Node<S, M> {
     getters! {
         /// The configuration q_k where the edge starts.
         ref configuration: S::Configuration;
-
         /// The increment F_k − I of the group element that moves q_k to q_{k+1}; for translations F_k itself.
         ref increment: S::Element;
-
         /// The momentum N_k = F⁻ℓd at q_k, before the kick of the step that follows.
         ref momentum: SVector<S::Scalar, M>;
     }
@@ -80,26 +78,19 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
     getters! {
         /// The action Σ ℓd, in the unit of ℓd: J·s.
         copy action: S::Scalar;
-
         /// The number of linearisations of the path that were made, without those of a path of few edges that it was begun with.
         copy iterations: u32;
-
         /// The largest |F⁺ℓd(edge k−1) − F⁻ℓd(edge k)| that round-off has left, in the unit of the momentum.
         copy residual: S::Scalar;
-
         /// The distance |target − q_N| that round-off has left, as the root of the sum of squares of all entries.
         copy gap: S::Scalar;
-
         /// The Morse index, the number of independent variations that make the action smaller: 0 on a strict local minimum, where no
         /// vertex is conjugate to the target. Counted in the last linearisation, within √ε of the path. For a negative step size, those that make it larger.
         copy negative: usize;
-
         /// The momentum N_N at the target, before the kick of a step from there.
         ref final_momentum: SVector<S::Scalar, M>;
-
         /// The configuration q_N: the target up to the [`gap`](Self::gap).
         ref end: S::Configuration;
-
         /// The edges in order, with configuration, increment, momentum and gain.
         copy nodes: &'a [Node<S, M>];
     }

@@ -1,6 +1,5 @@
 //! The path that Newton's method starts from. A path of many edges is begun with few, which cost little.
 
-use super::newton::unreachable;
 use super::sweep::{Endpoints, Search};
 use crate::newton::Curvature;
 use crate::scheme::Scheme;
@@ -39,42 +38,37 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
     /// # Errors
     /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
     pub fn prepare(&mut self, guess: &Guess<T, M>) -> Result<(), Error> {
-        match guess {
-            Guess::Geodesic if self.problem.target.is_some() => {
+        let start = match guess {
+            Guess::Geodesic => Some(Space::origin()),
+            Guess::Velocity(velocity) => Some(velocity * (self.problem.h / T::from_f64(S::EDGES.max(1) as f64))),
+            Guess::Path => None,
+        };
+        let mut motions = None;
+        if let Some(start) = start {
+            let is_geodesic = *guess == Guess::Geodesic && self.problem.target.is_some();
+            if is_geodesic {
                 let gap = self.problem.end(self.problem.start, self.path.len());
                 if gap.is_orthogonal() {
                     return Err(Error::UndeterminedDirection { distance: gap.distance.to_f64() });
                 }
-                let eta = self.constant(Space::origin());
-                let motions = self.coarse(&eta);
-                self.fill(&eta);
-                match motions {
-                    Some(motions) => {
-                        let mut motion = interpolated(&motions, self.path.len());
-                        self.displace(|index, _| motion(index + 1));
-                    }
-                    None => self.roll_out(),
-                }
             }
-            Guess::Geodesic => {
-                let eta = self.constant(Space::origin());
-                self.fill(&eta);
-                self.roll_out();
+            let eta = self.constant(start);
+            motions = if is_geodesic { self.coarse(&eta) } else { None };
+            self.fill(&eta);
+        }
+        match motions {
+            Some(motions) => {
+                let edges = self.path.len();
+                self.displace(|index, _| interpolated(&motions, edges, index + 1));
             }
-            Guess::Velocity(velocity) => {
-                let edges = T::from_f64(S::EDGES.max(1) as f64);
-                let eta = self.constant(velocity * (self.problem.h / edges));
-                self.fill(&eta);
-                self.roll_out();
-            }
-            Guess::Path => self.roll_out(),
+            None => self.roll_out(),
         }
         self.close(T::from_ratio(1, 8));
         let gap = self.end();
         if !(gap.distance.is_finite() && gap.along.is_finite()) {
             return Err(Error::NotFinite { name: "the end of the guessed path" });
         }
-        if gap.is_orthogonal() { Err(unreachable(&gap)) } else { Ok(()) }
+        if gap.is_orthogonal() { Err(gap.unreachable()) } else { Ok(()) }
     }
 
     /// η of the group element τ(η) that all edges share, corrected so that the end is brought to the target.
@@ -182,25 +176,16 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
     }
 }
 
-/// The motions of the vertices of a path of so many edges after the first, one after the other: cubics through those of the four coarse
-/// vertices about each.
-pub(super) fn interpolated<T: Real, const M: usize>(
-    motions: &Motions<T, M>,
-    edges: usize,
-) -> impl FnMut(usize) -> SVector<T, M> {
+/// The motion of vertex k of a path of so many edges: a cubic through those of the four coarse vertices about it.
+pub(super) fn interpolated<T: Real, const M: usize>(motions: &Motions<T, M>, edges: usize, k: usize) -> SVector<T, M> {
     let half = T::from_ratio(1, 2);
     let sixth = T::from_ratio(1, 6);
     let spacing = T::from_f64(COARSE as f64) / T::from_f64(edges as f64);
-    let mut first = 0;
-    move |k| {
-        while first < COARSE - 3 && k * COARSE >= (first + 2) * edges {
-            first += 1;
-        }
-        let x = T::from_f64(k as f64) * spacing - T::from_f64(first as f64);
-        let (a, b, c) = (x - T::one(), x - T::from_f64(2.0), x - T::from_f64(3.0));
-        let (early, late) = (b * c, x * a);
-        let weights = [-a * early * sixth, x * early * half, -late * c * half, late * b * sixth];
-        let nearest = motions.iter().skip(first).zip(weights);
-        nearest.fold(SVector::from_element(T::zero()), |sum, (motion, weight)| sum + motion * weight)
-    }
+    let first = (k * COARSE / edges.max(1)).saturating_sub(1).min(COARSE - 3);
+    let x = T::from_f64(k as f64) * spacing - T::from_f64(first as f64);
+    let (a, b, c) = (x - T::one(), x - T::from_f64(2.0), x - T::from_f64(3.0));
+    let (early, late) = (b * c, x * a);
+    let weights = [-a * early * sixth, x * early * half, -late * c * half, late * b * sixth];
+    let nearest = motions.iter().skip(first).zip(weights);
+    nearest.fold(SVector::zeros(), |sum, (motion, weight)| sum + motion * weight)
 }

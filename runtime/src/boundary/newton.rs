@@ -1,6 +1,6 @@
 //! Newton's method on a path, and what is done where it does not contract.
 
-use super::end::PathEnd;
+use super::guess::Guess;
 use super::sweep::Search;
 use super::vertex::PathSummary;
 use crate::newton::{Curvature, adapted};
@@ -22,11 +22,6 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
     /// Whether the next correction is half of this one at most. Written so that NaN is none.
     fn is_halved_by(&self, next: &Self) -> bool {
         next.size <= T::from_ratio(1, 2) * self.size
-    }
-
-    /// Whether the correction was small and the next one is not smaller: it has gone where the action does not bend, or is round-off.
-    fn is_led_astray(&self, next: &Self) -> bool {
-        self.is_near() && !self.is_halved_by(next)
     }
 
     /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
@@ -53,10 +48,33 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.size <= T::EPSILON.sqrt()
             && before.is_some_and(|before| self.size * contraction(before) * contraction(before) <= T::EPSILON)
     }
+
+    /// Whether a full step is made next. Comparisons are written so that NaN is none.
+    #[inline]
+    fn is_progress(&self, before: Option<&Self>, any_index: bool, curvature: Curvature<T>) -> bool {
+        if self.negative > 0 && !any_index {
+            return false;
+        }
+        match before {
+            // One that is larger than the path leads to another extremal than that near the guess.
+            None if any_index && curvature == Curvature::exact(T::zero()) => self.size <= T::one(),
+            None => self.size.is_finite(),
+            Some(before) => {
+                let is_lower = || self.negative == 0 && before.is_lower(self.action, T::one());
+                before.is_halved_by(self) || (!before.is_near() && is_lower())
+            }
+        }
+    }
+
+    /// Armijo's rule for the action after a step of this fraction: it took at least a hundredth of what the slope promises.
+    fn is_lower(&self, action: T, fraction: T) -> bool {
+        let promised = self.decrement * fraction * T::from_ratio(1, 100);
+        (action - self.action) * self.sign <= -(promised * self.sign)
+    }
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
-    /// The critical point of the action near the path; where `any_index` is false, a minimum is looked for. With the number of sweeps.
+    /// The critical point of the action near the guess, and the number of sweeps.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
     /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
@@ -67,9 +85,12 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::Unreachable`], [`Error::NoExtremal`].
+    /// [`Error::NotFinite`], [`Error::Unreachable`], [`Error::UndeterminedDirection`], [`Error::NoExtremal`].
     #[inline]
-    pub fn newton(&mut self, mut any_index: bool) -> Result<(PathSummary<T, M>, u32), Error> {
+    pub fn newton(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {
+        self.prepare(guess)?;
+        // A minimum is looked for where this is false.
+        let mut any_index = *guess != Guess::Geodesic;
         let zero = T::zero();
         let seen = T::EPSILON.sqrt();
         let exact = Curvature::exact(zero);
@@ -86,14 +107,15 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
             let is_damped = curvature.damping > zero;
             let is_closed = gap.is_closed() || gap.is_orthogonal();
             if !is_damped && summary.has_converged(before.as_ref(), is_closed, curvature) {
-                return if gap.is_reached() { Ok((summary, sweeps)) } else { Err(unreachable(&gap)) };
+                return if gap.is_reached() { Ok((summary, sweeps)) } else { Err(gap.unreachable()) };
             }
             if curvature.is_mirrored && !is_damped && summary.negative > 0 && size <= seen {
                 // By symmetry no gradient leads away from this saddle, and the action has no digits left to go by.
                 (curvature, any_index, before) = (exact, true, None);
                 continue;
             }
-            let is_astray = before.is_some_and(|before| before.is_led_astray(&summary));
+            // A small correction that the next one does not halve has gone where the action does not bend, or is round-off.
+            let is_astray = before.is_some_and(|before| before.is_near() && !before.is_halved_by(&summary));
             if curvature.is_mirrored && !is_astray {
                 let halvings = self.descend(&summary);
                 if halvings.is_none() && curvature.damping > T::from_f64(DAMPING_LIMIT) {
@@ -101,12 +123,15 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
                 }
                 curvature.damping = adapted(curvature.damping, T::from_ratio(1, 8), halvings.unwrap_or(HALVINGS));
                 before = halvings.map(|_| summary);
-            } else if self.is_progress(&summary, before.as_ref(), any_index, curvature) {
+            } else if summary.is_progress(before.as_ref(), any_index, curvature) {
                 self.correct(T::one());
-                if summary.is_last(before.as_ref())
-                    && let Some(summary) = self.found(&summary)
-                {
-                    return Ok((summary, sweeps));
+                if summary.is_last(before.as_ref()) {
+                    let gap = self.end();
+                    let found = self.measure(&gap, &summary);
+                    let is_closed = gap.along <= found.round_off() * gap.scale && gap.is_reached();
+                    if is_closed && found.is_stationary(16.0) {
+                        return Ok((found, sweeps));
+                    }
                 }
                 before = Some(summary);
             } else {
@@ -124,45 +149,6 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
         Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
     }
 
-    /// What is known of a path after its last correction, if that is what it was: if the gap is closed and the residual is round-off.
-    #[inline]
-    fn found(&mut self, before: &PathSummary<T, M>) -> Option<PathSummary<T, M>> {
-        let gap = self.end();
-        let summary = self.measure(&gap, before);
-        let is_closed = gap.along <= summary.round_off() * gap.scale && gap.is_reached();
-        (is_closed && summary.is_stationary(16.0)).then_some(summary)
-    }
-
-    /// Whether a full step is made next. Comparisons are written so that NaN is none.
-    #[inline]
-    fn is_progress(
-        &self,
-        summary: &PathSummary<T, M>,
-        before: Option<&PathSummary<T, M>>,
-        any_index: bool,
-        curvature: Curvature<T>,
-    ) -> bool {
-        if summary.negative > 0 && !any_index {
-            return false;
-        }
-        match before {
-            // One that is larger than the path leads to another extremal than that near the guess.
-            None if any_index && curvature == Curvature::exact(T::zero()) => summary.size <= T::one(),
-            None => summary.size.is_finite(),
-            Some(before) => {
-                let is_lower = || summary.negative == 0 && self.is_lower(summary.action, before, T::one());
-                before.is_halved_by(summary) || (!before.is_near() && is_lower())
-            }
-        }
-    }
-
-    /// Armijo's rule: a step of this fraction took at least a hundredth of what the slope promises.
-    fn is_lower(&self, action: T, before: &PathSummary<T, M>, fraction: T) -> bool {
-        let promised = before.decrement * fraction * T::from_ratio(1, 100);
-        let sign = self.problem.sign();
-        (action - before.action) * sign <= -(promised * sign)
-    }
-
     /// Makes a step that makes the action smaller, or a full one where the action has no digits left to tell. Returns how often it was halved;
     /// `None` where it would be too small.
     #[cold]
@@ -170,7 +156,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
         let is_trusted = summary.is_near() && summary.negative == 0;
         let mut fraction = T::one();
         for halvings in 0..HALVINGS {
-            if is_trusted || self.is_lower(self.action_after(fraction), summary, fraction) {
+            if is_trusted || summary.is_lower(self.action_after(fraction), fraction) {
                 self.correct(fraction);
                 return Some(halvings);
             }
@@ -178,9 +164,4 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
         }
         None
     }
-}
-
-/// The gap that is left where none of it can be closed.
-pub(super) fn unreachable<T: Real, const M: usize>(end: &PathEnd<T, M>) -> Error {
-    Error::Unreachable { distance: end.distance.to_f64() }
 }

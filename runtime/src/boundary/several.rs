@@ -3,7 +3,7 @@
 use super::{Boundary, Guess, Node};
 use crate::space::larger;
 use crate::{Error, Real, Scalar, Variational};
-use core::cmp::Ordering;
+use core::mem::swap;
 use nalgebra::SVector;
 use num_traits::{One, Zero};
 
@@ -85,7 +85,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
 }
 
 /// Puts a way in its place, if it is none of those that are known; of more than K the one with the largest action is dropped.
-fn insert<T: Real, const M: usize>(ways: &mut [Option<Way<T, M>>], mut way: Way<T, M>) {
+fn insert<T: Real, const M: usize>(ways: &mut [Option<Way<T, M>>], way: Way<T, M>) {
     let is_known = |known: &Way<T, M>| {
         let apart = known.momentum - way.momentum;
         let size = larger(known.momentum.dot(&known.momentum), way.momentum.dot(&way.momentum));
@@ -94,16 +94,10 @@ fn insert<T: Real, const M: usize>(ways: &mut [Option<Way<T, M>>], mut way: Way<
     if ways.iter().flatten().any(is_known) {
         return;
     }
+    let mut way = Some(way);
     for place in ways {
-        match place {
-            None => {
-                *place = Some(way);
-                return;
-            }
-            Some(known) if way.action.partial_cmp(&known.action) == Some(Ordering::Less) => {
-                core::mem::swap(known, &mut way);
-            }
-            Some(_) => {}
+        if place.is_none_or(|known| way.is_some_and(|way| way.action < known.action)) {
+            swap(place, &mut way);
         }
     }
 }

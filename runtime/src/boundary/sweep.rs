@@ -13,7 +13,8 @@
 
 use super::Node;
 use super::end::PathEnd;
-use super::vertex::{PathSummary, Pending};
+use super::pivot::Solution;
+use super::vertex::PathSummary;
 use crate::newton::Curvature;
 use crate::scheme::Constants;
 use crate::space::larger;
@@ -41,23 +42,9 @@ pub(super) struct Search<'a, S: Variational<M, Scalar: Real>, const M: usize> {
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M> {
-    /// What is known of a path of so many edges that ends at `q`.
-    #[inline]
-    pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<T, M> {
-        match self.target {
-            Some(target) => PathEnd::of(self.system, q, target),
-            None => PathEnd::free(&self.system.endpoint(self.time_of_end(edges), q), q.max_abs()),
-        }
-    }
-
     pub fn time_of_end(&self, edges: usize) -> T {
         // the price of the end may depend on the time where nothing else does
         self.time + T::from_f64((edges / S::EDGES.max(1)) as f64) * self.h
-    }
-
-    /// The sign of the step size: that of the Hessian at a minimum.
-    pub fn sign(&self) -> T {
-        if self.h < T::zero() { -T::one() } else { T::one() }
     }
 
     #[inline(always)]
@@ -67,14 +54,8 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M>
     }
 
     #[inline]
-    pub fn momenta(
-        &self,
-        index: usize,
-        q: &S::Configuration,
-        d: &S::Element,
-        next: &S::Configuration,
-    ) -> Momenta<T, M> {
-        let (t, edge) = self.place(index);
+    pub fn momenta(&self, k: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Momenta<T, M> {
+        let (t, edge) = self.place(k);
         self.system.momenta(self.constants, edge, t, q, d, next, &S::Input::origin())
     }
 
@@ -94,11 +75,11 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M>
         end: &PathEnd<T, M>,
         curvature: Curvature<T>,
         summary: &mut PathSummary<T, M>,
-    ) -> Pending<T, M> {
+    ) -> Solution<T, M> {
         let edge = self.edge(index, node, next);
         summary.count(&edge);
         node.momentum = edge.before;
-        summary.eliminate_end(&edge, end, self.sign(), curvature, &mut node.feedback)
+        summary.eliminate_end(&edge, end, curvature, &mut node.feedback)
     }
 }
 
@@ -113,19 +94,36 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
     #[inline]
     pub fn eliminate(&mut self, end: &PathEnd<T, M>, curvature: Curvature<T>) -> PathSummary<T, M> {
         let problem = &self.problem;
-        let sign = problem.sign();
-        let mut summary = PathSummary::of_nothing(self.path.len());
+        let zero = T::zero();
+        let mut summary = PathSummary {
+            action: zero,
+            decrement: zero,
+            size: zero,
+            residual_squared: zero,
+            after: SVector::zeros(),
+            negative: 0,
+            magnitude: zero,
+            momenta: zero,
+            stiffness: zero,
+            edges: T::from_f64(self.path.len() as f64),
+            sign: if problem.h < zero { -T::one() } else { T::one() },
+        };
         let Some((last, others)) = self.path.split_last_mut() else { return summary };
-        let mut pending = problem.eliminate_end((others.len(), last), &self.last, end, curvature, &mut summary);
-        let mut next = &last.configuration;
+        let mut next = problem.eliminate_end((others.len(), last), &self.last, end, curvature, &mut summary);
+        let mut later = &*last;
         for (index, node) in others.iter_mut().enumerate().rev() {
-            let edge = problem.edge(index, node, next);
+            let edge = problem.edge(index, node, &later.configuration);
             summary.count(&edge);
-            pending = summary.eliminate(&edge, &pending, sign, curvature, &mut node.feedback);
+            next = summary.eliminate(&edge, &next, &later.momentum, curvature, &mut node.feedback);
             node.momentum = edge.before;
-            next = &node.configuration;
+            later = node;
         }
-        summary.finish();
+        if summary.decrement != zero {
+            // Compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
+            let is_stiff = summary.stiffness > zero;
+            let kinetic = if is_stiff { summary.momenta * summary.edges / summary.stiffness } else { zero };
+            summary.size = (summary.decrement.abs() / (summary.magnitude + kinetic)).sqrt();
+        }
         summary
     }
 

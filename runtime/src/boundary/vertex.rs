@@ -32,48 +32,11 @@ pub(super) struct PathSummary<T, const M: usize> {
     pub stiffness: T,
     /// The number of edges.
     pub edges: T,
-}
-
-/// What the vertex at the start of the edges that are done needs of them.
-pub(super) struct Pending<T, const M: usize> {
-    /// −∂F⁻ℓd/∂η − H_{k,k+1} K_{k+1}: the lower triangle of its symmetric part
-    hessian: [[T; M]; M],
-    /// −F⁻ℓd − H_{k,k+1} s_{k+1}
-    gradient: SVector<T, M>,
-    /// F⁻ℓd
-    before: SVector<T, M>,
+    /// The sign of the step size: that of the Hessian at a minimum.
+    pub sign: T,
 }
 
 impl<T: Real, const M: usize> PathSummary<T, M> {
-    /// The sums before the first edge.
-    pub fn of_nothing(edges: usize) -> Self {
-        let zero = T::zero();
-        Self {
-            action: zero,
-            decrement: zero,
-            size: zero,
-            residual_squared: zero,
-            after: SVector::from_element(zero),
-            negative: 0,
-            magnitude: zero,
-            momenta: zero,
-            stiffness: zero,
-            edges: T::from_f64(edges as f64),
-        }
-    }
-
-    /// After the last vertex: measures Newton's correction.
-    ///
-    /// It is compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
-    #[inline]
-    pub fn finish(&mut self) {
-        if self.decrement != T::zero() {
-            let is_stiff = self.stiffness > T::zero();
-            let kinetic = if is_stiff { self.momenta * self.edges / self.stiffness } else { T::zero() };
-            self.size = (self.decrement.abs() / (self.magnitude + kinetic)).sqrt();
-        }
-    }
-
     /// Whether the residual is at most so many units in the last place of the momentum, as the root of its mean square.
     pub fn is_stationary(&self, units: f64) -> bool {
         let unit = T::from_f64(units) * T::EPSILON;
@@ -94,25 +57,24 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.stiffness += edge.after_by_end.trace().abs();
     }
 
-    /// The interior vertex where `edge` ends.
+    /// The interior vertex where `edge` ends, after the elimination of the next one, in front of which the momentum is `later`.
     #[inline(always)]
     pub fn eliminate(
         &mut self,
         edge: &Edge<T, M>,
-        pending: &Pending<T, M>,
-        sign: T,
+        next: &Solution<T, M>,
+        later: &SVector<T, M>,
         curvature: Curvature<T>,
         feedback: &mut Feedback<T, M>,
-    ) -> Pending<T, M> {
+    ) -> Solution<T, M> {
         let mut d = lower_half(&edge.after_by_end);
-        for (row, pending) in d.iter_mut().zip(&pending.hessian) {
-            row.iter_mut().zip(pending).for_each(|(entry, pending)| *entry += *pending);
+        for (row, next) in d.iter_mut().zip(&next.hessian) {
+            row.iter_mut().zip(next).for_each(|(entry, next)| *entry -= *next);
         }
         // H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ
         let c = from_fn(|i| from_fn(|j| -edge.before_by_end[(j, i)]));
-        let pivot = Pivot { d, c, g: pending.gradient + edge.after, sign };
-        let solution = self.solve(pivot, edge, &(edge.after - pending.before), curvature, feedback);
-        Pending::behind(edge, &solution)
+        let pivot = Pivot { d, c, g: edge.after - next.gradient, sign: self.sign };
+        self.solve(pivot, edge, &(edge.after - later), curvature, feedback).before(edge)
     }
 
     /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others.
@@ -123,10 +85,9 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         &mut self,
         edge: &Edge<T, M>,
         end: &PathEnd<T, M>,
-        sign: T,
         curvature: Curvature<T>,
         feedback: &mut Feedback<T, M>,
-    ) -> Pending<T, M> {
+    ) -> Solution<T, M> {
         self.after = edge.after;
         self.action += end.price;
         self.magnitude += end.price.abs();
@@ -135,18 +96,19 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         let Some(kernel) = &end.kernel else {
             *feedback = Feedback { gain: SMatrix::from_element(T::zero()), shift: -end.closing };
             let hessian = [[T::zero(); M]; M];
-            return Pending::behind(edge, &Solution { hessian, gradient: closing, decrement: T::zero(), negative: 0 });
+            return Solution { hessian, gradient: closing, decrement: T::zero(), negative: 0 }.before(edge);
         };
-        let size = edge.after_by_end.trace().abs() * sign;
-        let d = kernel * end.bent(&edge.after_by_end) * kernel + (SMatrix::identity() - kernel) * size;
+        let size = edge.after_by_end.trace().abs() * self.sign;
+        let hessian = end.curvature.map_or(edge.after_by_end, |curvature| edge.after_by_end + curvature);
+        let d = kernel * hessian * kernel + (SMatrix::identity() - kernel) * size;
         let c = -kernel * edge.before_by_end.transpose();
         let g = kernel * (edge.after + end.slope + edge.after_by_end * end.closing);
-        let pivot = Pivot { d: lower_half(&d), c: rows(&c), g, sign };
+        let pivot = Pivot { d: lower_half(&d), c: rows(&c), g, sign: self.sign };
         let residual = kernel * (edge.after + end.slope);
         let solution = self.solve(pivot, edge, &residual, curvature, feedback);
         feedback.gain = kernel * feedback.gain;
         feedback.shift = kernel * feedback.shift - end.closing;
-        Pending::behind(edge, &Solution { gradient: solution.gradient + closing, ..solution })
+        Solution { gradient: solution.gradient + closing, ..solution }.before(edge)
     }
 
     /// Eliminates the vertex where `edge` ends from its damped equations.
@@ -171,15 +133,15 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
     }
 }
 
-impl<T: Real, const M: usize> Pending<T, M> {
-    /// After the elimination of the vertex where `edge` ends.
+impl<T: Real, const M: usize> Solution<T, M> {
+    /// With the part of `edge`, at the end of which the vertex was eliminated, in Hessian and gradient of the vertex where it starts.
     #[inline]
-    fn behind(edge: &Edge<T, M>, solution: &Solution<T, M>) -> Self {
-        let mut hessian = lower_half(&edge.before_by_start);
-        for (row, eliminated) in hessian.iter_mut().zip(&solution.hessian) {
-            row.iter_mut().zip(eliminated).for_each(|(entry, eliminated)| *entry = -(*entry + *eliminated));
+    fn before(mut self, edge: &Edge<T, M>) -> Self {
+        for (row, own) in self.hessian.iter_mut().zip(lower_half(&edge.before_by_start)) {
+            row.iter_mut().zip(own).for_each(|(entry, own)| *entry = own + *entry);
         }
-        Self { hessian, gradient: -(edge.before + solution.gradient), before: edge.before }
+        self.gradient = edge.before + self.gradient;
+        self
     }
 }
 

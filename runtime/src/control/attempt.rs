@@ -7,7 +7,8 @@
 //! Sources: Wächter and Biegler, *Failure of global convergence for a class of interior point methods for nonlinear programming* (2000);
 //! Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
 
-use super::sweep::{Plan, PlanSummary, Settings};
+use super::iterate::Iterate;
+use super::sweep::{Plan, PlanSummary};
 use super::{Optimum, Stage, Target};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::SVector;
@@ -26,7 +27,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub fn attempt<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
         let is_warm = self.stages.iter().any(|stage| stage.next_costate.max_abs() > T::zero());
-        let variations = if matches!(self.problem.goal.target, Target::Free) { 0 } else { 1 + VARIATIONS };
+        let variations = if matches!(self.problem.target, Target::Free) { 0 } else { 1 + VARIATIONS };
         let cold = is_warm.then_some((false, 0));
         let mut solved = self.newton(false);
         for (is_priced, variation) in cold.into_iter().chain((0..variations).map(|variation| (true, variation))) {
@@ -53,9 +54,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     #[cold]
     fn vary(&mut self, variation: u32) -> Result<(), Error> {
         if variation > 0 {
-            let last = self.follow()?;
-            let end = self.problem.end(&last);
-            let summary = self.eliminate(&last, &end, &Settings::new(Space::origin(), T::zero()))?;
+            self.follow()?;
+            let end = self.problem.end(&self.last);
+            let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
             self.stir(&summary, end.lack.max_abs(), variation);
         }
         Ok(())
@@ -93,7 +94,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut x = *problem.start;
         for (index, stage) in self.stages.iter().enumerate() {
             let input = stage.input + pattern(amplitudes, turns, index, self.stages.len());
-            x = problem.follow(index, &x, &input).ok()?;
+            x = problem.system.follow(problem.constants, problem.time_after(index), &x, &input).ok()?;
         }
         let distance = problem.end(&x).distance;
         distance.is_finite().then_some(distance)

@@ -7,25 +7,21 @@
 //! sequence of μ; Pavlov, Shames and Manzie, *Interior point differential dynamic programming* (2021), for slacks in roll-outs.
 
 use super::Stage;
-use super::sweep::{Plan, Problem};
+use super::quadratic::Slopes;
+use super::sweep::{Plan, Problem, Settings};
 use crate::space::larger;
-use crate::{Controlled, Error, Real};
-use nalgebra::SVector;
+use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Space};
+use nalgebra::{SMatrix, SVector};
 
 /// The part of a slack that one step may take.
 pub(super) const TO_BOUNDARY: f64 = 0.995;
-/// What μ is first, all bounds together, relative to the price.
-const FIRST: f64 = 0.1;
+/// What μ is first, all bounds together, relative to the price: the larger of what the plan costs and of what it costs to keep the bounds that
+/// it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
+pub(super) const FIRST: f64 = 0.1;
 /// What μ is last: this power of ε.
 const LAST: (i64, i64) = (3, 4);
 
-/// The first μ, for so many bounds and a price of this size: the larger of what the plan costs and of what it costs to keep the bounds that
-/// it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
-pub(super) fn first<T: Real>(bounds: T, price: T) -> T {
-    T::from_f64(FIRST) * price / bounds
-}
-
-/// The last μ.
+/// The last μ, for so many bounds and a price of this size.
 pub(super) fn last<T: Real>(bounds: T, price: T) -> T {
     T::EPSILON.powf(T::from_ratio(LAST.0, LAST.1)) * price / bounds
 }
@@ -46,37 +42,42 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         (SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]), stiffness)
     }
 
-    /// Σ a/s of the bounds that are violated, and the weights 1/s of those.
-    pub(super) fn violation(&self) -> (T, SVector<T, C>) {
-        let mut sum = T::zero();
-        let weights = SVector::from_fn(|i, _| {
-            let violation = self.excess[i] - self.slack[i];
-            if violation > T::zero() {
-                sum += violation / self.slack[i];
-                self.slack[i].recip()
-            } else {
-                T::zero()
-            }
-        });
-        (sum, weights)
+    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a to the model of the step, in the last sweep z·a alone in place of ζ·a. Returns Σ a/s of the
+    /// bounds that are violated, and its slopes.
+    #[inline]
+    pub(super) fn add_bounds(
+        &self,
+        step: &mut Expansion<S::Place, T, D, U>,
+        bounds: &BoundsExpansion<T, D, U, C>,
+        settings: &Settings<T, D>,
+    ) -> (T, Slopes<T, D, U>) {
+        let (force, stiffness) = self.condensed(settings.barrier);
+        let force = if settings.is_last { self.multipliers } else { force };
+        let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
+        let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
+        step.price_by_place += bounds.by_place.tr_mul(&force);
+        step.price_by_input += bounds.by_input.tr_mul(&force);
+        step.place_curvature += bounds.place_curvature + bounds.by_place.tr_mul(&by_place);
+        step.mixed_curvature += bounds.mixed_curvature + bounds.by_input.tr_mul(&by_place);
+        step.input_curvature += bounds.input_curvature + bounds.by_input.tr_mul(&by_input);
+        let violation = self.excess - self.slack;
+        let is_violated = |i: usize| violation[i] > T::zero();
+        let sum = (0..C).filter(|i| is_violated(*i)).fold(T::zero(), |sum, i| sum + violation[i] / self.slack[i]);
+        let weights = SVector::<T, C>::from_fn(|i, _| if is_violated(i) { self.slack[i].recip() } else { T::zero() });
+        (sum, (bounds.by_place.tr_mul(&weights), bounds.by_input.tr_mul(&weights)))
     }
 
     /// Takes the slacks of a roll-out of this fraction. Multipliers stay positive and near μ/s.
     pub(super) fn accept_slacks(&mut self, fraction: T, barrier: T) {
         let wide = T::EPSILON.sqrt().recip();
         for i in 0..C {
-            let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.trial.slack[i]);
+            let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.next_slack[i]);
             let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
             let central = barrier / moved;
             let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
             let most = central * wide;
-            self.multipliers[i] = if next < least {
-                least
-            } else if next > most {
-                most
-            } else {
-                next
-            };
+            let smaller = if next > most { most } else { next };
+            self.multipliers[i] = if next < least { least } else { smaller };
             self.excess[i] *= T::one() - fraction;
             self.slack[i] = moved;
         }
@@ -89,16 +90,26 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         T::from_f64((self.stages.len() * C) as f64)
     }
 
-    /// Slacks of the plan, and by how much its bounds must be relaxed for them to be positive.
-    pub fn relax(&mut self) {
+    /// The barrier of a plan that holds multipliers of its bounds, which it keeps: the mean of z·s. `None` where there are none: bounds are
+    /// relaxed then by what makes slacks positive.
+    pub fn resume_or_relax(&mut self) -> Option<T> {
         let zero = T::zero();
-        let mut sizes = SVector::<T, C>::from_element(zero);
-        for (index, stage) in self.stages.iter_mut().enumerate() {
-            let values = self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
-            stage.slack = -values;
-            sizes = sizes.zip_map(&values, |size, value| larger(size, value.abs()));
+        if C == 0 {
+            return Some(zero);
         }
-        let largest = sizes.iter().fold(zero, |max, x| larger(max, *x));
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
+            stage.excess = SVector::from_element(zero);
+        }
+        let pairs = self.stages.iter().flat_map(|stage| stage.multipliers.iter().zip(stage.slack.iter()));
+        if pairs.clone().all(|(z, s)| *z > zero && *s > zero && z.is_finite()) {
+            return Some(pairs.fold(zero, |sum, (z, s)| sum + *z * *s) / self.bounds());
+        }
+        let size = |sizes: SVector<T, C>, stage: &Stage<S, D, U, C>| {
+            sizes.zip_map(&stage.slack, |size, slack| larger(size, slack.abs()))
+        };
+        let sizes = self.stages.iter().fold(SVector::from_element(zero), size);
+        let largest = sizes.max_abs();
         let least = sizes.map(|size| {
             let size = if size > zero { size } else { largest };
             if size > zero { size * T::from_ratio(1, 100) } else { T::one() }
@@ -108,23 +119,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             stage.excess = slack - stage.slack;
             stage.slack = slack;
         }
-    }
-
-    /// The barrier of a plan that holds multipliers of its bounds, which it keeps: the mean of z·s. `None` where there are none.
-    pub fn resume(&mut self) -> Option<T> {
-        let zero = T::zero();
-        let mut sum = zero;
-        for (index, stage) in self.stages.iter_mut().enumerate() {
-            stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
-            stage.excess = SVector::from_element(zero);
-            for (z, s) in stage.multipliers.iter().zip(stage.slack.iter()) {
-                if !(*z > zero && *s > zero && z.is_finite()) {
-                    return None;
-                }
-                sum += *z * *s;
-            }
-        }
-        Some(sum / self.bounds())
+        self.begin(zero);
+        None
     }
 
     /// Multipliers μ/s for the slacks.
@@ -168,14 +164,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
     pub fn worst_bound(&self) -> Option<(usize, usize, T)> {
-        let mut worst = None;
-        let mut least = T::one();
+        let (mut least, mut worst) = (T::one(), None);
         for (index, stage) in self.stages.iter().enumerate() {
             for i in 0..C {
-                let room = stage.slack[i] / stage.excess[i];
-                if room < least {
-                    least = room;
-                    worst = Some((index, i, stage.excess[i] - stage.slack[i]));
+                let (slack, excess) = (stage.slack[i], stage.excess[i]);
+                if slack / excess < least {
+                    (least, worst) = (slack / excess, Some((index, i, excess - slack)));
                 }
             }
         }

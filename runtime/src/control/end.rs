@@ -1,17 +1,17 @@
-//! The end of a plan: what separates it from the target, and which of its changes the target fixes.
+//! The end of a plan: what separates it from the target, which of its changes the target fixes, and how far the inputs move it.
 
 use super::Target;
-use crate::newton::{Spectrum, arc_per_chord, is_reached};
+use super::sweep::Problem;
+use crate::newton::{Equilibrated, Spectrum, arc_per_chord, is_reached};
 use crate::space::larger;
-use crate::{Controlled, Real, Space};
+use crate::{Arrival, Controlled, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
+use num_traits::{One, Zero};
 
-/// A target with the units of its changes.
-pub(super) struct Goal<'a, X, T, const D: usize> {
-    pub target: &'a Target<X>,
-    /// The lengths |∂x/∂δ_i| of small changes at the target.
-    lengths: SVector<T, D>,
-}
+/// R in units of |Γ⁻¹|.
+const STIFFNESS: f64 = 4.0;
+/// Eigenvalues below so many units in the last place of the largest are those of directions that no input reaches.
+const UNITS: f64 = 256.0;
 
 /// What is known where a plan ends. A change δ arrives where E δ = e.
 #[derive(Clone, Copy)]
@@ -31,55 +31,37 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub scale: T,
 }
 
-impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
-    pub fn of<S, const U: usize, const C: usize>(system: &S, target: &'a Target<X>) -> Self
-    where
-        S: Controlled<D, U, C, Scalar = T, Place = X>,
-    {
+impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+    /// The lengths |∂x/∂δ_i| of small changes at the target, 1 where there is none.
+    pub fn lengths(system: &S, target: &Target<S::Place>) -> SVector<S::Scalar, D> {
         let slope = target.place().map_or(SMatrix::zeros(), |goal| system.arrival(goal, goal).slope);
-        let lengths = SVector::from_fn(|i, _| {
-            let length = slope[(i, i)].abs().sqrt();
-            // Written so that NaN gives 1.
-            if length > T::zero() { length } else { T::one() }
-        });
-        Self { target, lengths }
+        // Written so that NaN gives 1.
+        slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
     }
 
     /// The end of a plan at `x`.
     ///
     /// What small motions close of a gap is taken for the tangential part of the chord of a circle and lengthened to its arc: exact in
     /// flat spaces and for the rotations about one axis.
-    pub fn end<S, const U: usize, const C: usize>(&self, system: &S, x: &X) -> PlanEnd<T, D>
-    where
-        S: Controlled<D, U, C, Scalar = T, Place = X>,
-    {
-        let zero = T::zero();
-        let Some(goal) = self.target.place() else {
-            return PlanEnd {
-                lack: SVector::zeros(),
-                slope: SMatrix::zeros(),
-                pull: SVector::zeros(),
-                metric: SMatrix::zeros(),
-                squares: [zero; 2],
-                distance: zero,
-                scale: x.max_abs(),
-            };
-        };
-        let lengths = &self.lengths;
-        let arrival = system.arrival(x, goal);
-        let asked = if matches!(self.target, Target::Configuration(_)) { S::MOTIONS } else { D };
-        let is_asked = |i: usize| if i < asked { T::one() } else { zero };
+    pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
+        let Self { target, lengths, .. } = self;
+        let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
+        let none = Arrival { residual: SVector::zeros(), slope: SMatrix::zeros() };
+        let arrival = target.place().map_or(none, |goal| self.system.arrival(x, goal));
+        let goal = target.place().unwrap_or(x);
+        let Arrival { residual, slope } = &arrival;
+        let asked = if matches!(target, Target::Configuration(_)) { S::MOTIONS } else { D };
+        let is_asked = |i: usize| if i < asked { one } else { zero };
         // as lengths: the projector to the changes that the target fixes, and the smallest that closes the gap
-        let spectrum = Spectrum::of(&SMatrix::from_fn(|i, j| {
-            arrival.slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j)
+        let spectrum = Spectrum::of(&SMatrix::<_, D, D>::from_fn(|i, j| {
+            slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j)
         }));
-        let least = T::EPSILON.sqrt() * spectrum.largest();
-        let projector = spectrum.map(|value| if value <= least { zero } else { T::one() });
+        let least = S::Scalar::EPSILON.sqrt() * spectrum.largest();
+        let projector = spectrum.map(|value| if value <= least { zero } else { one });
         let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
-        let mut lack = inverse * SVector::from_fn(|i, _| arrival.residual[i] / lengths[i] * is_asked(i));
-        let square =
-            |from: usize, to: usize| (from..to).fold(zero, |sum, i| sum + arrival.residual[i] * arrival.residual[i]);
-        let along = (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * arrival.residual[i] / lengths[i]);
+        let mut lack = inverse * SVector::<_, D>::from_fn(|i, _| residual[i] / lengths[i] * is_asked(i));
+        let square = |from: usize, to: usize| (from..to).fold(zero, |sum, i| sum + residual[i] * residual[i]);
+        let along = (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * residual[i] / lengths[i]);
         let momentum = square(S::MOTIONS, asked);
         let chord = larger(zero, goal.distance_squared(x) - square(S::MOTIONS, D));
         let across = larger(zero, chord - along).sqrt();
@@ -89,19 +71,12 @@ impl<'a, X: Space<T>, T: Real, const D: usize> Goal<'a, X, T, D> {
         PlanEnd {
             lack,
             slope: SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]),
-            pull: SVector::from_fn(|i, _| arrival.residual[i] * is_asked(i)),
-            metric: SMatrix::from_fn(|i, j| arrival.slope[(i, j)] * is_asked(i) * is_asked(j)),
+            pull: SVector::from_fn(|i, _| residual[i] * is_asked(i)),
+            metric: SMatrix::from_fn(|i, j| slope[(i, j)] * is_asked(i) * is_asked(j)),
             squares: [chord, momentum],
             distance: (chord + momentum).sqrt(),
             scale: larger(goal.max_abs(), x.max_abs()),
         }
-    }
-
-    /// The multipliers ν with the covector Eᵀν nearest to this one, for an end where E is given.
-    pub fn multipliers(&self, end: &PlanEnd<T, D>, covector: &SVector<T, D>) -> SVector<T, D> {
-        let lengths = &self.lengths;
-        let scaled = SVector::<T, D>::from_fn(|i, _| covector[i] / lengths[i]);
-        SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]) * scaled
     }
 }
 
@@ -114,5 +89,39 @@ impl<T: Real, const D: usize> PlanEnd<T, D> {
     /// Whether the gap is none to a person: below √ε.
     pub fn is_reached(&self) -> bool {
         is_reached(self.distance, self.scale)
+    }
+}
+
+/// The Gramian Γ = Σ_k Q_uνᵀ Q_uu⁻¹ Q_uν of all inputs of a plan: how far they move the end.
+impl<T: Real, const D: usize> Equilibrated<T, D> {
+    /// Γ⁺, 0 in directions that no input reaches.
+    pub fn inverse(&self) -> SMatrix<T, D, D> {
+        let least = T::from_f64(UNITS) * T::EPSILON * self.spectrum.largest();
+        // Written so that NaN stays NaN.
+        self.map(|value| if value.abs() <= least { T::zero() } else { value.recip() })
+    }
+
+    /// R for the next sweep, where this is the Gramian with R: a multiple of |Γ⁻¹| of the Gramian without, Γ_R⁻¹ = Γ⁻¹ + R.
+    ///
+    /// Where no change of the inputs that keeps the target makes the price smaller, that makes all Q_uu positive (Finsler's lemma).
+    pub fn weight(&self, gramian: &SMatrix<T, D, D>, weight: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+        let inverse = self.inverse();
+        let reached = gramian * inverse;
+        let Self { spectrum, scale } = Self::of(&(inverse - reached.tr_mul(&(weight * reached))));
+        let absolute = spectrum.map(|value| value.abs() * T::from_f64(STIFFNESS));
+        let length = |i: usize| if scale[i] > T::zero() { scale[i].recip() } else { T::zero() };
+        SMatrix::from_fn(|i, j| length(i) * absolute[(i, j)] * length(j))
+    }
+
+    /// The number of directions that inputs reach, where all Q_uu are positive.
+    pub fn rank(&self) -> usize {
+        self.count_above(T::from_f64(UNITS) * T::EPSILON)
+    }
+
+    /// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
+    /// of −Γ, less the number of conditions. Directions in which the curvature of the price vanishes on plans that arrive, as those of a
+    /// symmetry do, count for none.
+    pub fn index(&self, negative: usize, rank: usize) -> usize {
+        (negative + self.count_above(T::EPSILON.powf(T::from_ratio(1, 3)))).saturating_sub(rank)
     }
 }

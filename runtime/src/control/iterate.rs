@@ -2,7 +2,6 @@
 
 use super::barrier;
 use super::end::PlanEnd;
-use super::search::Made;
 use super::sweep::{PlanSummary, Settings};
 use crate::Real;
 use crate::newton::{Curvature, Equilibrated, adapted};
@@ -26,13 +25,13 @@ const LEAST_DAMPING: f64 = 1e-3;
 const CRITICAL: (i64, i64) = (1, 20);
 
 /// A plan with its multipliers and with what the sweeps before have told.
-pub(super) struct Iterate<X, T, const D: usize> {
-    /// x_N
-    pub last: X,
+pub(super) struct Iterate<T, const D: usize> {
     pub settings: Settings<T, D>,
     /// Whether the first barrier is still to be chosen.
     pub is_open: bool,
     pub damping: T,
+    /// R for the next sweep that has another.
+    pub stiffer: SMatrix<T, D, D>,
     /// Whether it is known that more weight of the target makes no curvature positive.
     is_probed: bool,
     /// The number of directions that inputs move the end in.
@@ -56,20 +55,15 @@ pub(super) struct Iterate<X, T, const D: usize> {
     pub relaxation: T,
 }
 
-/// What a sweep is good for.
+/// What is done after a sweep.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Use {
+pub(super) enum Verdict {
     /// Its correction leads downhill.
-    Correction,
+    Correct,
     /// It found a way down from a saddle.
     Escape,
-    /// None: the next one is made otherwise.
-    Nothing,
-}
-
-/// What is done after a sweep.
-pub(super) enum Verdict {
-    Correct,
+    /// The next one is made otherwise.
+    Repeat,
     /// The plan is critical, but no first derivative leads to the target.
     Stir,
     /// The plan is critical for this price of the gap.
@@ -79,15 +73,23 @@ pub(super) enum Verdict {
     Done,
 }
 
-impl<X, T: Real, const D: usize> Iterate<X, T, D> {
+impl<T: Real, const D: usize> Iterate<T, D> {
     /// Before the first sweep; a barrier is chosen after it where none is given.
-    pub fn new(last: X, multipliers: SVector<T, D>, barrier: Option<T>, distance: T) -> Self {
+    pub fn new(multipliers: SVector<T, D>, barrier: Option<T>, distance: T) -> Self {
         let zero = T::zero();
         Self {
-            last,
-            settings: Settings::new(multipliers, barrier.unwrap_or(zero)),
+            settings: Settings {
+                multipliers,
+                weight: SMatrix::zeros(),
+                gap_price: None,
+                barrier: barrier.unwrap_or(zero),
+                curvature: Curvature::mirrored(zero, zero),
+                bend: T::one(),
+                is_last: false,
+            },
             is_open: barrier.is_none(),
             damping: zero,
+            stiffer: SMatrix::zeros(),
             is_probed: false,
             rank: 0,
             before: None,
@@ -106,12 +108,8 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     ///
     /// First the critical point of the exact model is gone to, where it is near, or tells whether more weight of the target helps; else
     /// the curvature of the steps is counted less and less, down to that of the price alone.
-    pub fn judge<const U: usize>(
-        &mut self,
-        summary: &PlanSummary<T, D, U>,
-        gramian: &Equilibrated<T, D>,
-        stiffer: &SMatrix<T, D, D>,
-    ) -> Use {
+    pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Equilibrated<T, D>) -> Verdict {
+        self.stiffer = gramian.weight(&summary.gramian, &self.settings.weight);
         if self.settings.curvature.is_mirrored {
             // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
             let rank = gramian.rank();
@@ -123,9 +121,9 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
                 self.bend_less();
                 self.is_probed = false;
             } else {
-                return Use::Correction;
+                return Verdict::Correct;
             }
-            return Use::Nothing;
+            return Verdict::Repeat;
         }
         let is_priced = self.is_priced();
         let index = if is_priced { summary.negative } else { gramian.index(summary.negative, self.rank) };
@@ -133,42 +131,40 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         let depth = summary.fall.map_or(T::zero(), |fall| fall.depth);
         let is_deep = self.before.is_some_and(|before| depth > T::from_f64(DEPTH) * before);
         if is_near && index > 0 && is_deep && !self.is_cornered {
-            return Use::Escape;
+            return Verdict::Escape;
         }
         if is_near && (index == 0 || summary.negative <= FLAT) {
-            return Use::Correction;
+            return Verdict::Correct;
         }
         self.settings.curvature = self.mirrored();
         self.is_probed = true;
-        if index == 0 && !is_priced && stiffer.iter().all(|entry| entry.is_finite()) {
-            self.settings.weight = *stiffer;
+        if index == 0 && !is_priced && self.stiffer.iter().all(|entry| entry.is_finite()) {
+            self.settings.weight = self.stiffer;
         } else if summary.negative > FLAT {
             self.bend_less();
         }
-        Use::Nothing
+        Verdict::Repeat
     }
 
-    /// From now on the gap is only priced, at first as much as closing it costs where R is `stiffness`; its first `motions` entries are those
-    /// of configurations.
-    pub fn price_gap(&mut self, stiffness: &SMatrix<T, D, D>, motions: usize) {
-        let largest = |range: Range<usize>| range.fold(T::zero(), |max, i| larger(max, stiffness[(i, i)]));
-        self.settings.gap_price = Some([0..motions, motions..D].map(|range| largest(range) * T::from_ratio(1, 8)));
+    /// From now on the gap is only priced, at first as much as closing it costs; its first `motions` entries are those of configurations.
+    pub fn price_gap(&mut self, motions: usize) {
+        let largest = |range: Range<usize>| range.fold(T::zero(), |max, i| larger(max, self.stiffer[(i, i)]));
+        let prices = [0..motions, motions..D].map(|range| largest(range) * T::from_ratio(1, 8));
+        self.settings.gap_price = Some(SVector::from_fn(|i, _| prices[usize::from(i >= motions)]));
         self.settings.weight = SMatrix::from_element(T::zero());
     }
 
     /// Raises the price of the gap after a plan that is critical for this one.
     pub fn raise_price(&mut self) {
-        self.settings.gap_price = self.settings.gap_price.map(|prices| prices.map(|price| price * T::from_f64(8.0)));
+        self.settings.gap_price = self.settings.gap_price.map(|price| price * T::from_f64(8.0));
         self.rounds += 1;
         self.begin_again();
     }
 
     /// From now on corrections close the gap: its price becomes a weight, with multipliers that leave this price's force on the end,
     /// Eᵀ(ν − Re), as it is.
-    pub fn close_gap(&mut self, force: SVector<T, D>, end: &PlanEnd<T, D>, motions: usize) {
-        let [by_motion, by_momentum] = self.settings.gap_price.take().unwrap_or([T::zero(); 2]);
-        let price = SVector::<T, D>::from_fn(|i, _| if i < motions { by_motion } else { by_momentum });
-        self.settings.weight = SMatrix::from_diagonal(&price);
+    pub fn close_gap(&mut self, force: SVector<T, D>, end: &PlanEnd<T, D>) {
+        self.settings.weight = SMatrix::from_diagonal(&self.settings.gap_price.take().unwrap_or(SVector::zeros()));
         self.settings.multipliers = force + self.settings.weight * end.lack;
         self.begin_again();
     }
@@ -180,10 +176,9 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     }
 
     /// Goes on from below a saddle, or stays at it.
-    pub fn leave_saddle(&mut self, last: Option<X>) {
-        self.is_cornered = last.is_none();
-        if let Some(last) = last {
-            self.last = last;
+    pub fn leave_saddle(&mut self, is_below: bool) {
+        self.is_cornered = !is_below;
+        if is_below {
             self.relaxation = T::zero();
             self.settings.curvature = self.mirrored();
             (self.before, self.calm, self.is_probed) = (None, 0, false);
@@ -217,12 +212,6 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
     fn bend_less(&mut self) {
         let bend = self.settings.bend;
         self.settings.bend = if bend > T::from_ratio(1, 10) { bend * T::from_ratio(1, 4) } else { T::zero() };
-    }
-
-    /// The size of prices, for a price that vanishes at the solution a small part of the largest.
-    pub fn magnitude(&mut self, price: T, decrement: T) -> T {
-        self.largest = larger(self.largest, price + decrement.abs());
-        price + T::EPSILON.sqrt() * self.largest
     }
 
     /// Whether the gap is only priced.
@@ -269,25 +258,13 @@ impl<X, T: Real, const D: usize> Iterate<X, T, D> {
         }
     }
 
-    /// Goes on from a correction that was made, or not, after a sweep with so many pivots that are not positive.
-    pub fn advance(
-        &mut self,
-        made: Option<Made<X, T, D>>,
-        size: T,
-        negative: usize,
-        stiffer: SMatrix<T, D, D>,
-        distance: T,
-    ) {
+    /// Goes on from a correction of which a fraction was made after some refusals, or none, after a sweep with so many pivots that are not positive.
+    pub fn advance(&mut self, made: Option<(T, usize)>, size: T, negative: usize, distance: T) {
         let is_far = size > T::from_ratio(NEAR.0, NEAR.1);
-        let (refused, fraction) = made.as_ref().map_or((usize::MAX, T::zero()), |made| (made.refused, made.fraction));
-        if let Some(made) = made {
-            self.last = made.last;
-            self.settings.multipliers += made.change * made.fraction;
-            self.relaxation *= T::one() - made.fraction;
-        }
+        let (fraction, refused) = made.unwrap_or((T::zero(), usize::MAX));
         // the weight of a priced gap is raised between critical plans
         if !self.is_priced() && (is_far || self.settings.weight.iter().all(|entry| *entry == T::zero())) {
-            self.settings.weight = stiffer;
+            self.settings.weight = self.stiffer;
         }
         self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), refused);
         self.before = Some(size);

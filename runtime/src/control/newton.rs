@@ -1,9 +1,9 @@
 //! Newton's method on a plan, and what is done where it does not contract.
 
 use super::end::PlanEnd;
-use super::iterate::{Iterate, ROUNDS, Use, Verdict};
+use super::iterate::{Iterate, ROUNDS, Verdict};
 use super::search::Descent;
-use super::sweep::{Plan, Settings};
+use super::sweep::{Plan, Problem, Settings};
 use super::{Optimum, barrier};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
@@ -37,30 +37,31 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let (mut size, mut stirs) = (zero, 0);
         for _ in 0..SWEEPS {
             self.sweeps += 1;
-            let end = self.end(&now.last);
-            let summary = self.eliminate(&now.last, &end, &now.settings)?;
+            let end = self.end();
+            let summary = self.eliminate(&end, &now.settings)?;
             let gramian = Equilibrated::of(&summary.gramian);
-            let descent = Descent::of(&summary, &end, &gramian, &now.settings);
+            let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(T::one());
             if !summary.price.is_finite() {
                 return Err(Error::NotFinite { name: "the price of the plan" });
             }
-            let stiffer = gramian.weight(&summary.gramian, &now.settings.weight);
-            let made_of_it = now.judge(&summary, &gramian, &stiffer);
-            if made_of_it == Use::Nothing {
+            let verdict = now.judge(&summary, &gramian);
+            if verdict == Verdict::Repeat {
                 continue;
             }
             if !decrement.is_finite() {
                 return Err(self.failure(&end, size));
             }
-            let magnitude = now.magnitude(summary.magnitude, decrement);
-            if made_of_it == Use::Escape {
+            now.largest = larger(now.largest, summary.magnitude + decrement.abs());
+            // the size of prices, for a price that vanishes at the solution a small part of the largest
+            let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
+            if verdict == Verdict::Escape {
                 now.leave_saddle(self.escape(&descent, magnitude));
                 continue;
             }
             if now.is_open {
                 let price = larger(summary.magnitude + decrement, summary.repair());
-                self.open(&mut now, is_priced, &stiffer, price);
+                self.open(&mut now, is_priced, price);
                 continue;
             }
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
@@ -80,7 +81,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 }
                 Verdict::Price if self.is_relaxed() => {}
                 Verdict::Price if end.distance <= T::from_ratio(1, 100) * end.scale => {
-                    now.close_gap(self.multipliers(&now.last, &end, &summary.costate), &end, S::MOTIONS);
+                    now.close_gap(self.multipliers(&end, &summary.costate), &end);
                     continue;
                 }
                 Verdict::Price if now.rounds < ROUNDS => {
@@ -97,12 +98,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     now = self.start(false)?;
                     continue;
                 }
-                Verdict::Correct => {}
+                Verdict::Correct | Verdict::Escape | Verdict::Repeat => {}
             }
             let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
-            let made = self.descend(&descent, magnitude, is_trusted, now.nearest);
-            let is_whole = made.as_ref().is_some_and(|made| made.fraction >= T::from_ratio(9, 10));
-            now.advance(made, size, summary.negative, stiffer, end.distance);
+            let made = self.descend(&mut now, &descent, magnitude, is_trusted);
+            let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));
+            now.advance(made, size, summary.negative, end.distance);
             if now.stalls == STALLS || now.damping > T::from_f64(DAMPING_LIMIT) {
                 return Err(self.failure(&end, size));
             }
@@ -111,7 +112,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 now.tighten(bounds, magnitude);
             }
         }
-        let end = self.end(&now.last);
+        let end = self.end();
         Err(self.failure(&end, size))
     }
 
@@ -119,60 +120,56 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     ///
     /// # Errors
     /// Those of a step.
-    fn start(&mut self, is_priced: bool) -> Result<Iterate<S::Place, T, D>, Error> {
-        let last = self.follow()?;
-        let end = self.end(&last);
+    fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
+        self.follow()?;
+        let end = self.end();
         let costate = self.stages.last().map(|stage| stage.next_costate);
         let multipliers = costate
             .filter(|costate| costate.is_finite() && costate.max_abs() > T::zero())
-            .map_or(SVector::zeros(), |costate| self.multipliers(&last, &end, &costate));
-        let barrier = if C > 0 { self.resume() } else { Some(T::zero()) };
-        if barrier.is_none() {
-            self.relax();
-            self.begin(T::zero());
-        }
-        let mut now = Iterate::new(last, multipliers, barrier, end.distance);
+            .map_or(SVector::zeros(), |costate| self.multipliers(&end, &costate));
+        let mut now = Iterate::new(multipliers, self.resume_or_relax(), end.distance);
         now.is_open |= is_priced;
         Ok(now)
     }
 
     /// Begins with bounds, or with a price of the gap, after the first sweep, which was made without and told the size of prices.
-    fn open(&mut self, now: &mut Iterate<S::Place, T, D>, is_priced: bool, stiffer: &SMatrix<T, D, D>, price: T) {
+    fn open(&mut self, now: &mut Iterate<T, D>, is_priced: bool, price: T) {
         now.is_open = false;
-        now.settings.weight = *stiffer;
+        now.settings.weight = now.stiffer;
         if C > 0 {
             // Where neither plans nor what keeps bounds have a price, any is as good.
             let is_free = price <= T::zero() && self.is_violated(now.relaxation);
             let price = if is_free { T::one() } else { price };
             now.largest = larger(now.largest, price);
-            now.settings.barrier = barrier::first(self.bounds(), price);
+            now.settings.barrier = T::from_f64(barrier::FIRST) * price / self.bounds();
             self.begin(now.settings.barrier);
         }
         if is_priced {
-            now.price_gap(stiffer, S::MOTIONS);
+            now.price_gap(S::MOTIONS);
         }
     }
 
-    /// The multipliers of the target with this costate at the end.
-    fn multipliers(&self, last: &S::Place, end: &PlanEnd<T, D>, costate: &SVector<T, D>) -> SVector<T, D> {
-        let t = self.problem.time_after(self.stages.len());
-        let slope = self.problem.system.endpoint_expanded(t, last).slope;
-        self.problem.goal.multipliers(end, &(costate - slope))
+    /// The multipliers ν of the target, for an end where E is given, with Eᵀν nearest to what this costate has beside the price of the end.
+    fn multipliers(&self, end: &PlanEnd<T, D>, costate: &SVector<T, D>) -> SVector<T, D> {
+        let Problem { system, lengths, .. } = &self.problem;
+        let slope = system.endpoint_expanded(self.problem.time_after(self.stages.len()), &self.last).slope;
+        let covector: SVector<T, D> = costate - slope;
+        SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]) * covector.component_div(lengths)
     }
 
     /// The end of a plan; round-off of its gap is relative to the largest place.
-    fn end(&self, last: &S::Place) -> PlanEnd<T, D> {
-        let end = self.problem.end(last);
+    fn end(&self) -> PlanEnd<T, D> {
+        let end = self.problem.end(&self.last);
         PlanEnd { scale: self.stages.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
     }
 
     /// The last sweep: exact second derivatives as they are, for gains and the index.
-    fn finish<'p>(&mut self, now: Iterate<S::Place, T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
-        let end = self.end(&now.last);
+    fn finish<'p>(&mut self, now: Iterate<T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        let end = self.end();
         let settings = Settings { curvature: Curvature::exact(T::zero()), is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
         let closed = PlanEnd { lack: SVector::zeros(), ..end };
-        let summary = self.eliminate(&now.last, &closed, &settings)?;
+        let summary = self.eliminate(&closed, &settings)?;
         Ok(Optimum {
             stages: &[],
             step_size: self.problem.h,
@@ -181,7 +178,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             gap: end.distance,
             negative: Equilibrated::of(&summary.gramian).index(summary.negative, now.rank),
             iterations: self.sweeps,
-            end: now.last,
+            end: self.last,
             final_costate: summary.costate,
         })
     }

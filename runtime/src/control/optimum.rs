@@ -20,17 +20,12 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     /// k and G: the change of the input is k + G δν + K δ.
     pub(super) shift: SVector<S::Scalar, U>,
     pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
-    pub(super) trial: Trial<S::Place, S::Scalar, U, C>,
+    /// What a roll-out proposes.
+    pub(super) next_place: S::Place,
+    pub(super) next_input: SVector<S::Scalar, U>,
+    pub(super) next_slack: SVector<S::Scalar, C>,
     /// The input before the solution began, given back after an error.
     pub(super) guess: SVector<S::Scalar, U>,
-}
-
-/// What a roll-out proposes for a stage.
-#[derive(Clone, Copy)]
-pub(super) struct Trial<X, T, const U: usize, const C: usize> {
-    pub place: X,
-    pub input: SVector<T, U>,
-    pub slack: SVector<T, C>,
 }
 
 impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
@@ -47,7 +42,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             excess: Space::origin(),
             shift: Space::origin(),
             by_multiplier: Space::origin(),
-            trial: Trial { place: *x, input: Space::origin(), slack: Space::origin() },
+            next_place: *x,
+            next_input: Space::origin(),
+            next_slack: Space::origin(),
             guess: Space::origin(),
         }
     }
@@ -67,19 +64,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     getters! {
         /// The place x_k where the step starts.
         ref place: S::Place;
-
         /// The input u_k of the step from x_k to x_{k+1}.
         ref input: SVector<S::Scalar, U>;
-
         /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
         ref costate: SVector<S::Scalar, D>;
-
         /// The matrix K of optimal feedback: where x_k is found changed by δ, the optimal plan from there to the same target begins with
         /// u_k + Kδ + O(δ²). Near the end, where not all of the target can be reached any more, what can be is.
         ///
         /// Shape U×D.
         ref gain: SMatrix<S::Scalar, U, D>;
-
         /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
         ref multipliers: SVector<S::Scalar, C>;
     }
@@ -112,29 +105,21 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
     getters! {
         /// The price Σ ℓ + φ.
         copy price: S::Scalar;
-
         /// The step size h.
         copy step_size: S::Scalar;
-
         /// The number of linearisations that were made, but for the last, which is for gains and the index.
         copy iterations: u32;
-
         /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
         copy residual: S::Scalar;
-
         /// The distance to what was asked of the end, as the root of the sum of squares of all entries; 0 for [`Target::Free`](crate::Target).
         copy gap: S::Scalar;
-
         /// The Morse index: the number of independent changes of the inputs, among those that keep the target and the active bounds, that make
         /// the price smaller. 0 on a local minimum.
         copy negative: usize;
-
         /// The place x_N: the target up to the [`gap`](Self::gap).
         ref end: S::Place;
-
         /// The costate p_N at the end: ∂φ/∂x and the multipliers of the target.
         ref final_costate: SVector<S::Scalar, D>;
-
         /// The steps in order, with place, input, costate, gain and multipliers.
         copy stages: &'p [Stage<S, D, U, C>];
     }

@@ -5,7 +5,7 @@ use super::sweep::Settings;
 use crate::linear::rows;
 use crate::newton::{Curvature, Equilibrated, Ldl, UNITS};
 use crate::space::larger;
-use crate::{BoundsExpansion, EndpointExpansion, Expansion, Real};
+use crate::{EndpointExpansion, Expansion, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// The price of a step and of all that follow, to second order in δ and δu: gradient and Hessian.
@@ -16,16 +16,23 @@ pub(super) struct Quadratic<T, const D: usize, const U: usize> {
     mixed: SMatrix<T, U, D>,
     input: SMatrix<T, U, U>,
     /// The part of it that is of this step alone.
-    own: SMatrix<T, U, U>,
-    /// Where there are bounds: the diagonal of that part without them.
-    unbounded: Option<SVector<T, U>>,
+    pub own: SMatrix<T, U, U>,
+    /// How much the price curves along each input, of which steadiness is a part.
+    ///
+    /// Bounds that are reached, of this step and, through P, of later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price
+    /// does. A part √ε of that would hold what is free beside them: each correction would make a part 10⁻⁴ of the way to a bound that is
+    /// reached with the multiplier 0. Hence, where there are bounds, the step alone tells, as interior point methods shift the Hessian of
+    /// the Lagrangian by what has nothing to do with Σ. Inputs that the step does not price are left as they are.
+    natural: SVector<T, U>,
     /// Q_xν, Q_uν
     place_multiplier: SMatrix<T, D, D>,
     pub input_multiplier: SMatrix<T, U, D>,
-    /// The slopes of what violates bounds.
-    violation_by_place: SVector<T, D>,
-    violation_by_input: SVector<T, U>,
+    /// The slopes of what violates bounds, by place and by input.
+    violation: Slopes<T, D, U>,
 }
+
+/// Those of a function of place and input.
+pub(super) type Slopes<T, const D: usize, const U: usize> = (SVector<T, D>, SVector<T, U>);
 
 /// The least price from a place on, to second order in δ and δν.
 pub(super) struct Value<T, const D: usize> {
@@ -36,7 +43,7 @@ pub(super) struct Value<T, const D: usize> {
     /// Ψ = ∂²V/∂x∂ν
     pub by_multiplier: SMatrix<T, D, D>,
     /// The slope of what violates bounds from the place on.
-    pub violation: SVector<T, D>,
+    violation: SVector<T, D>,
 }
 
 /// δu = k + K δ + G δν
@@ -52,20 +59,10 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
 }
 
 impl<T: Real, const D: usize> Value<T, D> {
-    /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e), or φ + ½ w d² where the squared distance d² to the target has the price w; the first `motions`
-    /// changes are those of configurations.
-    pub fn of_end(
-        endpoint: &EndpointExpansion<T, D>,
-        end: &PlanEnd<T, D>,
-        settings: &Settings<T, D>,
-        motions: usize,
-    ) -> Self {
+    /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e), or φ + ½ w d² where the squared distance d² to the target has the price w.
+    pub fn of_end(endpoint: &EndpointExpansion<T, D>, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Self {
         let (force, stiffness) = match settings.gap_price {
-            Some([by_motion, by_momentum]) => {
-                let price = |i: usize| if i < motions { by_motion } else { by_momentum };
-                let force = SVector::from_fn(|i, _| -(price(i) * end.pull[i]));
-                (force, SMatrix::from_fn(|i, j| price(i) * end.metric[(i, j)]))
-            }
+            Some(price) => (-price.component_mul(&end.pull), SMatrix::from_fn(|i, j| price[i] * end.metric[(i, j)])),
             None => {
                 let force = settings.multipliers - settings.weight * end.lack;
                 (end.slope.tr_mul(&force), end.slope.tr_mul(&(settings.weight * end.slope)))
@@ -81,93 +78,47 @@ impl<T: Real, const D: usize> Value<T, D> {
 }
 
 impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
-    /// Of one step, before the value of what follows.
+    /// Of a step with its bounds, and the value of what follows at A δ + B δu.
     #[inline]
-    pub fn of_step<X>(step: &Expansion<X, T, D, U>) -> Self {
-        Self {
-            by_place: step.price_by_place,
-            by_input: step.price_by_input,
-            place: step.place_curvature,
-            mixed: step.mixed_curvature,
-            input: step.input_curvature,
-            own: step.input_curvature,
-            unbounded: None,
-            place_multiplier: SMatrix::from_element(T::zero()),
-            input_multiplier: SMatrix::from_element(T::zero()),
-            violation_by_place: SVector::from_element(T::zero()),
-            violation_by_input: SVector::from_element(T::zero()),
-        }
-    }
-
-    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a: `force` is ζ and `stiffness` the diagonal Σ. What violates bounds has these `weights`.
-    #[inline]
-    pub fn add_bounds<const C: usize>(
-        &mut self,
-        bounds: &BoundsExpansion<T, D, U, C>,
-        force: &SVector<T, C>,
-        stiffness: &SVector<T, C>,
-        weights: &SVector<T, C>,
-    ) {
-        self.unbounded = Some(self.input.diagonal());
-        let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
-        let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
-        self.by_place += bounds.by_place.tr_mul(force);
-        self.by_input += bounds.by_input.tr_mul(force);
-        self.violation_by_place = bounds.by_place.tr_mul(weights);
-        self.violation_by_input = bounds.by_input.tr_mul(weights);
-        self.place += bounds.place_curvature + bounds.by_place.tr_mul(&by_place);
-        self.mixed += bounds.mixed_curvature + bounds.by_input.tr_mul(&by_place);
-        self.input += bounds.input_curvature + bounds.by_input.tr_mul(&by_input);
-    }
-
-    /// Adds the value of what follows at A δ + B δu.
-    #[inline]
-    pub fn add_value<X>(&mut self, step: &Expansion<X, T, D, U>, next: &Value<T, D>) {
+    pub fn of<X>(
+        step: &Expansion<X, T, D, U>,
+        natural: Option<SVector<T, U>>,
+        violation: &Slopes<T, D, U>,
+        next: &Value<T, D>,
+    ) -> Self {
         let (a, b) = (&step.by_place, &step.by_input);
-        self.by_place += a.tr_mul(&next.costate);
-        self.by_input += b.tr_mul(&next.costate);
-        self.violation_by_place += a.tr_mul(&next.violation);
-        self.violation_by_input += b.tr_mul(&next.violation);
-        self.own = self.input;
-        let (along, across) = (next.hessian * a, next.hessian * b);
-        self.place += a.tr_mul(&along);
-        self.mixed += b.tr_mul(&along);
-        self.input += b.tr_mul(&across);
-        self.place_multiplier = a.tr_mul(&next.by_multiplier);
-        self.input_multiplier = b.tr_mul(&next.by_multiplier);
-    }
-
-    /// How deep the price curves down in a direction, relative to the curvature of the step alone.
-    pub fn depth(&self, fall: &Fall<T, U>) -> T {
-        -fall.curvature / fall.direction.dot(&(self.own * fall.direction))
-    }
-
-    /// How much the price curves along each input, of which steadiness is a part.
-    ///
-    /// Bounds that are reached, of this step and, through P, of later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price
-    /// does. A part √ε of that would hold what is free beside them: each correction would make a part 10⁻⁴ of the way to a bound that is
-    /// reached with the multiplier 0. Hence, where there are bounds, the step alone tells, as interior point methods shift the Hessian of
-    /// the Lagrangian by what has nothing to do with Σ. Inputs that the step does not price are left as they are.
-    #[inline]
-    fn natural(&self) -> SVector<T, U> {
-        self.unbounded.unwrap_or_else(|| self.input.diagonal())
+        let along = next.hessian * a;
+        let across = next.hessian * b;
+        let input = step.input_curvature + b.tr_mul(&across);
+        Self {
+            by_place: step.price_by_place + a.tr_mul(&next.costate),
+            by_input: step.price_by_input + b.tr_mul(&next.costate),
+            place: step.place_curvature + a.tr_mul(&along),
+            mixed: step.mixed_curvature + b.tr_mul(&along),
+            input,
+            own: step.input_curvature,
+            natural: natural.unwrap_or_else(|| input.diagonal()),
+            place_multiplier: a.tr_mul(&next.by_multiplier),
+            input_multiplier: b.tr_mul(&next.by_multiplier),
+            violation: (violation.0 + a.tr_mul(&next.violation), violation.1 + b.tr_mul(&next.violation)),
+        }
     }
 
     /// The input that makes the model least, and the value that is left.
     #[inline]
     pub fn eliminate(&self, curvature: Curvature<T>) -> (Policy<T, D, U>, Value<T, D>) {
-        let pivot = Pivot::of(&self.input, &self.natural(), curvature);
+        let pivot = Pivot::of(&self.input, &self.natural, curvature);
         let shift = pivot.against(&self.by_input);
         let gain = pivot.against(&self.mixed);
         let by_multiplier = pivot.against(&self.input_multiplier);
-        let yielding = -self.violation_by_input.dot(&pivot.against(&self.violation_by_input));
+        let yielding = -self.violation.1.dot(&pivot.against(&self.violation.1));
         let half = T::from_ratio(1, 2);
         let hessian = self.place + self.mixed.tr_mul(&gain);
         let value = Value {
             costate: self.by_place + self.mixed.tr_mul(&shift),
             hessian: SMatrix::from_fn(|i, j| (hessian[(i, j)] + hessian[(j, i)]) * half),
             by_multiplier: self.place_multiplier + gain.tr_mul(&self.input_multiplier),
-            violation: self.violation_by_place + gain.tr_mul(&self.violation_by_input),
+            violation: self.violation.0 + gain.tr_mul(&self.violation.1),
         };
         (Policy { shift, gain, by_multiplier, negative: pivot.negative, fall: pivot.fall, yielding }, value)
     }
@@ -177,9 +128,9 @@ impl<T: Real, const D: usize, const U: usize> Quadratic<T, D, U> {
 struct Pivot<T, const U: usize> {
     factors: Factors<T, U>,
     /// The number of negative eigenvalues.
-    pub negative: usize,
+    negative: usize,
     /// The direction of the most negative one.
-    pub fall: Option<Fall<T, U>>,
+    fall: Option<Fall<T, U>>,
 }
 
 /// A direction δu of an input in which the price curves down.

@@ -11,8 +11,8 @@
 
 use super::barrier::TO_BOUNDARY;
 use super::end::PlanEnd;
+use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
-use crate::newton::Equilibrated;
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
@@ -29,43 +29,21 @@ pub(super) struct Descent<'a, T, const D: usize, const U: usize> {
     pub end: &'a PlanEnd<T, D>,
     pub settings: Settings<T, D>,
     /// Γ⁺
-    inverse: SMatrix<T, D, D>,
+    pub inverse: SMatrix<T, D, D>,
 }
 
 /// Where a proposed plan leads.
 struct Rolled<X, T> {
     last: X,
-    /// Σℓ + φ
-    price: T,
-    /// Σ ln(s⁺/s)
-    slack_logarithms: T,
-    /// z·(a + s) with the multipliers of the full step, before it.
-    excess_price: T,
+    /// The distance to the target.
+    distance: T,
+    /// By how much the augmented Lagrangian is larger.
+    difference: T,
     /// The fraction of the correction that slacks allow, where it is smaller than the one that was made.
     allowed: Option<T>,
 }
 
-/// A correction that was made.
-pub(super) struct Made<X, T, const D: usize> {
-    pub last: X,
-    pub fraction: T,
-    /// δν of the whole correction.
-    pub change: SVector<T, D>,
-    /// Roll-outs that were refused, other than by slacks.
-    pub refused: usize,
-}
-
-impl<'a, T: Real, const D: usize, const U: usize> Descent<'a, T, D, U> {
-    /// From what a sweep told.
-    pub fn of(
-        summary: &'a PlanSummary<T, D, U>,
-        end: &'a PlanEnd<T, D>,
-        gramian: &Equilibrated<T, D>,
-        settings: &Settings<T, D>,
-    ) -> Self {
-        Self { summary, end, settings: *settings, inverse: gramian.inverse() }
-    }
-
+impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
     /// δν of the correction that closes a part of the gap, Γ δν = V_ν + (1 − part) e, and twice what it takes from the model.
     pub fn correction(&self, part: T) -> (SVector<T, D>, T) {
         let PlanSummary { lack, descent, .. } = self.summary;
@@ -78,18 +56,12 @@ impl<'a, T: Real, const D: usize, const U: usize> Descent<'a, T, D, U> {
         (change, *descent + gain)
     }
 
-    /// By how much the augmented Lagrangian is larger after a step.
-    fn difference<X>(&self, rolled: &Rolled<X, T>, change: &SVector<T, D>, end: &PlanEnd<T, D>, fraction: T) -> T {
-        let penalties = self.penalty(change, end) - self.penalty(change, self.end);
-        let barriers = self.settings.barrier * rolled.slack_logarithms + fraction * rolled.excess_price;
-        rolled.price - self.summary.price - barriers + penalties
-    }
-
     /// ν⁺·g + ½ g·Rg, or ½ w d²
     fn penalty(&self, change: &SVector<T, D>, end: &PlanEnd<T, D>) -> T {
         let half = T::from_ratio(1, 2);
-        if let Some([by_motion, by_momentum]) = self.settings.gap_price {
-            return (by_motion * end.squares[0] + by_momentum * end.squares[1]) * half;
+        if let Some(price) = self.settings.gap_price {
+            // the first changes are those of configurations, the last those of momenta
+            return (price[0] * end.squares[0] + price[D - 1] * end.squares[1]) * half;
         }
         let weighted: SVector<T, D> = self.settings.weight * end.lack;
         weighted.dot(&end.lack) * half - (self.settings.multipliers + change).dot(&end.lack)
@@ -97,17 +69,17 @@ impl<'a, T: Real, const D: usize, const U: usize> Descent<'a, T, D, U> {
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// Makes a part of the correction; `None` where none that is large enough helps. Prices have the size `magnitude`, of which round-off is a part
-    /// ε; a full step that is trusted needs no proof; all plans before were no nearer to the target than `nearest`.
+    /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks; `None` where no part that is
+    /// large enough helps. Prices have the size `magnitude`, of which round-off is a part ε. A full step that is trusted needs no proof.
     ///
     /// Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.
     pub fn descend(
         &mut self,
+        now: &mut Iterate<T, D>,
         descent: &Descent<'_, T, D, U>,
         magnitude: T,
         is_trusted: bool,
-        nearest: T,
-    ) -> Option<Made<S::Place, T, D>> {
+    ) -> Option<(T, usize)> {
         let one = T::one();
         let half = T::from_ratio(1, 2);
         let (mut fraction, mut part, mut refused) = (one, one, 0);
@@ -116,7 +88,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let is_relaxed = self.is_relaxed();
         for _ in 0..TRIALS {
             let (change, decrement) = descent.correction(part);
-            if let Ok(rolled) = self.roll_out(fraction, &change, barrier) {
+            if let Ok(rolled) = self.roll_out(descent, fraction, &change) {
                 if let Some(allowed) = rolled.allowed {
                     // Bounds that curve allow less than they did from afar.
                     let allowed = larger(allowed * T::from_ratio(99, 100), fraction * T::from_f64(1e-3));
@@ -128,17 +100,17 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     }
                     continue;
                 }
-                let end = self.problem.end(&rolled.last);
-                let difference = descent.difference(&rolled, &change, &end, fraction);
                 let promised = fraction * decrement * T::from_f64(1e-4);
                 let round_off = T::from_f64(16.0) * T::EPSILON * magnitude;
-                let is_lower = difference <= round_off - promised;
-                let is_nearer = is_closed && end.distance < nearest * T::from_ratio(9, 10);
+                let is_lower = rolled.difference <= round_off - promised;
+                let is_nearer = is_closed && rolled.distance < now.nearest * T::from_ratio(9, 10);
                 let is_feasible = is_relaxed && fraction >= T::from_ratio(1, 10);
                 let is_enough = is_lower || is_nearer || is_feasible || is_trusted && fraction >= one;
-                if difference.is_finite() && is_enough {
-                    self.accept(fraction, barrier);
-                    return Some(Made { last: rolled.last, fraction, change, refused });
+                if rolled.difference.is_finite() && is_enough {
+                    self.accept(fraction, barrier, rolled.last);
+                    now.settings.multipliers += change * fraction;
+                    now.relaxation *= one - fraction;
+                    return Some((fraction, refused));
                 }
             }
             refused += 1;
@@ -147,63 +119,66 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         None
     }
 
-    /// Goes down from where a sweep with all curvature as it is found a direction to do so. Returns x_N; `None` where nothing gets smaller.
+    /// Goes down from where a sweep with all curvature as it is found a direction to do so. `false` where nothing gets smaller.
     #[cold]
-    pub fn escape(&mut self, descent: &Descent<'_, T, D, U>, magnitude: T) -> Option<S::Place> {
-        let zero = T::zero();
+    pub fn escape(&mut self, descent: &Descent<'_, T, D, U>, magnitude: T) -> bool {
         let one = T::one();
-        let fall = descent.summary.fall?;
-        let barrier = descent.settings.barrier;
+        let Some(fall) = descent.summary.fall else { return false };
         let mut size = (magnitude * T::from_ratio(1, 1_000) / fall.curvature.abs()).sqrt();
-        self.stages.iter_mut().for_each(|stage| stage.shift = SVector::from_element(zero));
+        self.stages.iter_mut().for_each(|stage| stage.shift = SVector::zeros());
         for _ in 0..HALVINGS {
             for part in [size, -size] {
                 if let Some(stage) = self.stages.get_mut(fall.stage) {
                     stage.shift = fall.direction * part;
                 }
-                let none = SVector::from_element(zero);
-                if let Ok(rolled) = self.roll_out(one, &none, barrier)
+                let promised = size * size * fall.curvature.abs() * T::from_ratio(1, 8);
+                if let Ok(rolled) = self.roll_out(descent, one, &SVector::zeros())
                     && rolled.allowed.is_none()
+                    && rolled.difference <= -promised
                 {
-                    let end = self.problem.end(&rolled.last);
-                    let promised = size * size * fall.curvature.abs() * T::from_ratio(1, 8);
-                    if descent.difference(&rolled, &none, &end, one) <= -promised {
-                        self.accept(one, barrier);
-                        return Some(rolled.last);
-                    }
+                    self.accept(one, descent.settings.barrier, rolled.last);
+                    return true;
                 }
             }
             size *= T::from_ratio(1, 2);
         }
-        None
+        false
     }
 
-    /// The places that the inputs lead to. Returns x_N.
+    /// The places that the inputs lead to.
     ///
     /// # Errors
     /// Those of a step; [`Error::NotFinite`].
-    pub fn follow(&mut self) -> Result<S::Place, Error> {
-        let mut x = *self.problem.start;
+    pub fn follow(&mut self) -> Result<(), Error> {
+        let Problem { system, constants, start, .. } = self.problem;
+        let mut x = *start;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.place = x;
-            x = self.problem.follow(index, &x, &stage.input)?;
+            x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
         }
-        if x.is_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the end of the guessed plan" }) }
+        self.last = x;
+        if x.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the end of the guessed plan" }) }
     }
 
     /// Proposes the plan after `fraction` of the correction with the change δν of the multipliers of the target.
     ///
     /// # Errors
     /// Those of a step.
-    fn roll_out(&mut self, fraction: T, change: &SVector<T, D>, barrier: T) -> Result<Rolled<S::Place, T>, Error> {
+    fn roll_out(
+        &mut self,
+        descent: &Descent<'_, T, D, U>,
+        fraction: T,
+        change: &SVector<T, D>,
+    ) -> Result<Rolled<S::Place, T>, Error> {
         let Problem { system, constants, start, .. } = self.problem;
+        let barrier = descent.settings.barrier;
         let (zero, one) = (T::zero(), T::one());
         let least = one - T::from_f64(TO_BOUNDARY);
-        let mut rolled =
-            Rolled { last: *start, price: zero, slack_logarithms: zero, excess_price: zero, allowed: None };
+        // Σℓ + φ, Σ ln(s⁺/s), and z·(a + s) before the step with the multipliers of the full one
+        let (mut price, mut logarithms, mut excess_price) = (zero, zero, zero);
+        let (mut x, mut allowed) = (*start, None);
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
-            let x = rolled.last;
             let mut input = stage.input + (stage.shift + stage.by_multiplier * change) * fraction;
             if index > 0 {
                 input += stage.gain * system.displacement(&stage.place, &x);
@@ -213,33 +188,38 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 for i in 0..C {
                     let (z, s) = (stage.multipliers[i], stage.slack[i]);
                     let next = (one - fraction) * stage.excess[i] - bounds[i];
-                    stage.trial.slack[i] = next;
+                    stage.next_slack[i] = next;
                     let ratio = next / s;
                     if ratio < least {
                         let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
-                        if limit < rolled.allowed.unwrap_or(fraction) {
-                            rolled.allowed = Some(limit);
+                        if limit < allowed.unwrap_or(fraction) {
+                            allowed = Some(limit);
                         }
                     } else {
-                        rolled.slack_logarithms += ratio.ln();
+                        logarithms += ratio.ln();
                         let full = (barrier - z * (next - s) / fraction) / s;
-                        rolled.excess_price += full * stage.excess[i];
+                        excess_price += full * stage.excess[i];
                     }
                 }
             }
-            rolled.price += system.price(constants, t, &x, &input);
-            (stage.trial.place, stage.trial.input) = (x, input);
-            rolled.last = system.follow(constants, t, &x, &input)?;
+            price += system.price(constants, t, &x, &input);
+            (stage.next_place, stage.next_input) = (x, input);
+            x = system.follow(constants, t, &x, &input)?;
         }
-        rolled.price += system.endpoint(self.problem.time_after(self.stages.len()), &rolled.last);
-        Ok(rolled)
+        price += system.endpoint(self.problem.time_after(self.stages.len()), &x);
+        let end = self.problem.end(&x);
+        let penalties = descent.penalty(change, &end) - descent.penalty(change, descent.end);
+        let barriers = barrier * logarithms + fraction * excess_price;
+        let difference = price - descent.summary.price - barriers + penalties;
+        Ok(Rolled { last: x, distance: end.distance, difference, allowed })
     }
 
-    /// Takes the proposed plan, made with this fraction of the correction.
-    fn accept(&mut self, fraction: T, barrier: T) {
+    /// Takes the proposed plan, made with this fraction of the correction, that leads to `last`.
+    fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
         for stage in self.stages.iter_mut() {
             stage.accept_slacks(fraction, barrier);
-            (stage.place, stage.input) = (stage.trial.place, stage.trial.input);
+            (stage.place, stage.input) = (stage.next_place, stage.next_input);
         }
+        self.last = last;
     }
 }

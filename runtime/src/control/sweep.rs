@@ -11,9 +11,9 @@
 //! for the multipliers of the target; Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998),
 //! for the bounds.
 
-use super::Stage;
-use super::end::{Goal, PlanEnd};
+use super::end::PlanEnd;
 use super::quadratic::{Fall, Policy, Quadratic, Value};
+use super::{Stage, Target};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Scalar, Space};
@@ -27,13 +27,17 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usi
     /// The time of the start.
     pub time: S::Scalar,
     pub start: &'a S::Place,
-    pub goal: Goal<'a, S::Place, S::Scalar, D>,
+    pub target: &'a Target<S::Place>,
+    /// The units of changes of the end.
+    pub lengths: SVector<S::Scalar, D>,
 }
 
 /// A plan, on the way from a guess to one of least price.
 pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub problem: Problem<'a, S, D, U, C>,
     pub stages: &'a mut [Stage<S, D, U, C>],
+    /// x_N
+    pub last: S::Place,
     /// The backward sweeps that were made.
     pub sweeps: u32,
 }
@@ -44,8 +48,8 @@ pub(super) struct Settings<T, const D: usize> {
     /// ν and R of the target.
     pub multipliers: SVector<T, D>,
     pub weight: SMatrix<T, D, D>,
-    /// Where no correction has to close the gap to the target: the price of its square, for changes of configurations and of momenta.
-    pub gap_price: Option<[T; 2]>,
+    /// Where no correction has to close the gap to the target: the price of its square, for each change.
+    pub gap_price: Option<SVector<T, D>>,
     /// The price μ of e-fold smaller slacks.
     pub barrier: T,
     pub curvature: Curvature<T>,
@@ -82,41 +86,7 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     yielding: T,
 }
 
-impl<T: Real, const D: usize> Settings<T, D> {
-    /// Those of a first sweep.
-    pub fn new(multipliers: SVector<T, D>, barrier: T) -> Self {
-        let zero = T::zero();
-        Self {
-            multipliers,
-            weight: SMatrix::from_element(zero),
-            gap_price: None,
-            barrier,
-            curvature: Curvature::mirrored(zero, zero),
-            bend: T::one(),
-            is_last: false,
-        }
-    }
-}
-
 impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
-    fn of_end(price: T, end: &PlanEnd<T, D>, costate: SVector<T, D>) -> Self {
-        let zero = T::zero();
-        Self {
-            price,
-            magnitude: price.abs(),
-            descent: zero,
-            residual: zero,
-            lack: -end.lack,
-            gramian: SMatrix::from_element(zero),
-            negative: 0,
-            fall: None,
-            reach: SVector::from_element(zero),
-            costate,
-            violation: zero,
-            yielding: zero,
-        }
-    }
-
     /// What it costs at least to keep the bounds that are violated: a change that keeps each of them takes V away, for which
     /// ½ V²/(g·H⁻¹g) is the least price in the quadratic model. It does not vanish with the price of the plan, and units of bounds cancel.
     /// What the target asks for, which makes it dearer, is left aside.
@@ -138,7 +108,8 @@ impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
         if let Some(fall) = policy.fall
             && self.fall.is_none_or(|deepest| fall.curvature < deepest.curvature)
         {
-            self.fall = Some(Fall { stage: index, depth: model.depth(&fall), ..fall });
+            let depth = -fall.curvature / fall.direction.dot(&(model.own * fall.direction));
+            self.fall = Some(Fall { stage: index, depth, ..fall });
         }
         for j in 0..U {
             self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
@@ -152,51 +123,46 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     pub fn time_after(&self, steps: usize) -> S::Scalar {
         self.time + S::Scalar::from_f64(steps as f64) * self.h
     }
-
-    /// x_{k+1}
-    ///
-    /// # Errors
-    /// Those of a step.
-    pub fn follow(&self, k: usize, x: &S::Place, u: &SVector<S::Scalar, U>) -> Result<S::Place, Error> {
-        self.system.follow(self.constants, self.time_after(k), x, u)
-    }
-
-    /// The end of a plan at `x`.
-    pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
-        self.goal.end(self.system, x)
-    }
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// Linearises and eliminates a plan that ends at `last`: fills costates, gains and shifts of the stages.
+    /// Linearises and eliminates: fills costates, gains and shifts of the stages.
     ///
     /// # Errors
     /// Those of a step.
-    pub fn eliminate(
-        &mut self,
-        last: &S::Place,
-        end: &PlanEnd<T, D>,
-        settings: &Settings<T, D>,
-    ) -> Result<PlanSummary<T, D, U>, Error> {
+    pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
         let Problem { system, constants, .. } = self.problem;
         let steps = self.stages.len();
-        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), last);
-        let mut value = Value::of_end(&endpoint, end, settings, S::MOTIONS);
-        let mut summary = PlanSummary::of_end(endpoint.price, end, value.costate);
+        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), &self.last);
+        let mut value = Value::of_end(&endpoint, end, settings);
+        let zero = T::zero();
+        let mut summary = PlanSummary {
+            price: endpoint.price,
+            magnitude: endpoint.price.abs(),
+            descent: zero,
+            residual: zero,
+            lack: -end.lack,
+            gramian: SMatrix::zeros(),
+            negative: 0,
+            fall: None,
+            reach: SVector::zeros(),
+            costate: value.costate,
+            violation: zero,
+            yielding: zero,
+        };
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
-            let step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
-            let mut model = Quadratic::of_step(&step);
+            let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+            let (mut natural, mut violation) = (None, (SVector::zeros(), SVector::zeros()));
             if C > 0 {
+                natural = Some(step.input_curvature.diagonal());
                 let multipliers = stage.multipliers * settings.bend;
                 let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
-                let (force, stiffness) = stage.condensed(settings.barrier);
-                let force = if settings.is_last { stage.multipliers } else { force };
-                let (violation, weights) = stage.violation();
-                model.add_bounds(&bounds, &force, &stiffness, &weights);
-                summary.violation += violation;
+                let (violated, slopes) = stage.add_bounds(&mut step, &bounds, settings);
+                violation = slopes;
+                summary.violation += violated;
             }
-            model.add_value(&step, &value);
+            let model = Quadratic::of(&step, natural, &violation, &value);
             let (policy, mut before) = model.eliminate(settings.curvature);
             summary.count(index, step.price, &model, &policy);
             if settings.is_last {

@@ -10,19 +10,12 @@ const TRIALS: usize = 60;
 /// Doublings of a first step size for which there is no solution.
 const DOUBLINGS: usize = 10;
 
-/// A step size with the slope dV/dh there, and the sum of the sizes of its terms.
-#[derive(Clone, Copy)]
-pub(crate) struct Sample<T> {
-    pub h: T,
-    pub slope: T,
-    pub size: T,
-}
-
-/// What one step size gives: the answer with its slope, found by so many sweeps.
+/// What one step size gives: an answer found by so many sweeps, with the slope dV/dh there, and the sum of the sizes of its terms.
 pub(crate) struct Trial<T, A> {
     pub answer: A,
-    pub sample: Sample<T>,
     pub sweeps: u32,
+    pub slope: T,
+    pub size: T,
 }
 
 /// Where the zero of the slope is looked for, by the secant method.
@@ -34,7 +27,8 @@ pub(crate) struct Bracket<T> {
     long: Option<T>,
     /// A step size for which there is no solution.
     impossible: Option<T>,
-    last: Option<Sample<T>>,
+    /// The step size before, with its slope.
+    last: Option<[T; 2]>,
 }
 
 impl<T: Real> Bracket<T> {
@@ -67,9 +61,9 @@ impl<T: Real> Bracket<T> {
         let mut iterations = 0;
         for number in 1..=TRIALS {
             match trial(h) {
-                Ok(Trial { answer, sample, sweeps }) => {
+                Ok(Trial { answer, sweeps, slope, size }) => {
                     iterations += sweeps;
-                    let next = self.next(sample);
+                    let next = self.next(h, slope, size);
                     let is_narrow = self.width() <= T::EPSILON.sqrt();
                     if (next - h).abs() <= accuracy * h || number == TRIALS && is_narrow {
                         return Ok((answer, iterations));
@@ -78,15 +72,11 @@ impl<T: Real> Bracket<T> {
                 }
                 Err(error) => {
                     let is_too_short = matches!(error, Error::Infeasible { .. } | Error::TargetMissed { .. });
-                    let next = match self.retreat(h) {
-                        Some(next) => next,
-                        None if is_too_short && number <= DOUBLINGS => self.inside(h + h),
-                        None => return Err(error),
+                    let doubled = (is_too_short && number <= DOUBLINGS).then(|| self.inside(h + h));
+                    h = match self.retreat(h).or(doubled) {
+                        Some(next) if retreats && next != h => next,
+                        _ => return Err(error),
                     };
-                    if next == h || !retreats {
-                        return Err(error);
-                    }
-                    h = next;
                 }
             }
         }
@@ -107,26 +97,26 @@ impl<T: Real> Bracket<T> {
     /// The step size to try where there is no solution for `h`: halfway back. `None` where there was none before.
     pub fn retreat(&mut self, h: T) -> Option<T> {
         self.impossible = Some(h);
-        self.last.map(|last| (last.h + h) * T::from_ratio(1, 2))
+        self.last.map(|[last, _]| (last + h) * T::from_ratio(1, 2))
     }
 
     /// The step size to try next; the same where the slope vanishes or falls beyond a limit.
-    pub fn next(&mut self, sample: Sample<T>) -> T {
-        let before = self.last.replace(sample);
-        let is_short = sample.slope < T::zero();
-        *(if is_short { &mut self.short } else { &mut self.long }) = Some(sample.h);
-        if sample.slope.abs() <= T::from_f64(64.0) * T::EPSILON * sample.size {
-            return sample.h;
+    pub fn next(&mut self, h: T, slope: T, size: T) -> T {
+        let before = self.last.replace([h, slope]);
+        let is_short = slope < T::zero();
+        *(if is_short { &mut self.short } else { &mut self.long }) = Some(h);
+        if slope.abs() <= T::from_f64(64.0) * T::EPSILON * size {
+            return h;
         }
-        let secant = before.map(|b| sample.h - sample.slope * (sample.h - b.h) / (sample.slope - b.slope));
+        let secant = before.map(|[last, other]| h - slope * (h - last) / (slope - other));
         let (Some(short), Some(long)) = (self.short, self.long) else {
-            return self.outwards(sample.h, is_short, secant);
+            return self.outwards(h, is_short, secant);
         };
         // Steps of the secant that do not at least halve are not trusted.
         let half = T::from_ratio(1, 2);
-        let most = before.map_or(T::zero(), |b| (sample.h - b.h).abs() * half);
+        let most = before.map_or(T::zero(), |[last, _]| (h - last).abs() * half);
         match secant {
-            Some(next) if next > short && next < long && (next - sample.h).abs() <= most => next,
+            Some(next) if next > short && next < long && (next - h).abs() <= most => next,
             _ => (short + long) * half,
         }
     }

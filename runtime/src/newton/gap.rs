@@ -49,25 +49,19 @@ pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>)
     Some(SVector::from_fn(|i, _| x[i]))
 }
 
+/// x, and the projector to the motions that change nothing.
+pub(crate) type Closing<T, const M: usize> = (SVector<T, M>, Option<SMatrix<T, M, M>>);
+
 /// The smallest x with A x = b for a symmetric A with no negative eigenvalue, and the orthogonal projector to the kernel of A, of eigenvalues
 /// below √ε of the largest; `None` where there is no kernel.
 #[inline]
-pub(crate) fn shortest<T: Real, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
-    match regular(a, b) {
-        Some(x) => (x, None),
-        None => singular(a, b),
-    }
+pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Closing<T, M> {
+    regular(a, b).map_or_else(|| singular(a, b), |x| (x, None))
 }
 
 /// A⁺b and the projector to the kernel of A.
 #[cold]
-pub fn singular<T: Real, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> (SVector<T, M>, Option<SMatrix<T, M, M>>) {
+pub fn singular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Closing<T, M> {
     let spectrum = Spectrum::of(a);
     let tolerance = T::EPSILON.sqrt() * spectrum.largest();
     let inverse = spectrum.map(|value| if value > tolerance { value.recip() } else { T::zero() });

@@ -111,15 +111,13 @@ fn annihilate<T: Real, const M: usize>(
     let tangent = if ratio < T::zero() { -size.recip() } else { size.recip() };
     let cosine = (T::one() + tangent * tangent).sqrt().recip();
     let sine = tangent * cosine;
+    let turned = |x: T, y: T| (cosine * x - sine * y, sine * x + cosine * y);
     for k in 0..M {
-        let (x, y) = (a[(k, p)], a[(k, q)]);
-        (a[(k, p)], a[(k, q)]) = (cosine * x - sine * y, sine * x + cosine * y);
+        (a[(k, p)], a[(k, q)]) = turned(a[(k, p)], a[(k, q)]);
     }
     for k in 0..M {
-        let (x, y) = (a[(p, k)], a[(q, k)]);
-        (a[(p, k)], a[(q, k)]) = (cosine * x - sine * y, sine * x + cosine * y);
-        let (x, y) = (vectors[(k, p)], vectors[(k, q)]);
-        (vectors[(k, p)], vectors[(k, q)]) = (cosine * x - sine * y, sine * x + cosine * y);
+        (a[(p, k)], a[(q, k)]) = turned(a[(p, k)], a[(q, k)]);
+        (vectors[(k, p)], vectors[(k, q)]) = turned(vectors[(k, p)], vectors[(k, q)]);
     }
     (a[(p, q)], a[(q, p)]) = (T::zero(), T::zero());
     true

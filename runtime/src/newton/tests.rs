@@ -1,9 +1,7 @@
 //! Brackets, damping, factors and spectra, each by itself.
 
-use super::curvature::adapted;
-use super::free_time::{Bracket, Sample};
 use super::gap::{arc_per_chord, regular, singular};
-use super::{Ldl, Spectrum};
+use super::{Bracket, Ldl, Spectrum, adapted};
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3};
 use proptest::prelude::*;
 
@@ -15,7 +13,7 @@ fn zeros_are_found_within_limits() {
         let (mut h, mut trials) = (bracket.inside(0.3), 0);
         loop {
             let slope: f64 = h - 1.0 / (h * h * h);
-            let next = bracket.next(Sample { h, slope, size: h });
+            let next = bracket.next(h, slope, h);
             trials += 1;
             if (next - h).abs() < 1e-14 {
                 break;
@@ -33,7 +31,7 @@ fn impossible_step_sizes_are_kept_away_from() {
     let mut h: f64 = bracket.inside(8.0);
     for _ in 0..60 {
         h = if h > 1.0 {
-            bracket.next(Sample { h, slope: h - 1.01, size: h })
+            bracket.next(h, h - 1.01, h)
         } else {
             bracket.retreat(h).expect("the first step size is possible")
         };
