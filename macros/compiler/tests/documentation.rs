@@ -30,7 +30,14 @@ impl Documented {
 
     fn shows(&self, row: &Formula<'_>) -> bool {
         let substep = row.id.substep();
-        row.id.shown_by().contains(&self.name.as_str())
+        // these are told apart by more than the names of their functions
+        let is_named = match row.id {
+            Id::Displacement => self.name == "displace",
+            Id::Lagrangian => self.name == "velocity",
+            Id::Equation(..) if self.name == "Equation" => true,
+            id => emit::shown_by(id).contains(&self.name.as_str()),
+        };
+        is_named
             && (substep.is_none() || substep == self.place.map(|(index, _)| index))
             && row.id.equation() == self.place.and_then(|(_, number)| number)
     }

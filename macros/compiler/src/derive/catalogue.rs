@@ -204,85 +204,61 @@ pub struct Entry {
 }
 
 impl Id {
-    /// The substep whose formula it is; `None` for those of the whole system.
-    pub fn substep(self) -> Option<usize> {
+    /// The numbers of its substep and of its equation there, as far as it has them.
+    fn numbers(&mut self) -> (Option<&mut usize>, Option<&mut usize>) {
         match self {
-            Id::StartKick(index)
-            | Id::RestKick(index)
-            | Id::StartForce(index)
-            | Id::MovingForce(index)
-            | Id::EndForce(index)
-            | Id::StartGradient(index)
-            | Id::Equation(index, _)
-            | Id::Jacobian(index, _)
-            | Id::JacobianFactor(index, _)
-            | Id::Solution(index, _)
-            | Id::Predictor(index, _)
-            | Id::MomentumUpdate(index)
-            | Id::MomentumAfter(index)
-            | Id::EndKick(index)
-            | Id::EndGradient(index)
-            | Id::CoupledGradient(index) => Some(index),
-            _ => None,
+            Id::StartKick(substep)
+            | Id::RestKick(substep)
+            | Id::StartForce(substep)
+            | Id::MovingForce(substep)
+            | Id::EndForce(substep)
+            | Id::StartGradient(substep)
+            | Id::MomentumUpdate(substep)
+            | Id::MomentumAfter(substep)
+            | Id::EndKick(substep)
+            | Id::EndGradient(substep)
+            | Id::CoupledGradient(substep)
+            | Id::Edge(substep)
+            | Id::EdgeMomenta(substep)
+            | Id::Carried(substep)
+            | Id::EdgeSlopes(substep) => (Some(substep), None),
+            Id::Equation(substep, number)
+            | Id::Jacobian(substep, number)
+            | Id::JacobianFactor(substep, number)
+            | Id::Solution(substep, number)
+            | Id::Predictor(substep, number)
+            | Id::SineSquared(substep, number)
+            | Id::ClosedForm(substep, number)
+            | Id::Explicit(substep, number)
+            | Id::System(substep, number)
+            | Id::Preparation(substep, number)
+            | Id::Residual(substep, number)
+            | Id::Linearization(substep, number) => (Some(substep), Some(number)),
+            _ => (None, None),
         }
+    }
+
+    /// The substep whose formula it is; `None` for those of the whole system.
+    pub fn substep(mut self) -> Option<usize> {
+        self.numbers().0.copied()
     }
 
     /// The equation whose formula it is, by its number in its substep.
-    pub fn equation(self) -> Option<usize> {
-        match self {
-            Id::Equation(_, number)
-            | Id::Jacobian(_, number)
-            | Id::JacobianFactor(_, number)
-            | Id::Solution(_, number)
-            | Id::Predictor(_, number) => Some(number),
-            _ => None,
-        }
+    pub fn equation(mut self) -> Option<usize> {
+        self.numbers().1.copied()
     }
 
-    /// The generated methods and types whose documentation shows it, without the suffixes of substeps.
-    pub fn shown_by(self) -> &'static [&'static str] {
-        match self {
-            Id::Action => &["act"],
-            Id::MomentumMap => &["momentum_map"],
-            Id::Coadjoint => &["coadjoint"],
-            Id::Generator => &["infinitesimal_motion"],
-            Id::Retraction => &["retractions"],
-            Id::Composition => &["compose"],
-            Id::OrbitMetric => &["orbit_metric"],
-            Id::Lagrangian => &["velocity"],
-            Id::PotentialEnergy => &["potential"],
-            Id::KineticEnergyOfMomentum => &["kinetic_energy"],
-            Id::Force => &["start_force", "moving_force", "end_force"],
-            Id::Legendre => &["legendre"],
-            Id::LegendreNext => &["legendre_next"],
-            Id::Term(_) => &["potential_of_sites"],
-            Id::Controls => &["follow"],
-            Id::Price => &["price"],
-            Id::Bounds => &["bounds"],
-            Id::PriceOfEnd => &["endpoint"],
-            Id::Conserved(_) => &["conserved"],
-            Id::StartKick(_) => &["start_kick"],
-            Id::RestKick(_) => &["rest"],
-            Id::StartGradient(_) => &["start_gradient"],
-            Id::Equation(..) => &["Equation", "residual", "linearize"],
-            Id::Jacobian(..) => &["linearize", "system"],
-            Id::JacobianFactor(..) => &["linearize"],
-            Id::Solution(..) => &["closed_form", "explicit"],
-            Id::Predictor(..) => &["predict", "explicit"],
-            Id::MomentumAfter(_) => &["update"],
-            Id::EndKick(_) => &["end_kick"],
-            Id::EndGradient(_) => &["end_gradient"],
-            Id::CoupledGradient(_) => &["coupled_gradient"],
-            Id::SynchronizedMomentum => &["stagger"],
-            Id::SplittingKick => &["kick"],
-            Id::SplittingGradient => &["kick_gradient"],
-            Id::Increment => &["increment"],
-            Id::Advance => &["advance"],
-            Id::Displacement => &["displace"],
-            Id::Lift => &["lift"],
-            Id::HamiltonEquations => &["slope"],
-            _ => &[],
-        }
+    /// The same of an equation of a substep.
+    pub fn at(mut self, (index, equation): (usize, usize)) -> Id {
+        let (substep, number) = self.numbers();
+        substep.into_iter().for_each(|substep| *substep = index);
+        number.into_iter().for_each(|number| *number = equation);
+        self
+    }
+
+    /// Whether another id differs from it in numbers alone.
+    pub fn is_like(self, other: Id) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
 
     /// What the table says.

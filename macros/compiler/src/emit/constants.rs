@@ -1,41 +1,42 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
 use clebsch_symbolic::Role;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, SystemEmitter, code, docs, matrices};
+use super::scope::{Scope, index, size};
+use super::{Emitter, SystemEmitter, docs};
 use crate::derive::{Id, Solution};
-use crate::lower::Solve;
-use crate::model::{Promise, Side};
+use crate::lower::{Kernel, Solve};
+use crate::model::{Access, Promise, Side};
 
 impl Emitter<'_, '_> {
     /// The struct of the constants.
     pub(super) fn constants_type(&self) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let names = self.program.constant_names.iter().map(|name| format_ident!("{name}"));
+        let (name, private, scalar) = (&self.names.constants, &self.paths.private, &self.paths.scalar);
+        let names = self.kernels.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
-        let inverse = match self.has_uniform_inertia() {
-            true => quote!(#scalar),
-            false if self.program.form.keeps_matrices() => {
-                let dimension = Literal::usize_unsuffixed(self.dimension());
-                quote!(#private::InertiaInverse<#scalar, #dimension>)
-            }
-            false => self.paths.matrix(self.dimension(), self.dimension()),
+        let inverse = if self.has_uniform_inertia() {
+            quote!(#scalar)
+        } else if self.keeps_matrices {
+            let dimension = size(self.dimension());
+            quote!(#private::InertiaInverse<#scalar, #dimension>)
+        } else {
+            self.paths.matrix(self.dimension(), self.dimension())
         };
-        let inverse = (!self.program.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
+        let inverse = (!self.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let kind = self.kind_of_free_rotation();
-        let rotations = self.free_rotations().map(|(name, _)| quote!(#name: #private::#kind<#scalar>,));
+        let rotations = self.free_rotations().map(|(name, _)| name);
         let step_size = self.needs_step_size().then(|| quote!(step_size: #scalar,));
-        let (name, (generics, _)) = (&self.names.constants, self.constants_generics());
+        let parameter = self.model.item.scalar.is_parameter().then(|| quote!(<#scalar: #private::Scalar>));
         let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
         quote! {
             #documentation
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
-            pub struct #name #generics {
+            pub struct #name #parameter {
                 #(#names: #scalar,)*
                 #(#orientations: #private::Orientation,)*
-                #(#rotations)*
+                #(#rotations: #private::#kind<#scalar>,)*
                 #step_size
                 #inverse
             }
@@ -44,127 +45,115 @@ impl Emitter<'_, '_> {
 
     /// Whether Σ is kept as the number κ of κI.
     pub(super) fn has_uniform_inertia(&self) -> bool {
-        self.program.formulas.uniform_inertia.is_some()
+        self.formulas.uniform_inertia.is_some()
     }
 
     /// Σ as an expression, or κ of κI.
-    pub(super) fn inertia(&self, scope: &code::Scope<'_, '_>) -> TokenStream {
+    pub(super) fn inertia(&self, scope: &Scope<'_, '_>) -> TokenStream {
         let kernel = self.program.kernel(Id::Inertia);
-        if !self.program.form.keeps_matrices() || self.has_uniform_inertia() {
-            let (locals, (shape, entries)) = (code::locals(scope, kernel), &kernel.outputs[0]);
-            return match self.has_uniform_inertia() {
-                true => {
-                    let kappa = scope.code(&entries[0], false);
-                    quote!(#locals #kappa)
-                }
-                false => {
-                    let inertia = code::grid(scope, *shape, entries, false);
-                    quote!(#locals #inertia)
-                }
-            };
+        if self.has_uniform_inertia() {
+            return scope.body_of_scalar(kernel);
         }
-        let (locals, inertia) = matrices::matrix_of(scope, kernel, 0, "x", |role| matches!(role, Role::Algebra(_)));
+        if !self.keeps_matrices {
+            return scope.body(kernel);
+        }
+        let (locals, inertia) = scope.matrix_of(kernel, 0, "x", |role| matches!(role, Role::Algebra(_)));
         quote!(#locals #inertia)
     }
 
     /// Whether the size of a step is a constant by itself.
     fn needs_step_size(&self) -> bool {
-        let formulas = &self.program.formulas;
-        formulas.splitting.is_some() || formulas.collocation.is_some() || self.program.form.keeps_matrices()
+        let formulas = &self.formulas;
+        formulas.splitting.is_some() || formulas.collocation.is_some() || self.keeps_matrices
     }
 
     /// Whether the orientation of an equation is a constant, made of Σ.
     pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
         let iterates = matches!(solve.solution, Solution::Newton | Solution::Linear);
-        iterates && !self.program.formulas.inertia_moves()
+        iterates && !self.formulas.inertia_moves()
+    }
+
+    fn solves(&self) -> impl Iterator<Item = &Solve> {
+        self.program.steps.iter().flat_map(|step| &step.solves)
     }
 
     /// For each equation whose orientation is a constant: the name of its orientation, and the equation.
-    pub(super) fn implicit_solves(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
-        let solves = self.program.steps.iter().enumerate().flat_map(|(index, step)| {
-            let suffix = self.program.suffix(index);
-            step.solves.iter().enumerate().map(move |(number, solve)| (suffix, number, solve))
-        });
-        let implicit = solves.filter(|(_, _, solve)| self.has_orientation(solve));
-        implicit.map(|(suffix, number, solve)| (format_ident!("orientation{suffix}_{}", number + 1), solve))
+    fn implicit_solves(&self) -> impl Iterator<Item = (Ident, &Solve)> {
+        let implicit = self.solves().filter(|solve| self.has_orientation(solve));
+        implicit.map(|solve| (self.orientation(solve), solve))
     }
 
-    /// The name of the constants of a free rotation.
-    pub(super) fn free_rotation(&self, suffix: &str, number: usize) -> proc_macro2::Ident {
-        format_ident!("free_rotation{suffix}_{}", number + 1)
+    /// The name of the orientation of an equation.
+    pub(super) fn orientation(&self, solve: &Solve) -> Ident {
+        format_ident!("orientation{}_{}", self.program.suffix(solve.substep), solve.number + 1)
     }
 
     /// The equations that are solved by the free rotation of a body, with the names of its constants.
-    pub(super) fn free_rotations(&self) -> impl Iterator<Item = (proc_macro2::Ident, &Solve)> {
-        let steps = self.program.steps.iter().enumerate();
-        steps.flat_map(move |(index, step)| {
-            let free = step.solves.iter().enumerate().filter(|(_, solve)| solve.solution == Solution::FreeRotation);
-            free.map(move |(number, solve)| (self.free_rotation(self.program.suffix(index), number), solve))
-        })
+    pub(super) fn free_rotations(&self) -> impl Iterator<Item = (Ident, &Solve)> {
+        let free = self.solves().filter(|solve| solve.solution == Solution::FreeRotation);
+        free.map(|solve| (self.free_rotation(solve), solve))
+    }
+
+    /// The name of the constants of a free rotation.
+    pub(super) fn free_rotation(&self, solve: &Solve) -> Ident {
+        format_ident!("free_rotation{}_{}", self.program.suffix(solve.substep), solve.number + 1)
     }
 
     /// The part of `inertia` that belongs to a free rotation.
     pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
-        let private = &self.paths.private;
+        let (private, dimension) = (&self.paths.private, solve.components.len());
         if self.has_uniform_inertia() {
-            let dimension = solve.components.len();
             let matrix = self.paths.matrix(dimension, dimension);
             return quote!(<#matrix>::from_diagonal_element(inertia));
         }
-        if self.dimension() == solve.components.len() {
+        if self.dimension() == dimension {
             return quote!(inertia);
         }
-        let start = Literal::usize_unsuffixed(solve.components[0]);
+        let start = size(solve.components[0]);
         quote!(#private::Blocks::block::<3, 3>(&inertia, #start, #start))
     }
 
     /// Whether the factor of an equation acts from the left.
     pub(super) fn is_left(&self, solve: &Solve) -> bool {
-        let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
-        self.model.factors[self.program.formulas.symbols.blocks[block].factor].side == Side::Left
+        let block = self.symbols.blocks_of(&solve.components)[0];
+        self.model.factors[self.symbols.blocks[block].factor].side == Side::Left
     }
 
     /// The sign of det Σ/h for some components: of Dρ at the identity for short steps, but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
-        let private = &self.paths.private;
-        let count = components.len();
+        let (private, count) = (&self.paths.private, size(components.len()));
         if self.has_uniform_inertia() {
-            let count = Literal::usize_unsuffixed(count);
             return quote!(#private::orientation_of_uniform(inertia / h, #count)?);
         }
         let first = components.first().copied().unwrap_or(0);
-        if components.iter().copied().eq(first..first + count) {
-            let part = match count == self.dimension() {
-                true => quote!(inertia),
-                false => {
-                    let [count, first] = [count, first].map(Literal::usize_unsuffixed);
-                    quote!(#private::Blocks::block::<#count, #count>(&inertia, #first, #first))
-                }
-            };
-            return quote!(#private::orientation_of_inertia(&#part, h)?);
-        }
-        let rows = components.iter().map(|&i| {
-            let row = components.iter().map(|&j| {
-                let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
-                quote!(inertia[(#i, #j)])
+        let part = if !components.iter().copied().eq(first..first + components.len()) {
+            let rows = components.iter().map(|&i| {
+                let row = components.iter().map(|&j| index(false, (i, j)));
+                quote!([#(inertia #row),*])
             });
-            quote!([#(#row),*])
-        });
-        quote!(#private::orientation_of_inertia(&#private::matrix([#(#rows),*]), h)?)
+            quote!(#private::matrix([#(#rows),*]))
+        } else if components.len() == self.dimension() {
+            quote!(inertia)
+        } else {
+            let first = size(first);
+            quote!(#private::Blocks::block::<#count, #count>(&inertia, #first, #first))
+        };
+        quote!(#private::orientation_of_inertia(&#part, h)?)
     }
 
-    /// The method `constants`.
-    pub(super) fn constants(&self) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let scope = self.scope_of_system();
+    /// The body of the function that makes the constants.
+    pub(super) fn constants(&self, kernel: &Kernel) -> TokenStream {
+        let (private, scope) = (&self.paths.private, self.scope_of_system());
         let (constants, checks) = (&self.names.constants, self.checks());
-        let moves = self.program.formulas.inertia_moves();
+        let moves = self.formulas.inertia_moves();
         let inertia = (!moves).then(|| {
             let inertia = self.inertia(&scope);
-            let invert = match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
-                (true, _) => quote!(invert_uniform),
-                (false, true) => quote!(InertiaInverse::new),
-                (false, false) => quote!(invert),
+            let invert = if self.has_uniform_inertia() {
+                quote!(invert_uniform)
+            } else if self.keeps_matrices {
+                quote!(InertiaInverse::new)
+            } else {
+                quote!(invert)
             };
             quote! {
                 let inertia = { #inertia };
@@ -172,13 +161,11 @@ impl Emitter<'_, '_> {
             }
         });
         let inverse = (!moves).then(|| quote!(inertia_inverse,));
-        let locals = code::locals(&scope, self.program.kernel(Id::Constants));
-        let fields = self.program.constant_names.iter().zip(&self.program.kernel(Id::Constants).outputs).map(
-            |(name, (_, entries))| {
-                let (name, value) = (format_ident!("{name}"), scope.code(&entries[0], false));
-                quote!(#name: #value,)
-            },
-        );
+        let locals = scope.locals(kernel);
+        let fields = self.kernels.constant_names.iter().enumerate().map(|(index, name)| {
+            let (name, value) = (format_ident!("{name}"), scope.scalar(kernel, index));
+            quote!(#name: #value,)
+        });
         let orientations = self.implicit_solves().map(|(name, solve)| {
             let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
             // det Σ is the product of those of what was put in and of what that leaves
@@ -187,24 +174,12 @@ impl Emitter<'_, '_> {
             quote!(#name: #whole #coupled,)
         });
         let rotations = self.free_rotations().map(|(name, solve)| {
-            let inertia = self.block_of_inertia(solve);
-            let kind = self.kind_of_free_rotation();
-            match &self.model.dials.tolerance {
-                Some(tolerance) => {
-                    let part = Literal::f64_unsuffixed(tolerance.value);
-                    quote!(#name: #private::#kind::to_tolerance(&#inertia, h, #part)?,)
-                }
-                None => quote!(#name: #private::#kind::new(&#inertia, h)?,),
-            }
+            let constants = self.constants_of_free_rotation(&self.block_of_inertia(solve));
+            quote!(#name: #constants,)
         });
         let step_size = self.needs_step_size().then(|| quote!(step_size: h,));
-        let documentation = docs::formulas(
-            "Checks the parameters and computes what no step changes.",
-            &[],
-            Some(self.program.kernel(Id::Constants)),
-        );
-        let receiver = self.receiver_parameter();
-        let body = quote! {
+        quote! {
+            #checks
             #inertia
             #locals
             #private::Ok(#constants {
@@ -214,13 +189,6 @@ impl Emitter<'_, '_> {
                 #step_size
                 #inverse
             })
-        };
-        quote! {
-            #documentation
-            fn constants(#receiver, h: #scalar) -> #private::Result<Self::Constants, #private::Error> {
-                #checks
-                #body
-            }
         }
     }
 }
@@ -231,20 +199,26 @@ impl SystemEmitter<'_, '_> {
         let (private, system) = (&self.paths.private, self.receiver());
         let checks = self.model.parameters.iter().map(|parameter| {
             let (field, name) = (&parameter.field, &parameter.name);
-            let promises = parameter
-                .promise
-                .into_iter()
-                .flat_map(|promise| parameter.leaves.iter().map(move |leaf| (promise, code::accessor(&leaf.accessor))));
-            let promises = promises.map(|(promise, access)| match promise {
-                Promise::Symmetric => quote!(#private::check_symmetric(#name, &#system.#field #access)?;),
-                Promise::Diagonal => quote!(#private::check_diagonal(#name, &#system.#field #access)?;),
-                Promise::Unit => quote!(#private::check_unit(#name, &#system.#field #access)?;),
+            let of_leaf = |access: &Access| quote!(#system.#field #access);
+            let promises = parameter.promise.iter().flat_map(|promise| {
+                parameter.leaves.iter().map(move |leaf| self.check_of(*promise, name, &of_leaf(&leaf.accessor)))
             });
             quote! {
                 #private::check_finite(#name, &#system.#field)?;
                 #(#promises)*
             }
         });
-        quote!(#(#checks)*)
+        checks.collect()
+    }
+
+    /// The check of what the user promises of a value.
+    pub(super) fn check_of(&self, promise: Promise, name: &str, value: &TokenStream) -> TokenStream {
+        let private = &self.paths.private;
+        let check = match promise {
+            Promise::Symmetric => quote!(check_symmetric),
+            Promise::Diagonal => quote!(check_diagonal),
+            Promise::Unit => quote!(check_unit),
+        };
+        quote!(#private::#check(#name, &#value)?;)
     }
 }

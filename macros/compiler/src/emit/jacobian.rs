@@ -1,39 +1,25 @@
-//! How linear systems with the Jacobian of an equation are solved, and the sign of its determinant.
+//! How linear systems with the Jacobian of an equation are solved.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::Emitter;
-use crate::derive::Structure;
-use crate::lower::Solve;
+use super::equation::EquationType;
+use super::scope::{index, size};
+use crate::derive::{Solution, Structure};
 
-impl Emitter<'_, '_> {
-    /// The sign of det Dρ at the identity, where it is a constant.
-    pub(super) fn orientation(&self, index: usize, number: usize, solve: &Solve) -> Option<TokenStream> {
-        let (private, suffix) = (&self.paths.private, self.program.suffix(index));
-        self.has_orientation(solve).then(|| {
-            let field = format_ident!("orientation{suffix}_{}", number + 1);
-            quote! {
-                #[inline]
-                fn orientation(&self) -> #private::Option<#private::Orientation> {
-                    #private::Some(self.1.#field)
-                }
-            }
-        })
-    }
-
+impl EquationType<'_, '_, '_> {
     /// The solution of linear systems with the Jacobian, where it is symmetric or block triangular.
-    pub(super) fn correct(&self, solve: &Solve) -> Option<TokenStream> {
-        let private = &self.paths.private;
-        let vector = self.vector_type(solve.dimension);
-        let matrix = self.paths.matrix(solve.dimension, solve.dimension);
-        let (title, body) = match &solve.structure {
+    pub(super) fn correct(&self) -> Option<TokenStream> {
+        let (private, vector) = (&self.emitter.paths.private, &self.vector);
+        let matrix = self.emitter.paths.matrix(self.solve.dimension, self.solve.dimension);
+        let (title, body) = match &self.solve.structure {
             Structure::Dense | Structure::Sylvester(_) => return None,
+            _ if !matches!(self.solve.solution, Solution::Newton | Solution::Linear) => return None,
             Structure::Symmetric => {
                 ("Dρ is symmetric: LDLᵀ where it is definite.", quote!(#private::solve_symmetric(a, b)))
             }
             Structure::Triangular(blocks) => {
-                ("Dρ is block triangular: one small system for each block.", self.by_blocks(solve, blocks))
+                ("Dρ is block triangular: one small system for each block.", self.by_blocks(blocks))
             }
         };
         Some(quote! {
@@ -46,25 +32,26 @@ impl Emitter<'_, '_> {
     }
 
     /// One small system for each block, with the unknowns of those before it put in.
-    fn by_blocks(&self, solve: &Solve, blocks: &[Vec<usize>]) -> TokenStream {
-        let private = &self.paths.private;
+    fn by_blocks(&self, blocks: &[Vec<usize>]) -> TokenStream {
+        let private = &self.emitter.paths.private;
         let systems = blocks.iter().enumerate().map(|(number, block)| {
             let known = blocks[..number].concat();
             let rows = block.iter().map(|&i| {
-                let entries = block.iter().map(|&j| entry(i, j));
-                quote!([#(#entries),*])
+                let entries = block.iter().map(|&j| index(false, (i, j)));
+                quote!([#(a #entries),*])
             });
             let right = block.iter().map(|&i| {
-                let terms = known.iter().filter(|&&j| !self.program.is_zero(solve, i, j)).map(|&j| {
-                    let (a, x) = (entry(i, j), format_ident!("x{j}"));
-                    quote!(- #a * #x)
+                let known = known.iter().filter(|&&j| !self.emitter.program.is_zero(self.solve, i, j));
+                let terms = known.map(|&j| {
+                    let (a, x) = (index(false, (i, j)), format_ident!("x{j}"));
+                    quote!(- a #a * #x)
                 });
-                let i = Literal::usize_unsuffixed(i);
+                let i = size(i);
                 quote!(b[#i] #(#terms)*)
             });
             let (x, sign) = (format_ident!("solution{number}"), format_ident!("sign{number}"));
             let names = block.iter().map(|i| format_ident!("x{i}"));
-            let positions = (0..block.len()).map(Literal::usize_unsuffixed);
+            let positions = (0..block.len()).map(size);
             quote! {
                 let (#x, #sign) = #private::solve_dense(
                     &#private::matrix([#(#rows),*]),
@@ -73,7 +60,7 @@ impl Emitter<'_, '_> {
                 let [#(#names),*] = [#(#x[#positions]),*];
             }
         });
-        let names = (0..solve.dimension).map(|i| format_ident!("x{i}"));
+        let names = (0..self.solve.dimension).map(|i| format_ident!("x{i}"));
         let signs = (1..blocks.len()).map(|number| format_ident!("sign{number}"));
         let sign = signs.fold(quote!(sign0), |product, sign| quote!(#product * #sign));
         quote! {
@@ -81,9 +68,4 @@ impl Emitter<'_, '_> {
             #private::Some((#private::vector([#(#names),*]), #sign))
         }
     }
-}
-
-fn entry(i: usize, j: usize) -> TokenStream {
-    let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
-    quote!(a[(#i, #j)])
 }

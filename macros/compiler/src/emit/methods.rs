@@ -3,54 +3,39 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::{Emitter, Generics, SystemEmitter};
+use super::{Emitter, SystemEmitter};
 use crate::MethodProgram;
 
 impl<'g> Emitter<'_, 'g> {
     /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
     pub(super) fn methods(&self) -> TokenStream {
         let blocks = self.program.methods.iter().map(|method| {
-            let items = Emitter::of_method(self.program, method).items_of_method(&method.name);
-            quote!(const _: () = { #items };)
+            let emitter = Emitter::of_method(self.program, method);
+            let (constants, method) = (emitter.constants_type(), emitter.implementation_of_method(&method.name));
+            let (parts, equations, velocity) = (emitter.parts(), emitter.equations(), emitter.velocity());
+            quote!(const _: () = { #constants #method #parts #equations #velocity };)
         });
-        quote!(#(#blocks)*)
-    }
-
-    fn items_of_method(&self, name: &Ident) -> TokenStream {
-        let (constants, method) = (self.constants_type(), self.implementation_of_method(name));
-        let (parts, equations, velocity) = (self.parts(), self.equations(), self.velocity());
-        quote!(#constants #method #parts #equations #velocity)
+        blocks.collect()
     }
 
     /// What depends on how the system is stepped.
     fn implementation_of_method(&self, name: &Ident) -> TokenStream {
-        let (krate, system) = (&self.paths.krate, self.item_type());
-        let Generics { parameters, predicates, .. } = &self.generics;
-        let (constants_type, scheme, order) = (self.constants_of_step(), self.scheme(), self.model.order.number());
-        let derivation = self.program.derivation_by(name);
-        let free_motion = self.is_free_motion();
-        let (constants, legendre) = (self.constants(), self.legendre_transforms());
-        let (stagger, kinetic_energy) = (self.stagger(), self.kinetic_energy_of_momentum());
+        let (krate, system) = (&self.paths.krate, self.target.of_type());
+        let (parameters, _, predicates) = self.target.generics.split_for_impl();
+        let stepping = self.stepping(None, &self.program.derivation_by(name));
         quote! {
             #[automatically_derived]
-            impl<#parameters> #krate::Method<#system> for #name #predicates {
-                type Constants = #constants_type;
-                type Scheme = #scheme;
-
-                const ORDER: ::core::primitive::u32 = #order;
-                #free_motion
-                const DERIVATION: &'static ::core::primitive::str = #derivation;
-
-                #constants
-                #legendre
-                #stagger
-                #kinetic_energy
-            }
+            impl #parameters #krate::Method<#system> for #name #predicates { #stepping }
         }
     }
 
+    /// An implementation of a hidden trait of the runtime.
+    pub(super) fn implementation(&self, name: &str, sizes: &[Literal], items: TokenStream) -> TokenStream {
+        self.target.implementation(Some(self.trait_of_parts(name, sizes)), items)
+    }
+
     /// A trait of the parts of a step, as a type names it. That of the declared dials is its default.
-    pub(super) fn trait_of_parts(&self, name: &str, sizes: &[&Literal]) -> TokenStream {
+    pub(super) fn trait_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
         let (private, name) = (&self.paths.private, format_ident!("{name}"));
         match self.method {
             Some(method) => quote!(#private::#name<#(#sizes,)* #method>),
@@ -60,7 +45,7 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The same, as a call names it. What has one method has no other parts.
-    pub(super) fn call_of_parts(&self, name: &str, sizes: &[&Literal]) -> TokenStream {
+    pub(super) fn call_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
         let (private, name) = (&self.paths.private, format_ident!("{name}"));
         match self.method {
             Some(method) => quote!(#private::#name::<#(#sizes,)* #method>),
@@ -79,7 +64,7 @@ impl SystemEmitter<'_, '_> {
 
     /// The same as a parameter.
     pub(super) fn receiver_parameter(&self) -> TokenStream {
-        let system = self.item_type();
+        let system = self.target.of_type();
         if self.method.is_some() { quote!(system: &#system) } else { quote!(&self) }
     }
 }

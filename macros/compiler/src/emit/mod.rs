@@ -5,36 +5,41 @@ mod code;
 mod collocation;
 mod constants;
 mod control;
+mod dials;
 mod docs;
 mod equation;
 mod exact;
+mod functions;
 mod jacobian;
 mod matrices;
 mod methods;
 mod names;
 mod opaque;
 mod parts;
-mod path;
 mod power;
 mod scheme;
+mod scope;
+mod solve;
 mod stub;
 mod system;
+mod types;
 mod variation;
 
+use std::cell::RefCell;
 use std::ops::Deref;
 
-use clebsch_symbolic::Group;
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::{Ident, TokenStream};
+use quote::{ToTokens, format_ident, quote};
 
 use crate::MethodProgram;
-use crate::derive::{FormulaTable, Id, Symbols, SystemFormulas};
+use crate::derive::{FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
 use crate::lower::{KernelTable, MechanicsProgram, Program, SteeredProgram};
 use crate::model::{Item, Mechanics, Opaque, Power, System};
-use code::{Scope, Spelled, nested_type};
 use names::Names;
-use path::Paths;
+use scope::{Scope, size};
+use types::{Paths, Target};
 
+pub use functions::shown_by;
 pub use stub::stub;
 
 /// The integrator of a program.
@@ -101,6 +106,7 @@ fn pretty(items: &TokenStream) -> String {
 struct Emitter<'a, 'g> {
     system: SystemEmitter<'a, 'g>,
     program: &'a MechanicsProgram<'g>,
+    formulas: &'a MechanicsFormulas<'g>,
     model: &'a Mechanics<'g>,
 }
 
@@ -118,7 +124,8 @@ struct SystemEmitter<'a, 'g> {
     /// Paths of the runtime, as they are spelled where no name of the expansion is in scope.
     spelled: Paths,
     paths: Paths,
-    generics: Generics,
+    /// The user's struct; of a power that of a site.
+    target: Target,
     names: Names,
 }
 
@@ -130,111 +137,29 @@ impl<'a, 'g> Deref for Emitter<'a, 'g> {
     }
 }
 
-/// The user's generics in the forms that impls need.
-struct Generics {
-    /// Parameters as an impl declares them, without angle brackets or defaults.
-    parameters: TokenStream,
-    /// Arguments, without angle brackets.
-    arguments: TokenStream,
-    /// The where clause, with the scalar's bound.
-    predicates: TokenStream,
-}
-
-impl Generics {
-    fn of(item: &Item, paths: &Paths) -> Generics {
-        let mut generics = item.generics.clone();
-        for parameter in generics.type_params_mut() {
-            parameter.default = None;
-        }
-        for parameter in generics.const_params_mut() {
-            parameter.default = None;
-        }
-        let parameters = &generics.params;
-        let arguments = generics.params.iter().map(|parameter| match parameter {
-            syn::GenericParam::Lifetime(lifetime) => {
-                let lifetime = &lifetime.lifetime;
-                quote!(#lifetime)
-            }
-            syn::GenericParam::Type(parameter) => {
-                let ident = &parameter.ident;
-                quote!(#ident)
-            }
-            syn::GenericParam::Const(parameter) => {
-                let ident = &parameter.ident;
-                quote!(#ident)
-            }
-        });
-        let arguments: Vec<TokenStream> = arguments.collect();
-        let predicates = generics.where_clause.as_ref().map(|clause| &clause.predicates).into_iter().flatten();
-        let predicates: Vec<_> = predicates.collect();
-        let (private, scalar) = (&paths.private, &paths.scalar);
-        let bound =
-            matches!(item.scalar, crate::model::ScalarType::Parameter(_)).then(|| quote!(#scalar: #private::Scalar,));
-        Generics {
-            parameters: quote!(#parameters),
-            arguments: quote!(#(#arguments),*),
-            predicates: quote!(where #(#predicates,)* #bound),
-        }
-    }
-}
-
 impl<'a, 'g> Emitter<'a, 'g> {
     fn new(program: &'a MechanicsProgram<'g>) -> Emitter<'a, 'g> {
-        Emitter { system: SystemEmitter::of_mechanics(program), program, model: &program.formulas.model }
+        let (formulas, model) = (&program.formulas, &program.formulas.model);
+        Emitter { system: SystemEmitter::of_mechanics(program), program, formulas, model }
     }
 
     /// The emitter of a method, which has the names of that of the declared dials.
     fn of_method(declared: &'a MechanicsProgram<'g>, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
-        let program = &method.program;
-        let SystemEmitter { spelled, paths, generics, names, .. } = SystemEmitter::of_mechanics(declared);
+        let emitter = Emitter::new(&method.program);
+        let SystemEmitter { spelled, paths, target, names, .. } = SystemEmitter::of_mechanics(declared);
         let method = Some(&method.name);
-        let system = SystemEmitter { method, spelled, paths, generics, names, ..SystemEmitter::of_mechanics(program) };
-        Emitter { system, program, model: &program.formulas.model }
+        Emitter { system: SystemEmitter { method, spelled, paths, target, names, ..emitter.system }, ..emitter }
     }
 
     fn items(&self) -> TokenStream {
-        let groups = self.groups();
-        let power = self.power();
-        let constants = self.constants_type();
-        let system = self.system();
-        let conserves = self.conserves();
-        let parts = self.parts();
-        let (equations, velocity, check) = (self.equations(), self.velocity(), self.potential_check());
+        let (groups, aliases) = (self.groups(), self.aliases());
+        let (power, constants, system) = (self.power(), self.constants_type(), self.system());
+        // what is conserved of a power is a sum over its sites
+        let conserves = self.power.is_none().then(|| self.conserves());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
-        let (aliases, methods) = (self.aliases(), self.methods());
+        let (check, parts, equations) = (self.potential_check(), self.parts(), self.equations());
+        let (velocity, methods) = (self.velocity(), self.methods());
         quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
-    }
-
-    /// Whether the cost or the potential depends on the time, so that steps are told it.
-    fn is_timed(&self) -> bool {
-        self.program.formulas.is_timed()
-    }
-
-    /// Whether the end kick of a step serves as the start kick of the next.
-    fn shares_impulse(&self) -> bool {
-        let formulas = &self.program.formulas;
-        let last = formulas.stepped - 1;
-        formulas.substeps[0].start == formulas.substeps[last].end
-            && self.program.find(Id::StartKick(0)).is_some()
-            && self.program.find(Id::EndKick(last)).is_some()
-            && formulas.splitting.is_none()
-            && formulas.collocation.is_none()
-    }
-
-    /// Whether steps are made in (q, w).
-    fn follows_great_circles(&self) -> bool {
-        self.program.turns_in_plane()
-    }
-
-    /// Whether sums are compensated.
-    fn is_compensated(&self) -> bool {
-        self.program.formulas.is_compensated()
-    }
-
-    /// Whether steps are made in (q, w) and nothing pushes.
-    fn is_free_on_great_circles(&self) -> bool {
-        let is_free = |id: Id| self.program.find(id).is_none();
-        self.follows_great_circles() && is_free(Id::StartGradient(0)) && is_free(Id::EndGradient(0))
     }
 }
 
@@ -259,7 +184,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         names: Names,
     ) -> SystemEmitter<'a, 'g> {
         let model = &*formulas.model;
-        let spelled = Paths::new(&model.item);
+        let spelled = Paths::new(&model.item.krate.to_token_stream(), &model.item.scalar);
         SystemEmitter {
             model,
             symbols: &formulas.symbols,
@@ -270,7 +195,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             opaque: None,
             method: None,
             paths: spelled.named(&model.item, &names),
-            generics: Generics::of(&model.item, &spelled),
+            target: Target::new(&model.item.ident, &model.item.generics, &model.item.scalar, &spelled.private),
             spelled,
             names,
         }
@@ -289,26 +214,26 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         let built_in = self.model.factors.iter().filter(|factor| !factor.group.is_declared());
         let types = built_in.map(|factor| {
             let (name, sizes) = factor.group.symbol();
-            let name = Ident::new(name, factor.span);
-            let sizes = sizes.into_iter().map(Literal::usize_unsuffixed);
+            let (name, sizes) = (Ident::new(name, factor.span), sizes.into_iter().map(size));
             quote!(const _: ::core::option::Option<#krate::group::#name<#(#sizes),*>> = ::core::option::Option::None;)
         });
-        quote!(#(#types)*)
+        types.collect()
+    }
+
+    /// The user's struct as it is declared, where that is another one than that of a site.
+    fn declared(&self, private: &TokenStream) -> Target {
+        let item: &Item = self.power.map_or(&self.model.item, |power| &power.item);
+        Target::new(&item.ident, &item.generics, &item.scalar, private)
     }
 
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
-        let item = self.power.map_or(&self.model.item, |power| &power.item);
-        let Generics { parameters, arguments, predicates } = Generics::of(item, &self.spelled);
-        let (ident, name) = (&item.ident, format_ident!("{name}"));
-        let documentation = docs::lines(&[documentation.to_string()]);
-        quote! {
-            #[automatically_derived]
-            impl<#parameters> #ident<#arguments> #predicates {
-                #documentation
-                pub const #name: &'static ::core::primitive::str = #text;
-            }
-        }
+        let (name, documentation) = (format_ident!("{name}"), docs::lines(&[documentation.to_string()]));
+        let constant = quote! {
+            #documentation
+            pub const #name: &'static ::core::primitive::str = #text;
+        };
+        self.declared(&self.spelled.private).derived(None, constant)
     }
 
     /// The scope of a method of the user's struct.
@@ -339,93 +264,16 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             momenta: (0..dimension).collect(),
             coordinates: (0..dimension).collect(),
             blocks: self.symbols.blocks.iter().map(|block| block.offset).collect(),
-            momentum: "mu",
-            item: self.item_type(),
+            item: self.target.of_type(),
             keeps_matrices: self.keeps_matrices,
-            spelled: Spelled::default(),
+            reads: RefCell::default(),
+            numbers: RefCell::default(),
         }
     }
+}
 
-    /// The user's struct with its generics.
-    fn item_type(&self) -> TokenStream {
-        let (ident, arguments) = (&self.model.item.ident, &self.generics.arguments);
-        if arguments.is_empty() { quote!(#ident) } else { quote!(#ident<#arguments>) }
-    }
-
-    fn input_type(&self) -> TokenStream {
-        nested_type(&self.model.input, &|leaf| self.paths.leaf(self.model.inputs[leaf].shape, false))
-    }
-
-    /// The number of components of a momentum.
-    fn dimension(&self) -> usize {
-        self.model.dimension()
-    }
-
-    /// Short names for what signatures are made of.
-    fn aliases(&self) -> TokenStream {
-        let Names { runtime, scalar, configuration, element, momentum, .. } = &self.names;
-        let (module, spelled) = (&self.spelled.private, &self.spelled.scalar);
-        let is_parameter = matches!(self.model.item.scalar, crate::model::ScalarType::Parameter(_));
-        let scalar = (!is_parameter).then(|| quote!(type #scalar = #spelled;));
-        let generics = is_parameter.then(|| quote!(<#spelled>));
-        // momenta that are stepped alone have no configuration
-        let of_configuration = generics.clone().filter(|_| !self.model.configurations.is_empty());
-        let [q, f, mu] = self.types(&self.paths);
-        quote! {
-            use #module as #runtime;
-            #scalar
-            type #configuration #of_configuration = #q;
-            type #element #generics = #f;
-            type #momentum #generics = #mu;
-        }
-    }
-
-    /// The types of q, F and μ.
-    fn types(&self, paths: &Paths) -> [TokenStream; 3] {
-        let configuration = nested_type(&self.model.configuration, &|leaf| {
-            let configuration = &self.model.configurations[leaf];
-            paths.leaf(configuration.shape, configuration.is_quaternion)
-        });
-        let element = nested_type(&self.model.element, &|factor| {
-            let group = self.model.factors[factor].group;
-            paths.leaf(group.element_shape(), group == Group::UnitQuaternions)
-        });
-        [configuration, element, paths.matrix(self.dimension(), 1)]
-    }
-
-    fn configuration_type(&self) -> TokenStream {
-        let name = &self.names.configuration;
-        if self.model.configurations.is_empty() { quote!(#name) } else { self.alias(name) }
-    }
-
-    fn element_type(&self) -> TokenStream {
-        self.alias(&self.names.element)
-    }
-
-    fn momentum_type(&self) -> TokenStream {
-        self.alias(&self.names.momentum)
-    }
-
-    /// The type of a vector, by its name where it has one.
-    fn vector_type(&self, rows: usize) -> TokenStream {
-        if rows == self.dimension() { self.momentum_type() } else { self.paths.matrix(rows, 1) }
-    }
-
-    /// The names of the types of q, F and μ.
-    fn names_of_types(&self) -> [TokenStream; 3] {
-        [self.configuration_type(), self.element_type(), self.momentum_type()]
-    }
-
-    fn alias(&self, name: &Ident) -> TokenStream {
-        let (_, arguments) = self.constants_generics();
-        quote!(#name #arguments)
-    }
-
-    fn constants_generics(&self) -> (TokenStream, TokenStream) {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        match self.model.item.scalar {
-            crate::model::ScalarType::Parameter(_) => (quote!(<#scalar: #private::Scalar>), quote!(<#scalar>)),
-            _ => (quote!(), quote!()),
-        }
-    }
+/// A constant of a trait that is true or false.
+fn flag(name: &str, value: bool) -> TokenStream {
+    let name = format_ident!("{name}");
+    quote!(const #name: ::core::primitive::bool = #value;)
 }

@@ -1,29 +1,26 @@
 //! The check of an opaque potential: its gradient method against differences of its value method.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::{Emitter, Generics, code, docs};
+use super::scope::size;
+use super::{Emitter, docs};
 use crate::lower::Callee;
 
 impl Emitter<'_, '_> {
     /// The method `check_potential`, for the user's tests.
     pub(super) fn potential_check(&self) -> TokenStream {
-        let Some(opaque) = &self.model.opaque else { return TokenStream::new() };
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, krate, private) = (&self.model.item.ident, &self.paths.krate, &self.paths.private);
-        let (configuration, scalar) = (self.configuration_type(), &self.paths.scalar);
+        let Some(opaque) = self.opaque else { return TokenStream::new() };
+        let (krate, private) = (&self.paths.krate, &self.paths.private);
+        let (configuration, scalar) = (self.alias("Q"), &self.paths.scalar);
         let scope = self.scope_of_system();
-        let (value, gradient) =
-            (scope.method(&Callee::Value(String::new())), scope.method(&Callee::Gradient(String::new())));
-        let (time_parameter, time) = match opaque.takes_time {
-            true => (quote!(t: #scalar,), quote!(t,)),
-            false => (quote!(), quote!()),
-        };
+        let [value, gradient] =
+            [Callee::Value(String::new()), Callee::Gradient(String::new())].map(|callee| scope.method(&callee));
+        let time_parameter = opaque.takes_time.then(|| quote!(t: #scalar,));
+        let time = opaque.takes_time.then(|| quote!(t,));
         let mut entry = 0;
         let checks = self.model.configurations.iter().map(|leaf| {
-            let access = code::accessor(&leaf.accessor);
-            let (first, count) = (Literal::usize_unsuffixed(entry), Literal::usize_unsuffixed(leaf.shape.len()));
+            let (access, first, count) = (&leaf.accessor, size(entry), size(leaf.shape.len()));
             entry += leaf.shape.len();
             quote! {
                 for index in 0..#count {
@@ -45,20 +42,18 @@ impl Emitter<'_, '_> {
             "# Errors".into(),
             "`Error::WrongGradient` with the first entry that differs, `Error::NotFinite`.".into(),
         ]);
-        quote! {
-            #[automatically_derived]
-            impl<#parameters> #ident<#arguments> #predicates {
-                #documentation
-                pub fn check_potential(
-                    &self,
-                    #time_parameter
-                    q: &#configuration,
-                ) -> ::core::result::Result<(), #krate::Error> {
-                    let gradient = #gradient(self, #time q);
-                    #(#checks)*
-                    ::core::result::Result::Ok(())
-                }
+        let check = quote! {
+            #documentation
+            pub fn check_potential(
+                &self,
+                #time_parameter
+                q: &#configuration,
+            ) -> ::core::result::Result<(), #krate::Error> {
+                let gradient = #gradient(self, #time q);
+                #(#checks)*
+                ::core::result::Result::Ok(())
             }
-        }
+        };
+        self.target.derived(None, check)
     }
 }

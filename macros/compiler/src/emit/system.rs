@@ -1,34 +1,29 @@
-//! The implementation of the trait `Clebsch` for the user's struct.
+//! The implementation of the trait `Clebsch` for the user's struct, and what goes with it.
 
 use clebsch_symbolic::{Group, Property, Role};
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
 
-use super::code::Nesting;
+use super::functions::{Body, CONSERVES, Function, SYSTEM, VELOCITY};
 use super::names::Names;
-use super::{Emitter, Generics, SystemEmitter, code, docs};
-use crate::derive::{Formula, Id, Solution};
+use super::scope::size;
+use super::{Emitter, SystemEmitter, flag};
+use crate::derive::{Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
 use crate::model::LeafSpace;
 
-impl Emitter<'_, '_> {
+impl<'g> Emitter<'_, 'g> {
     /// The impl block.
     pub(super) fn system(&self) -> TokenStream {
-        let (krate, scalar) = (&self.paths.krate, &self.paths.scalar);
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (ident, name) = (&self.model.item.ident, self.model.item.ident.to_string());
+        let (krate, scalar, name) = (&self.paths.krate, &self.paths.scalar, self.target.ident.to_string());
         // what a person reads in the documentation is spelled
         let [configuration, element, momentum] = self.types(&self.spelled);
-        let (input, private) = (self.input_type(), &self.paths.private);
-        let time = if self.is_timed() { quote!(#private::Clock<#scalar>) } else { quote!(()) };
-        let order = self.model.order.number();
-        let free_motion = self.is_free_motion();
-        let (constants_type, scheme) = (self.constants_of_step(), self.scheme());
-        let derivation = self.program.derivation();
-        let (constants, formulas, checks) = (self.constants(), self.formulas(), self.space_checks());
-        quote! {
-            #[automatically_derived]
-            impl<#parameters> #krate::Clebsch for #ident<#arguments> #predicates {
+        let (input, time) = (self.input_type(), self.time_type());
+        let name = quote!(const NAME: &'static ::core::primitive::str = #name;);
+        let stepping = self.stepping(Some(name), &self.program.derivation());
+        self.target.derived(
+            Some(quote!(#krate::Clebsch)),
+            quote! {
                 type Scalar = #scalar;
                 type Configuration = #configuration;
                 type Element = #element;
@@ -36,69 +31,90 @@ impl Emitter<'_, '_> {
                 type MomentumMatrix = #element;
                 type Input = #input;
                 type Time = #time;
-                type Constants = #constants_type;
-                type Scheme = #scheme;
+                #stepping
+            },
+        )
+    }
 
-                const NAME: &'static ::core::primitive::str = #name;
-                const ORDER: ::core::primitive::u32 = #order;
-                #free_motion
-                const DERIVATION: &'static ::core::primitive::str = #derivation;
+    /// What depends on how the system is stepped, and where that is not a method of its own, the system.
+    pub(super) fn stepping(&self, name: Option<TokenStream>, derivation: &str) -> TokenStream {
+        let (constants, scheme, order) = (self.alias("C"), self.scheme(), self.model.order.number());
+        let free_motion = self.formulas.is_exact.then(|| flag("IS_FREE_MOTION", true));
+        let functions = self.functions(SYSTEM, (0, 0), &[], |function, kernel| {
+            let is_asked = self.method.is_none() || function.is_of_method();
+            if is_asked { self.function_of_system(function, kernel) } else { None }
+        });
+        quote! {
+            type Constants = #constants;
+            type Scheme = #scheme;
 
-                #constants
-                #formulas
-                #checks
-            }
+            #name
+            const ORDER: ::core::primitive::u32 = #order;
+            #free_motion
+            const DERIVATION: &'static ::core::primitive::str = #derivation;
+
+            #functions
         }
     }
 
-    /// The constant that says so where a step is the free motion itself.
-    pub(super) fn is_free_motion(&self) -> Option<TokenStream> {
-        self.program.formulas.is_exact.then(|| {
-            quote!(
-                const IS_FREE_MOTION: ::core::primitive::bool = true;
-            )
+    fn function_of_system<'k>(&'k self, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
+        let scope = self.scope_of_system();
+        Some(match function.name {
+            "constants" => Body::new(kernel?, self.constants(kernel?)),
+            "legendre" | "legendre_next" => function.computes(&scope, kernel?).after(self.free_momenta()),
+            // the trait says what these are of other systems
+            "potential" if self.formulas.potential_energy.is_zero() => return None,
+            "orbit_defect" if self.model.configurations.iter().all(|leaf| leaf.space == LeafSpace::Vectors) => {
+                return None;
+            }
+            "orbit_defect" => Body::from(self.orbit_defect()),
+            "isotropy_defect" => Body::from(self.isotropy(kernel?, ["distance_of_projection", "annihilator_defect"])),
+            "project_momentum" => Body::from(self.isotropy(kernel?, ["projection", "annihilator_projection"])),
+            "kinetic_energy" => Body::from(self.kinetic_energy()),
+            _ => function.computes(&scope, kernel?),
         })
     }
 
-    /// The implementation of `Conserves`, where something is conserved.
+    /// The implementation of `Conserves`, where something is conserved; of a power by sums over its sites, along motions that move all of
+    /// them alike.
     pub(super) fn conserves(&self) -> TokenStream {
-        let [configuration, _, momentum] = self.names_of_types();
-        // what is conserved of a power is a sum over its sites
-        let conserved = self.program.find(Id::ConservedMomenta).filter(|_| self.model.power.is_none());
-        let Some(kernel) = conserved else { return TokenStream::new() };
+        let Some(kernel) = self.program.find(Id::ConservedMomenta) else { return TokenStream::new() };
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let ident = &self.model.item.ident;
-        let names = self.program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.as_str());
-        let count = Literal::usize_unsuffixed(self.program.formulas.symmetries.conserved.len());
+        let conserved = &self.formulas.symmetries.conserved;
+        let (names, count) = (conserved.iter().map(|momentum| momentum.name.as_str()), size(conserved.len()));
         let scope = self.scope_of_system();
-        let (locals, entries) = (code::locals(&scope, kernel), &kernel.outputs[0].1);
-        // all components of a long momentum are that momentum
-        let is_component = |(k, entry): (usize, &Code)| matches!(entry, Code::Read(input) if input.role == Role::Momentum(0) && input.row == k);
-        let is_whole = self.program.form.keeps_matrices()
-            && entries.len() == self.dimension()
-            && entries.iter().enumerate().all(is_component);
-        let values = match is_whole {
-            true => quote!((*mu).into()),
-            false => {
-                let entries = entries.iter().map(|entry| scope.code(entry, false));
-                quote!([#(#entries),*])
-            }
-        };
-        let formulas = self.program.formulas.table().titled_all(|id| matches!(id, Id::Conserved(_)));
-        let documentation = docs::formulas("The momenta that no step changes.", formulas, Some(kernel));
-        quote! {
-            #[automatically_derived]
-            impl<#parameters> #krate::Conserves for #ident<#arguments> #predicates {
-                type Conserved = #private::Conserved<#scalar, #count>;
-
-                #documentation
-                fn conserved(&self, q: &#configuration, mu: &#momentum) -> Self::Conserved {
+        let (locals, entries) = (scope.locals(kernel), &kernel.outputs[0].1);
+        let spelled = entries.iter().map(|entry| scope.code(entry, false));
+        let (words, title, code) = if self.power.is_some() {
+            let places = (0..entries.len()).map(size);
+            let words = ["Configuration", "Momentum"].map(|name| format_ident!("{name}"));
+            let [q, mu] = words.map(|name| quote!(Self::#name));
+            let code = quote! {
+                let mut sum = [<#scalar as #private::Zero>::zero(); #count];
+                for (q, mu) in ::core::iter::zip(q, mu) {
                     #locals
-                    #private::Conserved::new([#(#names),*], #values)
+                    #(sum[#places] += #spelled;)*
                 }
-            }
-        }
+                #private::Conserved::new([#(#names),*], sum)
+            };
+            (vec![("Q", q), ("Mu", mu)], Some("The momenta that no step changes, sums over all sites."), code)
+        } else {
+            // all components of a long momentum are that momentum
+            let is_component = |(k, entry): (usize, &Code)| matches!(entry, Code::Read(input) if input.role == Role::Momentum(0) && input.row == k);
+            let is_whole = self.keeps_matrices
+                && entries.len() == self.dimension()
+                && entries.iter().enumerate().all(is_component);
+            let values = if is_whole { quote!((*mu).into()) } else { quote!([#(#spelled),*]) };
+            (Vec::new(), None, quote!(#locals #private::Conserved::new([#(#names),*], #values)))
+        };
+        let cost = self.power.is_none().then_some(kernel);
+        let functions =
+            self.functions(CONSERVES, (0, 0), &words, |_, _| Some(Body { title, cost, ..Body::from(code.clone()) }));
+        let target = self.declared(if title.is_some() { private } else { &self.spelled.private });
+        target.derived(
+            Some(quote!(#krate::Conserves)),
+            quote!(type Conserved = #private::Conserved<#scalar, #count>; #functions),
+        )
     }
 
     /// The momenta of the free motions that make F, for the Legendre transforms of what moves freely.
@@ -106,34 +122,29 @@ impl Emitter<'_, '_> {
         let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
         solves().next()?;
         let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
-        let inertia = code::body(&scope, self.program.kernel(Id::Inertia), None);
-        let dimension = Literal::usize_unsuffixed(self.dimension());
+        let inertia = scope.body(self.program.kernel(Id::Inertia));
+        let dimension = size(self.dimension());
         let momentum = |solve: &Solve| {
-            let block = self.program.formulas.symbols.blocks_of(&solve.components)[0];
-            let factor = &self.model.factors[self.program.formulas.symbols.blocks[block].factor];
-            let access = code::accessor(&factor.accessor);
-            let of_block = self.block_of_inertia(solve);
-            if self.program.formulas.turns_whole() {
-                return match self.is_left(solve) {
-                    true => quote!((-#private::free_momentum_4d(&#of_block, h, &f #access.transpose()))),
-                    false => quote!(#private::free_momentum_4d(&#of_block, h, &f #access)),
-                };
-            }
-            let rotation = match factor.group {
-                Group::UnitQuaternions => quote!(#private::gibbs_vector_of_quaternion(&f #access)),
-                _ => quote!(#private::gibbs_vector_of_matrix(&f #access)),
+            let block = self.symbols.blocks_of(&solve.components)[0];
+            let factor = &self.model.factors[self.symbols.blocks[block].factor];
+            let (access, inertia, is_left) = (&factor.accessor, self.block_of_inertia(solve), self.is_left(solve));
+            let sign = is_left.then(|| quote!(-));
+            let momentum = if self.formulas.turns_whole() {
+                let back = is_left.then(|| quote!(.transpose()));
+                quote!(#private::free_momentum_4d(&#inertia, h, &f #access #back))
+            } else if factor.group == Group::UnitQuaternions {
+                quote!(#private::free_momentum(&#inertia, h, &#sign #private::gibbs_vector_of_quaternion(&f #access)))
+            } else {
+                quote!(#private::free_momentum(&#inertia, h, &#sign #private::gibbs_vector_of_matrix(&f #access)))
             };
-            match self.is_left(solve) {
-                true => quote!((-#private::free_momentum(&#of_block, h, &-#rotation))),
-                false => quote!(#private::free_momentum(&#of_block, h, &#rotation)),
-            }
+            if is_left { quote!((-#momentum)) } else { momentum }
         };
-        if self.dimension() == 3 || self.program.formulas.turns_whole() {
+        if self.dimension() == 3 || self.formulas.turns_whole() {
             let momentum = solves().map(momentum);
             return Some(quote!(let inertia = { #inertia }; let mu = &#(#momentum)*;));
         }
         let blocks = solves().map(|solve| {
-            let (start, momentum) = (Literal::usize_unsuffixed(solve.components[0]), momentum(solve));
+            let (start, momentum) = (size(solve.components[0]), momentum(solve));
             quote!(mu.fixed_rows_mut::<3>(#start).copy_from(&#momentum);)
         });
         Some(quote! {
@@ -144,305 +155,97 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// A method that is one kernel.
-    fn method(
-        &self,
-        documentation: (&str, &[Formula<'_>]),
-        signature: TokenStream,
-        kernel: &Kernel,
-        nesting: Option<Nesting>,
-    ) -> TokenStream {
-        self.method_after(None, documentation, signature, kernel, nesting)
-    }
-
-    /// A method that is one kernel, behind what makes its inputs.
-    fn method_after(
-        &self,
-        inputs: Option<&TokenStream>,
-        documentation: (&str, &[Formula<'_>]),
-        signature: TokenStream,
-        kernel: &Kernel,
-        nesting: Option<Nesting>,
-    ) -> TokenStream {
-        let documentation = docs::formulas(documentation.0, documentation.1, Some(kernel));
-        let body = code::body(&self.scope_of_system(), kernel, nesting);
-        quote! {
-            #documentation
-            fn #signature {
-                #inputs
-                #body
-            }
-        }
-    }
-
-    fn formulas(&self) -> TokenStream {
-        let (program, formulas) = (self.program, &self.program.formulas);
-        let [configuration, element, momentum] = self.names_of_types();
-        let mechanics = [
-            self.method(
-                ("The action.", formulas.titled(Id::Action)),
-                quote!(act(&self, f: &#element, q: &#configuration) -> #configuration),
-                program.kernel(Id::Action),
-                Some(Nesting::Configuration),
-            ),
-            self.method(
-                (
-                    "The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).",
-                    formulas.titled(Id::MomentumMap),
-                ),
-                quote!(momentum_map(&self, q: &#configuration, p: &#configuration) -> #momentum),
-                program.kernel(Id::MomentumMap),
-                None,
-            ),
-            self.method(
-                ("The coadjoint action.", formulas.titled(Id::Coadjoint)),
-                quote!(coadjoint(&self, f: &#element, mu: &#momentum) -> #momentum),
-                program.kernel(Id::Coadjoint),
-                None,
-            ),
-        ];
-        let matrices = [
-            self.method(
-                ("The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.", &[]),
-                quote!(momentum_matrix(mu: &#momentum) -> #element),
-                program.kernel(Id::MomentumMatrix),
-                Some(Nesting::Element),
-            ),
-            self.method(
-                ("The components μ_i = tr(MᵀE_i) of a momentum.", &[]),
-                quote!(momentum_components(m: &#element) -> #momentum),
-                program.kernel(Id::MomentumComponents),
-                None,
-            ),
-        ];
-        let (legendre, stagger) = (self.legendre_transforms(), self.stagger());
-        let (potential, kinetic_energy) = (self.potential(), self.kinetic_energy_of_momentum());
-        quote!(#(#mechanics)* #legendre #(#matrices)* #stagger #potential #kinetic_energy)
-    }
-
-    /// Both discrete Legendre transforms.
-    pub(super) fn legendre_transforms(&self) -> TokenStream {
-        let (program, formulas, scalar) = (self.program, &self.program.formulas, &self.paths.scalar);
-        let (free, receiver) = (self.free_momenta(), self.receiver_parameter());
-        let [configuration, element, momentum] = self.names_of_types();
-        let arguments = quote!(#receiver, h: #scalar, t: #scalar, q: &#configuration, f: &#element);
-        let legendre = self.method_after(
-            free.as_ref(),
-            (
-                "The discrete Legendre transform: the momentum N before the step that moves q by F.",
-                formulas.titled(Id::Legendre),
-            ),
-            quote!(legendre(#arguments) -> #momentum),
-            program.kernel(Id::Legendre),
-            None,
-        );
-        let legendre_next = self.method_after(
-            free.as_ref(),
-            (
-                "The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.",
-                formulas.titled(Id::LegendreNext),
-            ),
-            quote!(legendre_next(#arguments) -> #momentum),
-            program.kernel(Id::LegendreNext),
-            None,
-        );
-        quote!(#legendre #legendre_next)
-    }
-
-    /// V, where there is one; the trait says what it is elsewhere.
-    fn potential(&self) -> Option<TokenStream> {
-        if self.program.formulas.potential_energy.is_zero() {
-            return None;
-        }
-        let (scalar, kernel) = (&self.paths.scalar, self.program.kernel(Id::PotentialEnergy));
-        let [configuration, ..] = self.names_of_types();
-        let formulas = self.program.formulas.titled(Id::PotentialEnergy);
-        let signature = quote!(potential(&self, t: #scalar, q: &#configuration) -> #scalar);
-        let documentation = docs::formulas("The potential energy.", formulas, Some(kernel));
-        let scope = self.scope_of_system();
-        let (locals, value) = (code::locals(&scope, kernel), scope.code(&kernel.outputs[0].1[0], false));
-        Some(quote! {
-            #documentation
-            fn #signature {
-                #locals
-                #value
-            }
-        })
-    }
-
-    /// The kinetic energy of a momentum.
-    pub(super) fn kinetic_energy_of_momentum(&self) -> TokenStream {
-        let (scalar, constants) = (&self.paths.scalar, self.constants_of_step());
-        let [configuration, _, momentum] = self.names_of_types();
-        let formulas = self.program.formulas.titled(Id::KineticEnergyOfMomentum);
-        let documentation = docs::formulas("The kinetic energy.", formulas, None);
-        let (energy, receiver) = (self.kinetic_energy(), self.receiver_parameter());
-        quote! {
-            #documentation
-            fn kinetic_energy(#receiver, c: &#constants, t: #scalar, q: &#configuration, mu: &#momentum) -> #scalar {
-                #energy
-            }
-        }
-    }
-
     /// ½ (μ − A)·Σ⁻¹(μ − A), with Σ⁻¹ from the constants where it does not change.
     fn kinetic_energy(&self) -> TokenStream {
-        let private = &self.paths.private;
+        let (private, scope) = (&self.paths.private, self.scope_of_system());
         if self.program.find(Id::Lagrangian).is_some() {
             let (velocity, system) = (&self.names.velocity, self.receiver());
             return quote!(#private::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
         }
-        let scope = self.scope_of_system();
-        let (shift, mu) = match self.program.find(Id::Gyroscopic) {
-            Some(kernel) => {
-                let slope = code::body(&scope, kernel, None);
-                (quote!(let mu = *mu - { #slope };), quote!(&mu))
-            }
-            None => (quote!(), quote!(mu)),
-        };
-        let energy = match self.program.formulas.inertia_moves() {
-            true => {
-                let inertia = self.inertia(&scope);
-                quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
-            }
-            false => match (self.has_uniform_inertia(), self.program.form.keeps_matrices()) {
-                (true, _) => quote!(#private::kinetic_energy_uniform(&c.inertia_inverse, #mu)),
-                (false, true) => quote!(c.inertia_inverse.energy(#mu)),
-                (false, false) => quote!(#private::kinetic_energy(&c.inertia_inverse, #mu)),
-            },
+        let slope = self.program.find(Id::Gyroscopic).map(|kernel| scope.body(kernel));
+        let mu = if slope.is_some() { quote!(&mu) } else { quote!(mu) };
+        let shift = slope.map(|slope| quote!(let mu = *mu - { #slope };));
+        let energy = if self.formulas.inertia_moves() {
+            let inertia = self.inertia(&scope);
+            quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
+        } else if self.has_uniform_inertia() {
+            quote!(#private::kinetic_energy_uniform(&c.inertia_inverse, #mu))
+        } else if self.keeps_matrices {
+            quote!(c.inertia_inverse.energy(#mu))
+        } else {
+            quote!(#private::kinetic_energy(&c.inertia_inverse, #mu))
         };
         quote!(#shift #energy)
     }
 
     /// The equation of the velocity that has a momentum, of a Lagrangian that is not quadratic.
     pub(super) fn velocity(&self) -> TokenStream {
-        let Some(kernel) = self.program.find(Id::Lagrangian) else { return TokenStream::new() };
-        let Generics { parameters, arguments, predicates } = &self.generics;
-        let (private, scalar, ident) = (&self.paths.private, &self.paths.scalar, &self.model.item.ident);
+        if self.program.find(Id::Lagrangian).is_none() {
+            return TokenStream::new();
+        }
+        let (private, scalar, system) = (&self.paths.private, &self.paths.scalar, self.target.of_type());
         let Names { lifetime, velocity: name, .. } = &self.names;
-        let (configuration, dimension) = (self.configuration_type(), Literal::usize_unsuffixed(self.dimension()));
-        let scope = self.scope(quote!(self.system), None);
-        let locals = code::locals(&scope, kernel);
-        let value = scope.code(&kernel.outputs[0].1[0], false);
-        let grid = |index: usize| code::grid(&scope, kernel.outputs[index].0, &kernel.outputs[index].1, false);
-        let (gradient, hessian) = (grid(1), grid(2));
-        let documentation = docs::formulas(
-            "The Lagrangian of a velocity, its gradient and its Hessian.",
-            self.program.formulas.titled(Id::Lagrangian),
-            Some(kernel),
-        );
+        let (configuration, dimension) = (self.alias("Q"), size(self.dimension()));
+        let words = [("Algebra", quote!(#private::SVector<#scalar, #dimension>))];
+        let linearize = self.functions(VELOCITY, (0, 0), &words, |_, kernel| {
+            let (scope, kernel) = (self.scope(quote!(self.system), None), kernel?);
+            let (locals, value) = (scope.locals(kernel), scope.scalar(kernel, 0));
+            let [gradient, hessian] = [1, 2].map(|index| scope.output(kernel, index));
+            let code = quote!(let (t, q) = (self.t, self.q); #locals (#value, #gradient, #hessian));
+            Some(Body::new(kernel, code))
+        });
+        let target = self.target.borrowed(name, lifetime);
+        let implementation =
+            target.implementation(Some(quote!(#private::VelocityEquation<#scalar, #dimension>)), linearize);
+        let (parameters, _, predicates) = target.generics.split_for_impl();
         quote! {
             #[doc = " The velocity that has a momentum: ∂ℓ/∂ξ = μ."]
-            struct #name<#lifetime, #parameters> #predicates {
-                system: &#lifetime #ident<#arguments>,
+            struct #name #parameters #predicates {
+                system: &#lifetime #system,
                 t: #scalar,
                 q: &#lifetime #configuration,
             }
-
-            impl<#lifetime, #parameters> #private::VelocityEquation<#scalar, #dimension> for #name<#lifetime, #arguments> #predicates {
-                #documentation
-                fn linearize(
-                    &self,
-                    x: &#private::SVector<#scalar, #dimension>,
-                ) -> (#scalar, #private::SVector<#scalar, #dimension>, #private::SMatrix<#scalar, #dimension, #dimension>) {
-                    let (t, q) = (self.t, self.q);
-                    #locals
-                    (#value, #gradient, #hessian)
-                }
-            }
+            #implementation
         }
     }
 
-    /// By how much the momentum of a step of first order is ahead; where it is not, the trait says so.
-    pub(super) fn stagger(&self) -> Option<TokenStream> {
-        let (receiver, [configuration, _, momentum]) = (self.receiver_parameter(), self.names_of_types());
-        let (kernel, scalar) = (self.program.find(Id::SynchronizedMomentum)?, &self.paths.scalar);
-        let formulas = self.program.formulas.titled(Id::SynchronizedMomentum);
-        Some(self.method(
-            ("By how much the momentum N of a state is ahead of the momentum π at its configuration.", formulas),
-            quote!(stagger(#receiver, h: #scalar, t: #scalar, q: &#configuration) -> #momentum),
-            kernel,
-            None,
-        ))
-    }
-
-    /// `orbit_defect`, `isotropy_defect` and `project_momentum`, where they are not those of vectors and free actions.
-    fn space_checks(&self) -> TokenStream {
-        let (orbit, isotropy) = (self.check_of_orbit(), self.checks_of_isotropy());
-        quote!(#orbit #isotropy)
-    }
-
-    fn check_of_orbit(&self) -> Option<TokenStream> {
-        let [configuration, _, _] = self.names_of_types();
-        let scalar = &self.paths.scalar;
-        let is_promised = self.model.configurations.iter().any(|leaf| leaf.space != LeafSpace::Vectors);
-        let defect = is_promised.then(|| self.orbit_defect())?;
-        Some(quote! {
-            fn orbit_defect(&self, q: &#configuration) -> #scalar {
-                #defect
-            }
-        })
-    }
-
-    fn checks_of_isotropy(&self) -> Option<TokenStream> {
-        let [configuration, _, momentum] = self.names_of_types();
-        let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
-        let kernel = self.program.find(Id::Isotropy)?;
-        let (defect, projection) = if self.program.form.keeps_matrices() {
-            let projection = code::body(&scope, kernel, None);
-            (
-                quote!(#private::distance_of_projection(mu, |mu| { #projection })),
-                quote!(#private::projection(mu, |mu| { #projection })),
-            )
-        } else {
-            let (locals, (shape, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
-            let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
-            let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
-            let rows = quote!(&[#(#rows),*]);
-            (
-                quote!(#locals #private::annihilator_defect(#rows, mu)),
-                quote!(#locals #private::annihilator_projection(#rows, mu)),
-            )
-        };
-        Some(quote! {
-            fn isotropy_defect(&self, q: &#configuration, mu: &#momentum) -> #scalar {
-                #defect
-            }
-            fn project_momentum(&self, q: &#configuration, mu: &#momentum) -> #momentum {
-                #projection
-            }
-        })
+    /// What a momentum is asked for where motions fix the configuration: by a function of the projection, or of the motions ξ_Q(q).
+    fn isotropy(&self, kernel: &Kernel, [of_projection, of_motions]: [&str; 2]) -> TokenStream {
+        let (private, scope) = (&self.paths.private, self.scope_of_system());
+        let [of_projection, of_motions] = [of_projection, of_motions].map(|name| format_ident!("{name}"));
+        if self.keeps_matrices {
+            let projection = scope.body(kernel);
+            return quote!(#private::#of_projection(mu, |mu| { #projection }));
+        }
+        let (locals, (shape, entries)) = (scope.locals(kernel), &kernel.outputs[0]);
+        let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
+        let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
+        quote!(#locals #private::#of_motions(&[#(#rows),*], mu))
     }
 }
 
 impl SystemEmitter<'_, '_> {
     /// By how much q violates what the declaration promises.
     pub(super) fn orbit_defect(&self) -> TokenStream {
-        let private = &self.paths.private;
+        let (private, scope) = (&self.paths.private, self.scope_of_system());
         let defects = self.model.configurations.iter().filter_map(|leaf| {
-            let access = code::accessor(&leaf.accessor);
-            match leaf.space {
+            let access = &leaf.accessor;
+            Some(match leaf.space {
                 LeafSpace::Group(group) if group.element_property() == Property::Orthogonal => {
-                    Some(quote!(#private::orthogonality_defect(&q #access)))
+                    quote!(#private::orthogonality_defect(&q #access))
                 }
                 LeafSpace::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
-                    Some(quote!(#private::orientation_defect(&q #access)))
+                    quote!(#private::orientation_defect(&q #access))
                 }
-                LeafSpace::Group(Group::UnitQuaternions) => Some(quote!(#private::length_defect(&q #access.coords))),
-                LeafSpace::Unit => Some(quote!(#private::length_defect(&q #access))),
-                LeafSpace::Vectors | LeafSpace::Group(_) => None,
-            }
+                LeafSpace::Group(Group::UnitQuaternions) => quote!(#private::length_defect(&q #access.coords)),
+                LeafSpace::Unit => quote!(#private::length_defect(&q #access)),
+                LeafSpace::Vectors | LeafSpace::Group(_) => return None,
+            })
         });
-        let mut defects: Vec<_> = defects.collect();
-        let scope = self.scope_of_system();
-        let membership = self.kernels.find(Id::Membership).map(|kernel| {
-            let (locals, (_, entries)) = (code::locals(&scope, kernel), &kernel.outputs[0]);
-            defects.extend(entries.iter().map(|entry| scope.code(entry, false)));
-            locals
-        });
-        quote! {
-            #membership
-            #private::largest([#(#defects),*])
-        }
+        let membership = self.kernels.find(Id::Membership);
+        let locals = membership.map(|kernel| scope.locals(kernel));
+        let entries = membership.iter().flat_map(|kernel| &kernel.outputs[0].1);
+        let defects = defects.chain(entries.map(|entry| scope.code(entry, false)));
+        quote!(#locals #private::largest([#(#defects),*]))
     }
 }

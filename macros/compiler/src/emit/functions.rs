@@ -1,0 +1,420 @@
+//! What is generated: the functions of each trait, with the kernels that they compute and the formulas that they show.
+//!
+//! Some names in signatures stand for what they are in a system: `T` for the scalar, `Q`, `F` and `Mu` for the types of configurations,
+//! group elements and momenta, `C` for that of the constants, `X` for that of chart coordinates, `U` for that of inputs; `Receiver` for
+//! `&self`, or for the system where a method of it is stepped. [`SystemEmitter::functions`] puts in their tokens.
+
+use proc_macro2::{Group, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+
+use super::scope::{Scope, size};
+use super::{SystemEmitter, docs};
+use crate::derive::{Formula, Id};
+use crate::lower::Kernel;
+
+/// A generated function.
+pub struct Function {
+    /// Its name.
+    pub name: &'static str,
+    /// What its documentation begins with; empty where it has none.
+    title: &'static str,
+    /// What it computes, by the id that this has in the first substep.
+    pub kernel: Id,
+    /// The formulas that its documentation shows.
+    shown: &'static [Id],
+    arguments: &'static str,
+    result: &'static str,
+    is_inline: bool,
+}
+
+macro_rules! kernel {
+    ($kernel:expr $(=> $($shown:expr),*)?) => {
+        $kernel
+    };
+}
+
+macro_rules! shown {
+    ($kernel:expr) => { &[$kernel] };
+    ($kernel:expr => $($shown:expr),*) => { &[$($shown),*] };
+}
+
+// a function without a list of formulas shows the one that it computes
+macro_rules! functions {
+    ($(
+        #[doc = $about:literal]
+        $table:ident($is_inline:literal) {
+            $($(#[doc = $title:literal])? fn $name:ident $arguments:tt -> $result:ty { $($ids:tt)* })*
+        }
+    )*) => {
+        $(
+            #[doc = $about]
+            pub(super) const $table: &[Function] = &[$(Function {
+                name: stringify!($name),
+                title: concat!($($title)?).trim_ascii(),
+                kernel: kernel!($($ids)*),
+                shown: shown!($($ids)*),
+                arguments: stringify!($arguments),
+                result: stringify!($result),
+                is_inline: $is_inline,
+            }),*];
+        )*
+
+        const ALL: &[&[Function]] = &[$($table),*];
+    };
+}
+
+functions! {
+    /// `Clebsch`, and those of `Method` among them, which are told the system.
+    SYSTEM(false) {
+        /// Checks the parameters and computes what no step changes.
+        fn constants(Receiver, h: T) -> Result<Self::Constants, Error> { Id::Constants }
+        /// The action.
+        fn act(&self, f: &F, q: &Q) -> Q { Id::Action }
+        /// The momentum map of the cotangent lift, ⟨A, E⟩ standing for the components tr(AᵀE_i).
+        fn momentum_map(&self, q: &Q, p: &Q) -> Mu { Id::MomentumMap }
+        /// The coadjoint action.
+        fn coadjoint(&self, f: &F, mu: &Mu) -> Mu { Id::Coadjoint }
+        /// The discrete Legendre transform: the momentum N before the step that moves q by F.
+        fn legendre(Receiver, h: T, t: T, q: &Q, f: &F) -> Mu { Id::Legendre }
+        /// The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.
+        fn legendre_next(Receiver, h: T, t: T, q: &Q, f: &F) -> Mu { Id::LegendreNext }
+        /// The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.
+        fn momentum_matrix(mu: &Mu) -> F { Id::MomentumMatrix => }
+        /// The components μ_i = tr(MᵀE_i) of a momentum.
+        fn momentum_components(m: &F) -> Mu { Id::MomentumComponents => }
+        /// By how much the momentum N of a state is ahead of the momentum π at its configuration.
+        fn stagger(Receiver, h: T, t: T, q: &Q) -> Mu { Id::SynchronizedMomentum }
+        /// The potential energy.
+        fn potential(&self, t: T, q: &Q) -> T { Id::PotentialEnergy }
+        /// The kinetic energy.
+        fn kinetic_energy(Receiver, c: &C, t: T, q: &Q, mu: &Mu) -> T { Id::KineticEnergyOfMomentum }
+        fn orbit_defect(&self, q: &Q) -> T { Id::Membership }
+        fn isotropy_defect(&self, q: &Q, mu: &Mu) -> T { Id::Isotropy }
+        fn project_momentum(&self, q: &Q, mu: &Mu) -> Mu { Id::Isotropy }
+    }
+
+    /// `Conserves`.
+    CONSERVES(false) {
+        /// The momenta that no step changes.
+        fn conserved(&self, q: &Q, mu: &Mu) -> Self::Conserved { Id::ConservedMomenta => Id::Conserved(0) }
+    }
+
+    /// `Power`: all sites together.
+    SITES(false) {
+        /// The potential energy, a sum over sites.
+        fn potential_of_sites(&self, t: T, q: &Sites) -> T { Id::Term(0) }
+    }
+
+    /// `VelocityEquation`, of a Lagrangian that is not quadratic.
+    VELOCITY(false) {
+        /// The Lagrangian of a velocity, its gradient and its Hessian.
+        fn linearize(&self, x: &Algebra) -> (T, Algebra, Square) { Id::Lagrangian }
+    }
+
+    /// `Parts`: the moves of a step.
+    PARTS(true) {
+        /// D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.
+        fn increment(&self, Coordinates: &X) -> F { Id::Increment }
+        fn element(d: &F) -> F { Id::Increment }
+        /// The configuration that F = I + D moves q to.
+        fn advance(&self, q: &Q, d: &F) -> Q { Id::Advance }
+        /// q⁺ = q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.
+        fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Displacement }
+        /// The covector p carried along by F = I + D, at q⁺.
+        fn lift(&self, q: &Q, p: &Q, d: &F) -> Q { Id::Lift }
+    }
+
+    /// `Substep`: kicks, forces, gradients, the solve and the update; what a declaration does not have is the trait's.
+    SUBSTEP(true) {
+        /// The kick at the start of a step.
+        fn start_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::StartKick(0) }
+        /// The kick at the end of a step.
+        fn end_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::EndKick(0) }
+        /// What the cost gives at F = I, with the other sign.
+        fn rest(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::RestKick(0) }
+        /// The impulse of the force at the start of a step.
+        fn start_force(&self, c: &C, t: T, q: &Q, u: &U) -> Option<Mu> { Id::StartForce(0) => Id::Force }
+        /// The part of the impulse at the start of a step that depends on the velocity.
+        fn moving_force(&self, c: &C, t: T, q: &Q, x: &X, u: &U) -> Option<Mu> { Id::MovingForce(0) => Id::Force }
+        /// The impulse of the force at the end of a step.
+        fn end_force(&self, c: &C, t: T, q: &Q, x: &X, u: &U) -> Option<Mu> { Id::EndForce(0) => Id::Force }
+        /// ∂U₀(q), the kick of the covector at the start of a step.
+        fn start_gradient(&self, c: &C, t: T, q: &Q) -> Option<Q> { Id::StartGradient(0) }
+        /// ∂U₁(q), the kick of the covector at the end of a step.
+        fn end_gradient(&self, c: &C, t: T, q: &Q) -> Option<Q> { Id::EndGradient(0) }
+        /// ∂_q K(q, F), the kick of the covector by a cost that couples, F = I + D.
+        fn coupled_gradient(&self, c: &C, t: T, q: &Q, d: &F) -> Option<Q> { Id::CoupledGradient(0) }
+        fn solve(&self, c: &C, t: T, q: &Q, mu: &Mu, u: &U) -> Solved<X> { Id::Solution(0, 0) }
+        /// The momentum after the move, F = I + D.
+        fn update(&self, c: &C, t: T, q: &Q, mu: &Mu, Increment: &Motion) -> Option<Mu> { Id::MomentumAfter(0) }
+    }
+
+    /// `GreatCircles`: points on large spheres.
+    GREAT_CIRCLES(true) {
+        fn turn(c: &C) -> T { Id::Constants }
+    }
+
+    /// `FreeMotion`: several steps along one motion.
+    FREE_MOTION(true) {
+        /// What the free motions with this momentum keep.
+        fn kept(&self, c: &C, mu: &Mu) -> Self::Kept { Id::Constants }
+        /// The coordinates of these motions.
+        fn follow(&self, c: &C, kept: &Self::Kept, mu: &Mu) -> Result<(X, Mu), Error> { Id::Constants }
+    }
+
+    /// `SplitKicks`: the kicks of a splitting.
+    SPLIT_KICKS(true) {
+        fn step_size(c: &C) -> T { Id::Constants }
+        /// A kick.
+        fn kick(&self, c: &C, t: T, q: &Q, weight: T, gradient: T) -> Mu { Id::SplittingKick }
+        /// The same for the covector.
+        fn kick_gradient(&self, c: &C, t: T, q: &Q, weight: T, gradient: T) -> Q { Id::SplittingGradient }
+    }
+
+    /// `HamiltonEquations`: what a step of order 16 collocates.
+    HAMILTON_EQUATIONS(true) {
+        fn step_size(c: &C) -> T { Id::Constants }
+        /// Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.
+        fn slope(&self, c: &C, t: T, y: &Numbers) -> Numbers { Id::HamiltonEquations }
+        /// A covector p at q with the momentum J(q, p) = μ.
+        fn covector(&self, c: &C, q: &Q, mu: &Mu) -> Q { Id::Covector }
+        /// J(q, p), entry by entry.
+        fn momentum(&self, q: &Q, p: &Q) -> Mu { Id::MomentumOfStep }
+        /// The chart coordinates x of the motion by the velocity ξ = Σ⁻¹(μ − A) for the time h, to first order in h.
+        fn guess(&self, c: &C, t: T, q: &Q, mu: &Mu) -> Mu { Id::Guess => }
+        fn part(x: &Mu, part: T) -> X { Id::Guess }
+        fn joined(q: &Q, p: &Q) -> Numbers { Id::HamiltonEquations }
+        fn parted(y: &Numbers) -> (Q, Q) { Id::HamiltonEquations }
+    }
+
+    /// The types of momentum equations: of a vector of momenta, and of another of unknowns.
+    EQUATION(true) {
+        /// The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.
+        fn closed_form(&self, mu: &Momenta) -> Solved<Vector> { Id::ClosedForm(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
+        /// The solution, coordinate after coordinate.
+        fn explicit(&self, mu: &Momenta Given) -> Vector { Id::Explicit(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
+        /// Dρ and −ρ(0).
+        fn system(&self, mu: &Momenta) -> (Square, Vector) { Id::System(0, 0) => Id::Jacobian(0, 0) }
+        /// The solution to first order in h.
+        fn predict(&self, mu: &Momenta) -> Vector { Id::Predictor(0, 0) }
+        /// The residual alone.
+        fn residual(&self, Prepared, x: &Vector) -> Vector { Id::Residual(0, 0) => Id::Equation(0, 0) }
+        /// The residual and its Jacobian.
+        fn linearize(&self, Prepared, x: &Vector) -> (Vector, Self::Jacobian) {
+            Id::Linearization(0, 0) => Id::Equation(0, 0), Id::Jacobian(0, 0)
+        }
+        /// The residual and its Jacobian.
+        fn linearize(&self, Prepared, x: &Vector) -> (Vector, Self::Jacobian) {
+            Id::Linearization(0, 0) => Id::Equation(0, 0), Id::Jacobian(0, 0), Id::JacobianFactor(0, 0)
+        }
+    }
+
+    /// What solvers ask of an equation beside its residual.
+    SOLVER(true) {
+        fn orientation(&self) -> Option<Orientation> { Id::Constants }
+        fn has_poles() -> Bool { Id::Equation(0, 0) }
+        /// The declared tolerance.
+        fn tolerance() -> T { Id::Equation(0, 0) => }
+        /// The declared number of iterations.
+        fn limit() -> Option<u32> { Id::Equation(0, 0) => }
+    }
+
+    /// `Variational`: motions of configurations.
+    VARIATIONAL(true) {
+        /// The increments τ(η) − I and τ(−η) − I of a small motion.
+        fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2] { Id::Retraction }
+        /// The increment of the motion by I + d and after it by I + second.
+        fn compose(&self, d: &Self::Element, second: &Self::Element) -> Self::Element { Id::Composition }
+        /// The configuration that F = I + D moves q to.
+        fn advance(&self, q: &Self::Configuration, d: &Self::Element) -> Self::Configuration { Id::Advance }
+        /// The infinitesimal motion ξ_Q(q).
+        fn infinitesimal_motion(&self, q: &Self::Configuration, x: &Self::Momentum) -> Self::Configuration { Id::Generator }
+        /// GᵀG of the infinitesimal motion G: ξ ↦ ξ_Q(q).
+        fn orbit_metric(&self, q: &Self::Configuration) -> Square { Id::OrbitMetric }
+        /// J(q, target − q).
+        fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum { Id::Approach => }
+        /// The price of the end with its derivatives.
+        fn endpoint(&self, t: T, q: &Self::Configuration) -> EndpointExpansion { Id::PriceOfEndExpanded => }
+    }
+
+    /// `VariedSubstep`: an edge, with its derivatives.
+    EDGE(true) {
+        /// ℓd with both Legendre transforms.
+        fn momenta(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Momenta { Id::EdgeMomenta(0) }
+        /// ℓd with both Legendre transforms and their derivatives along the motions of both ends.
+        fn edge(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Edge { Id::Edge(0) }
+        /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
+        fn carried(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Carried { Id::Carried(0) }
+        /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
+        fn slopes(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Slopes { Id::EdgeSlopes(0) }
+    }
+
+    /// `Controlled`: the choice of inputs, from points and their costates, by the constants of steps.
+    CONTROLLED(false) {
+        fn prepare(&self, h: T) -> Result<Steps, Error> { Id::Constants }
+        fn check_place(&self, Start: &Point) -> Result<(), Error> { Id::Membership }
+        /// The step that an input makes.
+        fn follow(&self, constants: &Steps, t: T, x: &Point, u: &Input) -> Result<Point, Error> { Id::Increment => Id::Controls }
+        /// The step with its derivatives, and the second derivatives of ℓ + λ·η′.
+        fn expand(&self, constants: &Steps, t: T, x: &Point, u: &Input, Costate: &Costates) -> Result<Expansion, Error> {
+            Id::StepExpanded
+        }
+        /// d/dh (ℓ + λ·η′), the start of the step moving with h.
+        fn price_of_time(&self, constants: &Steps, t: T, k: T, x: &Point, u: &Input, Costate: &Costates) -> Result<T, Error> {
+            Id::PriceOfTime
+        }
+        /// Gᵀ(q* − q) and GᵀG.
+        fn arrival(&self, x: &Point, target: &Point) -> Arrival { Id::OrbitMetric => }
+        /// The shortest motion that moves one configuration to another, to first order.
+        fn displacement(&self, x: &Point, y: &Point) -> Costates { Id::Approach }
+        /// The price of a step.
+        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> T { Id::Price }
+        /// The bounds.
+        fn bounds(&self, t: T, x: &Self::Place, u: &Input) -> Bounds { Id::Bounds }
+        /// The bounds with their derivatives, and the second derivatives of z·a.
+        fn bounds_expanded(&self, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> BoundsExpansion { Id::BoundsExpanded }
+        /// The price of the end.
+        fn endpoint(&self, t: T, x: &Self::Place) -> T { Id::PriceOfEnd }
+        /// The price of the end with its derivatives.
+        fn endpoint_expanded(&self, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded }
+    }
+}
+
+/// The generated functions whose documentation shows a formula.
+pub fn shown_by(id: Id) -> Vec<&'static str> {
+    let documented = ALL.iter().copied().flatten().filter(|function| !function.title.is_empty());
+    documented.filter(|function| function.shows(id)).map(|function| function.name).collect()
+}
+
+/// What a generated function does.
+pub(super) struct Body<'k> {
+    /// The title of its documentation, where it is not that of the table.
+    pub title: Option<&'static str>,
+    /// The kernel whose cost its documentation tells.
+    pub cost: Option<&'k Kernel>,
+    /// How it is inlined, where that is not said by the table.
+    pub inline: Option<TokenStream>,
+    /// Its statements.
+    pub code: TokenStream,
+}
+
+impl<'k> Body<'k> {
+    /// What one kernel computes, in some code.
+    pub fn new(kernel: &'k Kernel, code: TokenStream) -> Body<'k> {
+        Body { cost: Some(kernel), ..Body::from(code) }
+    }
+
+    /// The same with another title.
+    pub fn titled(self, title: &'static str) -> Body<'k> {
+        Body { title: Some(title), ..self }
+    }
+
+    /// The same behind other statements.
+    pub fn after(self, before: Option<TokenStream>) -> Body<'k> {
+        let code = self.code;
+        Body { code: quote!(#before #code), ..self }
+    }
+
+    /// The same with other attributes, `#[inline]` or none.
+    pub fn inlined(self, inline: TokenStream) -> Body<'k> {
+        Body { inline: Some(inline), ..self }
+    }
+}
+
+impl From<TokenStream> for Body<'_> {
+    fn from(code: TokenStream) -> Self {
+        Body { title: None, cost: None, inline: None, code }
+    }
+}
+
+impl Function {
+    /// Whether the system is one of its arguments, so that each method has its own.
+    pub(super) fn is_of_method(&self) -> bool {
+        self.arguments.contains("Receiver")
+    }
+
+    /// Whether its documentation shows a formula.
+    pub(super) fn shows(&self, id: Id) -> bool {
+        self.shown.iter().any(|shown| shown.is_like(id))
+    }
+
+    /// The body that computes a kernel and returns what it gives.
+    pub(super) fn computes<'k>(&self, scope: &Scope<'_, '_>, kernel: &'k Kernel) -> Body<'k> {
+        let (private, locals) = (&scope.paths.private, scope.locals(kernel));
+        let value = match self.result {
+            "T" => scope.scalar(kernel, 0),
+            "Q" | "Option<Q>" | "Self::Configuration" => scope.configuration(kernel),
+            "F" | "Self::Element" => scope.element(kernel, 0),
+            _ => scope.output(kernel, 0),
+        };
+        let value = if self.result.starts_with("Option") { quote!(#private::Some(#value)) } else { value };
+        Body::new(kernel, quote!(#locals #value))
+    }
+}
+
+/// Names in signatures, with what they stand for.
+pub(super) type Words = [(&'static str, TokenStream)];
+
+impl<'g> SystemEmitter<'_, 'g> {
+    /// The functions of a table that have a body, made from their kernels; those of a substep, or of an equation in it, have a place.
+    pub(super) fn functions<'k>(
+        &'k self,
+        table: &[Function],
+        place: (usize, usize),
+        words: &Words,
+        body: impl Fn(&Function, Option<&'k Kernel>) -> Option<Body<'k>>,
+    ) -> TokenStream {
+        let written = table.iter().filter_map(|function| {
+            let Body { title, cost, inline, code } = body(function, self.kernels.find(function.kernel.at(place)))?;
+            let title = title.unwrap_or(function.title);
+            let documentation = (!title.is_empty()).then(|| docs::formulas(title, self.shown(function, place), cost));
+            let inline = inline.or_else(|| function.is_inline.then(|| quote!(#[inline])));
+            let name = format_ident!("{}", function.name);
+            // by construction: what the table of functions holds was tokens
+            let [arguments, result] =
+                [function.arguments, function.result].map(|text| self.put_in(text.parse().unwrap_or_default(), words));
+            Some(quote!(#documentation #inline fn #name #arguments -> #result { #code }))
+        });
+        written.collect()
+    }
+
+    /// The formulas that the documentation of a function shows.
+    fn shown(&self, function: &Function, place: (usize, usize)) -> &[Formula<'g>] {
+        self.rows.titled_all(|id| function.shown.iter().any(|shown| shown.is_like(id) && id.at(place) == id))
+    }
+
+    /// Some tokens, with what their words stand for.
+    fn put_in(&self, tokens: TokenStream, words: &Words) -> TokenStream {
+        let put_in = |token: TokenTree| match token {
+            TokenTree::Ident(name) => {
+                let word = words.iter().find(|(word, _)| name == word).map(|(_, tokens)| tokens.clone());
+                word.or_else(|| self.word(&name.to_string())).unwrap_or_else(|| TokenTree::from(name).into())
+            }
+            TokenTree::Group(group) => {
+                TokenTree::from(Group::new(group.delimiter(), self.put_in(group.stream(), words))).into()
+            }
+            other => other.into(),
+        };
+        tokens.into_iter().map(put_in).collect()
+    }
+
+    /// What a word stands for, unless it is itself.
+    fn word(&self, word: &str) -> Option<TokenStream> {
+        let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
+        let name = format_ident!("{word}");
+        Some(match word {
+            "Receiver" => self.receiver_parameter(),
+            "T" => quote!(#scalar),
+            "Q" | "F" | "Mu" | "C" => self.alias(word),
+            "U" => self.input_type(),
+            "Bool" => quote!(::core::primitive::bool),
+            "Option" | "Solved" | "Result" | "Error" | "Orientation" => quote!(#private::#name),
+            "Momenta" | "Edge" | "Carried" | "EndpointExpansion" => {
+                let dimension = size(self.dimension());
+                quote!(#krate::#name<#scalar, #dimension>)
+            }
+            "Square" => self.paths.matrix_of_any_shape(self.dimension(), self.dimension()),
+            _ => return None,
+        })
+    }
+}

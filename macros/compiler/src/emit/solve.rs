@@ -1,0 +1,134 @@
+//! How a step solves its equations, one after the other.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emitter;
+use super::scope::size;
+use crate::derive::{Id, Solution};
+use crate::lower::{Solve, Step};
+
+impl Emitter<'_, '_> {
+    /// The chart coordinates of the group element whose momentum is μ, or the error of one of the equations.
+    pub(super) fn solve(&self, step: &Step) -> TokenStream {
+        let private = &self.paths.private;
+        if self.formulas.turns_whole() {
+            let free_motion = self.call_of_parts("FreeMotion", &[]);
+            let kept = quote!(#free_motion::kept(self, c, mu));
+            return quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d));
+        }
+        if let [solve] = &step.solves[..]
+            && !matches!(solve.solution, Solution::FreeRotation | Solution::Explicit)
+        {
+            return self.found(solve, None);
+        }
+        let (solutions, result) = self.solved(step, false);
+        quote!(#solutions #private::Ok(#result))
+    }
+
+    /// What solves an equation, as a result where it can fail.
+    fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
+        let (private, name) = (&self.paths.private, self.equation_name(solve));
+        let held = self.held_by_equation(solve).into_iter();
+        let held = held.map(|held| if held == "system" { quote!(self) } else { one_word(held) });
+        let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
+        match solve.solution {
+            Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
+            Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
+            Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)),
+            Solution::Newton if self.program.find(solve.id(Id::Residual)).is_some() => {
+                quote!(#private::solve_fixed_point(&#equation, #target))
+            }
+            // by construction: free rotations are no equations of a type
+            Solution::Newton | Solution::FreeRotation => quote!(#private::solve(&#equation, #target)),
+        }
+    }
+
+    /// The solutions of a step, equation by equation, and the coordinates that they make; with `kept` those of motions that are known.
+    pub(super) fn solved(&self, step: &Step, kept: bool) -> (TokenStream, TokenStream) {
+        let private = &self.paths.private;
+        let entry = |component: &usize| {
+            let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
+            let found = step.solves.iter().find_map(|solve| Some((solve.number, position(solve)?)));
+            // by construction: every component belongs to one equation
+            let (number, position) = found.unwrap_or((0, 0));
+            let (solution, position) = (solution_name(number), size(position));
+            quote!(#solution[#position])
+        };
+        let solutions = step.solves.iter().map(|solve| {
+            if solve.solution == Solution::FreeRotation {
+                return self.found_free_rotation(solve, kept);
+            }
+            let given = solve.given.iter().map(entry);
+            let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
+            let (solution, found) = (solution_name(solve.number), self.found(solve, given));
+            let fails = (solve.solution != Solution::Explicit).then(|| quote!(?));
+            quote!(let #solution = #found #fails;)
+        });
+        let solutions = solutions.collect();
+        let components: Vec<usize> = (0..self.dimension()).collect();
+        let entries = components.iter().map(entry);
+        let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
+        let weights = (0..self.formulas.weighted().len()).map(weight_name);
+        let result = if weights.len() == 0 { x } else { quote!((#x, [#(#weights),*])) };
+        (solutions, result)
+    }
+
+    /// The coordinates of a factor that moves freely; `kept` are the motions of many steps.
+    fn found_free_rotation(&self, solve: &Solve, kept: bool) -> TokenStream {
+        let (private, rotation) = (&self.paths.private, self.free_rotation(solve));
+        let solution = solution_name(solve.number);
+        let weight = self.weight_of(solve);
+        let target = self.momentum_of_free_rotation(solve);
+        let found = if kept {
+            let before = self.program.steps[0].solves.iter().take(solve.number);
+            let index = size(before.filter(|solve| solve.solution == Solution::FreeRotation).count());
+            let method = if weight.is_some() { quote!(turn_of) } else { quote!(gibbs_vector_of) };
+            quote!(#private::FreeRotation::#method(&c.#rotation, &kept[#index], #target)?)
+        } else {
+            let method = if weight.is_some() { quote!(turn) } else { quote!(gibbs_vector) };
+            quote!(#private::FreeRotation::#method(&c.#rotation, #target)?)
+        };
+        let turned_back = self.is_left(solve).then(|| quote!(let #solution = -#solution;));
+        match weight.map(weight_name) {
+            Some(weight) => quote!(let (#weight, #solution) = #found; #turned_back),
+            None => quote!(let #solution = #found; #turned_back),
+        }
+    }
+
+    /// The number of the weight of the chart coordinates of an equation, where they are given up to a factor.
+    fn weight_of(&self, solve: &Solve) -> Option<usize> {
+        let block = self.symbols.blocks_of(&solve.components)[0];
+        let factor = self.symbols.blocks[block].factor;
+        self.formulas.weighted().iter().position(|&other| other == factor)
+    }
+
+    /// The momentum of a free rotation. Spatial momenta move as those of the body that turns back.
+    pub(super) fn momentum_of_free_rotation(&self, solve: &Solve) -> TokenStream {
+        let momentum = self.part_of_momentum(&solve.momenta);
+        if self.is_left(solve) { quote!(&-#momentum) } else { momentum }
+    }
+
+    /// Some components of the momentum, by reference; all of them are the momentum itself.
+    fn part_of_momentum(&self, components: &[usize]) -> TokenStream {
+        let private = &self.paths.private;
+        if components.iter().copied().eq(0..self.dimension()) {
+            return quote!(mu);
+        }
+        let components = components.iter().copied().map(size);
+        quote!(&#private::vector([#(mu[#components]),*]))
+    }
+}
+
+fn one_word(name: &str) -> TokenStream {
+    let name = format_ident!("{name}");
+    quote!(#name)
+}
+
+fn solution_name(number: usize) -> Ident {
+    format_ident!("x{}", number + 1)
+}
+
+fn weight_name(number: usize) -> Ident {
+    format_ident!("w{}", number + 1)
+}
