@@ -123,7 +123,8 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
         let change = changes[0] / positive(sizes[0]) + changes[1] / positive(sizes[1]);
         let stays = if count == 1 { T::Mask::nowhere() } else { before.at_most(change) };
         open = open & change.finite();
-        let arrived = open & (change.at_most(tolerance) | stays & change.at_most(rounding()));
+        let arrived =
+            open & (change.at_most(tolerance) | stays & change.at_most(T::EPSILON * T::from_ratio(ROUNDING, 1)));
         (solved, open) = (solved | arrived, open & !arrived);
         // the last that was finite
         before = T::select(change.finite(), change, before);
@@ -240,11 +241,6 @@ fn sizes<T: Scalar, const N: usize, const S: usize>(h: T, start: &[T; N], slopes
         sizes[2 * v / N] += start[v].abs() + (one.abs() + other.abs());
     }
     sizes
-}
-
-/// 1024 ε
-fn rounding<T: Scalar>() -> T {
-    T::EPSILON * T::from_ratio(ROUNDING, 1)
 }
 
 /// Why sweeps have found nothing: changes that did not shrink, whether or not they have overflowed since, or slopes that are no numbers near a place

@@ -4,8 +4,8 @@ use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
 use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
-use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
+use num_traits::{One, Zero};
 
 /// ½ μ·Σ⁻¹μ.
 pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
@@ -27,20 +27,17 @@ pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVect
 ///
 /// 0 for μ = 0, whatever Σ is; else NaN where Σ or μ is not finite.
 pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
-    T::from_lanes(|lane| kinetic_energy_of_one(&lane_of(inertia, lane), &lane_of(mu, lane)))
-}
-
-fn kinetic_energy_of_one<T: Real, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
-    if mu.iter().all(|x| *x == T::zero()) {
-        return T::zero();
-    }
-    if !(inertia.is_finite() && mu.is_finite()) {
-        return T::zero() / T::zero();
-    }
-    match solve_linear(inertia, mu) {
-        Some(velocity) => dot(mu, &velocity) * T::from_ratio(1, 2),
-        None => T::one() / T::zero(),
-    }
+    T::from_lanes(|lane| {
+        let (inertia, mu) = (lane_of(inertia, lane), lane_of(mu, lane));
+        let (zero, one) = (T::Lane::zero(), T::Lane::one());
+        if mu.iter().all(|x| *x == zero) {
+            return zero;
+        }
+        if !(inertia.is_finite() && mu.is_finite()) {
+            return T::Lane::zero() / T::Lane::zero();
+        }
+        solve_linear(&inertia, &mu).map_or(one / zero, |velocity| dot(&mu, &velocity) * T::Lane::from_ratio(1, 2))
+    })
 }
 
 /// The equation ∂ℓ/∂ξ(ξ) = μ of a Lagrangian ℓ, at one configuration and time.
@@ -56,30 +53,25 @@ pub trait VelocityEquation<T: Scalar, const M: usize> {
 ///
 /// +∞ where no velocity is found, NaN where μ or the Lagrangian at rest is not finite.
 pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {
-    T::from_lanes(|lane| transform_of_one(&InLane { equation, lane, scalar: PhantomData }, &lane_of(mu, lane)))
+    T::from_lanes(|lane| {
+        let linearize = |xi: &SVector<T::Lane, M>| {
+            let (value, gradient, hessian) = equation.linearize(&xi.map(|x| T::from_lanes(|_| x)));
+            (value.lane(lane), lane_of(&gradient, lane), lane_of(&hessian, lane))
+        };
+        transform_of_one(linearize, &lane_of(mu, lane))
+    })
 }
 
-/// The equation in one lane.
-struct InLane<'a, T, E> {
-    equation: &'a E,
-    lane: usize,
-    scalar: PhantomData<T>,
-}
-
-impl<T: Scalar, E: VelocityEquation<T, M>, const M: usize> VelocityEquation<T::Lane, M> for InLane<'_, T, E> {
-    fn linearize(&self, xi: &SVector<T::Lane, M>) -> (T::Lane, SVector<T::Lane, M>, SMatrix<T::Lane, M, M>) {
-        let (value, gradient, hessian) = self.equation.linearize(&xi.map(|x| T::from_lanes(|_| x)));
-        (value.lane(self.lane), lane_of(&gradient, self.lane), lane_of(&hessian, self.lane))
-    }
-}
-
-fn transform_of_one<T: Real, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {
-    let (_, at_rest, hessian) = equation.linearize(&SVector::from_element(T::zero()));
+fn transform_of_one<T: Real, const M: usize>(
+    linearize: impl Fn(&SVector<T, M>) -> (T, SVector<T, M>, SMatrix<T, M, M>),
+    mu: &SVector<T, M>,
+) -> T {
+    let (_, at_rest, hessian) = linearize(&SVector::from_element(T::zero()));
     if !(mu.is_finite() && at_rest.is_finite() && hessian.is_finite()) {
         return T::zero() / T::zero();
     }
-    match solve(&FromRest { equation, at_rest }, &(mu - at_rest)) {
-        Ok(xi) => dot(mu, &xi) - equation.linearize(&xi).0,
+    match solve(&FromRest { linearize: &linearize, at_rest }, &(mu - at_rest)) {
+        Ok(xi) => dot(mu, &xi) - linearize(&xi).0,
         Err(_) => T::one() / T::zero(),
     }
 }
@@ -89,12 +81,14 @@ fn dot<T: Scalar, const M: usize>(a: &SVector<T, M>, b: &SVector<T, M>) -> T {
 }
 
 /// ρ(ξ; μ − ∂ℓ/∂ξ(0)) = ∂ℓ/∂ξ(ξ) − μ
-struct FromRest<'a, T: Scalar, E: VelocityEquation<T, M>, const M: usize> {
-    equation: &'a E,
+struct FromRest<'a, T, L, const M: usize> {
+    linearize: &'a L,
     at_rest: SVector<T, M>,
 }
 
-impl<T: Scalar, E: VelocityEquation<T, M>, const M: usize> Equation<T, M> for FromRest<'_, T, E, M> {
+impl<T: Scalar, L: Fn(&SVector<T, M>) -> (T, SVector<T, M>, SMatrix<T, M, M>), const M: usize> Equation<T, M>
+    for FromRest<'_, T, L, M>
+{
     type Terms = SVector<T, M>;
     type Jacobian = SMatrix<T, M, M>;
 
@@ -103,7 +97,7 @@ impl<T: Scalar, E: VelocityEquation<T, M>, const M: usize> Equation<T, M> for Fr
     }
 
     fn linearize(&self, target: &SVector<T, M>, xi: &SVector<T, M>) -> (SVector<T, M>, SMatrix<T, M, M>) {
-        let (_, gradient, hessian) = self.equation.linearize(xi);
+        let (_, gradient, hessian) = (self.linearize)(xi);
         (gradient - self.at_rest - target, hessian)
     }
 }

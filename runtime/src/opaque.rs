@@ -1,7 +1,8 @@
 //! Opaque potentials: whether a gradient method belongs to a value method.
 
-use crate::space::check_lanes;
-use crate::{Error, Real, Scalar};
+use crate::space::{check_lanes, larger};
+use crate::{Error, Scalar};
+use num_traits::One;
 
 /// Checks one entry of a gradient against differences of the value along it.
 ///
@@ -13,25 +14,21 @@ use crate::{Error, Real, Scalar};
 pub fn check_slope<T: Scalar>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
     check_lanes::<T>(|lane| {
         let value = |x| value(T::from_lanes(|_| x)).lane(lane);
-        check_slope_of_one(value, x.lane(lane), slope.lane(lane), entry)
+        let (x, slope) = (x.lane(lane), slope.lane(lane));
+        let size = larger(T::Lane::one(), x.abs());
+        let delta = T::Lane::EPSILON.powf(T::Lane::from_ratio(1, 5)) * size;
+        let near = value(x + delta) - value(x - delta);
+        let far = value(x + delta + delta) - value(x - delta - delta);
+        let difference = (T::Lane::from_f64(8.0) * near - far) / (T::Lane::from_f64(12.0) * delta);
+        if !(difference.is_finite() && slope.is_finite()) {
+            return Err(Error::NotFinite { name: "the potential or its gradient" });
+        }
+        let scale = slope.abs() + difference.abs() + value(x).abs() / size;
+        if (slope - difference).abs() <= T::Lane::EPSILON.powf(T::Lane::from_ratio(2, 5)) * scale {
+            return Ok(());
+        }
+        Err(Error::WrongGradient { entry, gradient: slope.to_f64(), difference: difference.to_f64() })
     })
-}
-
-fn check_slope_of_one<T: Real>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
-    let one = T::one();
-    let size = if x.abs() > one { x.abs() } else { one };
-    let delta = T::EPSILON.powf(T::from_ratio(1, 5)) * size;
-    let near = value(x + delta) - value(x - delta);
-    let far = value(x + delta + delta) - value(x - delta - delta);
-    let difference = (T::from_f64(8.0) * near - far) / (T::from_f64(12.0) * delta);
-    if !(difference.is_finite() && slope.is_finite()) {
-        return Err(Error::NotFinite { name: "the potential or its gradient" });
-    }
-    let scale = slope.abs() + difference.abs() + value(x).abs() / size;
-    if (slope - difference).abs() <= T::EPSILON.powf(T::from_ratio(2, 5)) * scale {
-        return Ok(());
-    }
-    Err(Error::WrongGradient { entry, gradient: slope.to_f64(), difference: difference.to_f64() })
 }
 
 #[cfg(test)]

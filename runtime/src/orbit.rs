@@ -144,14 +144,9 @@ fn is_off_length_one<T: Scalar>(missing: T) -> T::Mask {
     (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs())
 }
 
-/// The largest of the sizes of some numbers; 0 for none, NaN where one of them is.
+/// The largest of the sizes of some numbers; 0 for none, and NaN, which overflow makes of a difference, where one of them is.
 pub fn largest<T: Scalar, const K: usize>(values: [T; K]) -> T {
-    largest_of(values.into_iter().map(|x| x.abs()))
-}
-
-/// The largest of numbers that are not negative. Unlike [`larger`] it keeps NaN, which overflow makes of a difference.
-fn largest_of<T: Scalar>(values: impl Iterator<Item = T>) -> T {
-    values.fold(T::zero(), |max, x| {
+    values.into_iter().map(|x| x.abs()).fold(T::zero(), |max, x| {
         let is_ordered = x.at_most(max) | max.at_most(x);
         T::select(is_ordered, larger(max, x), T::zero() / T::zero())
     })

@@ -72,7 +72,6 @@ pub trait Moves<X, D> {
 }
 
 /// q and N move by D.
-#[derive(Clone, Copy, Debug)]
 pub struct ByIncrement;
 
 impl<X, D> Moves<X, D> for ByIncrement {
@@ -85,7 +84,6 @@ impl<X, D> Moves<X, D> for ByIncrement {
 }
 
 /// q and N move by x, without the matrix D.
-#[derive(Clone, Copy, Debug)]
 pub struct ByCoordinates;
 
 impl<X: Copy, D> Moves<X, D> for ByCoordinates {
@@ -98,7 +96,6 @@ impl<X: Copy, D> Moves<X, D> for ByCoordinates {
 }
 
 /// q moves by x, N by D.
-#[derive(Clone, Copy, Debug)]
 pub struct ByBoth;
 
 impl<X: Copy, D> Moves<X, D> for ByBoth {

@@ -9,7 +9,7 @@
 mod formulas;
 
 use crate::parts::{C, F, Mu, Q, Solved, T};
-use crate::scheme::{self, At, Pair, Scheme};
+use crate::scheme::{self, At, Scheme};
 use crate::space::larger;
 use crate::{Clebsch, Error, Scalar, Space};
 use core::array::from_fn;
@@ -24,7 +24,7 @@ pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::M
 /// What no step of a power with these sites changes.
 pub type Constants<P, const N: usize> = PowerConstants<T<P>, scheme::Constants<<P as Power<N>>::Site>>;
 /// How a site is stepped.
-type SiteScheme<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Scheme;
+pub(crate) type SiteScheme<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Scheme;
 /// The representing matrix of the momentum of a site.
 type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::MomentumMatrix;
 
@@ -252,25 +252,6 @@ pub trait Power<const N: usize>:
         self.each(|site, i| plus(&site.legendre_next(h, t, &q[i], &f[i]), &kick[i]))
     }
 
-    /// The elements with this F⁻ℓd, where the kick at the start has the weight `part` of a step.
-    fn power_inverse_legendre(
-        &self,
-        c: &C<Self>,
-        t: T<Self>,
-        q: &Q<Self>,
-        mu: &Mu<Self>,
-        part: f64,
-    ) -> Solved<F<Self>> {
-        let kick = self.power_kick(t, q, c.part(part));
-        let mut elements = [Space::origin(); N];
-        for (i, element) in elements.iter_mut().enumerate() {
-            let n = plus(&mu[i], &kick[i]);
-            *element =
-                self.at_site(c, i, |site, c| SiteScheme::<Self, N>::inverse_legendre(At::new(site, c, t), &q[i], &n))?;
-        }
-        Ok(elements)
-    }
-
     /// ½ J(q, ∂(U₁ − U₀)) of kicks with these weights of a step.
     #[inline]
     fn power_stagger(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, start: f64, end: f64) -> Mu<Self> {
@@ -278,29 +259,6 @@ pub trait Power<const N: usize>:
             return [Space::origin(); N];
         }
         self.power_kick(t, q, h * Scalar::from_f64(0.5 * (end - start)))
-    }
-
-    /// A step of (q, p), whose kicks have these weights of a step.
-    fn power_step_symmetric(
-        &self,
-        c: &C<Self>,
-        t: T<Self>,
-        q: &Q<Self>,
-        p: &Q<Self>,
-        start: f64,
-        end: f64,
-    ) -> Solved<Pair<Self>> {
-        let kicked = |p: &Q<Self>, t, q: &Q<Self>, part: f64| -> Q<Self> {
-            let (gradient, weight) = (self.slope(t, q), c.part(part));
-            from_fn(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
-        };
-        let (mut next, mut moved) = (*q, kicked(p, t, q, start));
-        for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
-            (*q, *p) =
-                self.at_site(c, i, |site, c| SiteScheme::<Self, N>::step_symmetric(At::new(site, c, t), q, p))?;
-        }
-        let p = kicked(&moved, t + c.h, &next, end);
-        Ok((next, p))
     }
 
     /// The kinetic energy of all sites.

@@ -3,19 +3,17 @@
 // first, as a page shows methods in the order of their files
 mod stepping;
 
-mod reading;
-
-mod each;
 mod formulas;
 mod refusal;
 mod staggered;
 mod step_size;
 mod symmetric;
 
+use crate::fields::getters;
 use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
 use crate::space::check_lanes;
-use crate::{Clebsch, Declared, Error, Mask, Method, Scalar, Space};
+use crate::{Clebsch, Clock, Conserves, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time};
 use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
 
@@ -62,6 +60,96 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// q is finite and on its orbit, up to √ε.
     pub(crate) fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
         check_configuration(&self.system, q)
+    }
+
+    /// Kinetic energy plus potential, at the time of the state.
+    ///
+    /// Nearly constant for an autonomous system: its oscillation shrinks with the order.
+    #[inline]
+    pub fn energy(&self, state: &State<S, M>) -> S::Scalar {
+        self.kinetic_energy(state) + self.system.potential(state.time.now(), &state.configuration)
+    }
+
+    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity ξ with the momentum N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N where ℓ is quadratic with the
+    /// Hessian Σ; +∞ where no velocity has this momentum.
+    #[inline]
+    pub fn kinetic_energy(&self, state: &State<S, M>) -> S::Scalar {
+        let constants = M::Scheme::whole(&self.constants);
+        M::kinetic_energy(&self.system, constants, state.time.now(), &state.configuration, &state.momentum())
+    }
+
+    /// The step size h, seconds in SI units.
+    #[inline]
+    pub fn step_size(&self) -> S::Scalar {
+        self.h
+    }
+
+    getters! {
+        /// The system.
+        ref system: S;
+    }
+
+    /// The momentum nearest to `mu` that motions of q can have: the orthogonal projection of its components to 𝔤_q^⊥.
+    ///
+    /// `mu` itself where the action is free or the declaration says `isotropy = free`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OffOrbit`].
+    pub fn project(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+        self.check_configuration(q)?;
+        let projected = self.system.project_momentum(q, mu);
+        check_finite("the momentum", &(*mu, projected))?;
+        Ok(projected)
+    }
+
+    /// What no step changes.
+    #[inline]
+    pub(crate) fn constants(&self) -> &Constants<S, M> {
+        &self.constants
+    }
+}
+
+/// Where conserved momenta were found.
+impl<S: Conserves, M: Method<S>> Stepper<S, M> {
+    /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
+    #[inline]
+    pub fn conserved(&self, state: &State<S, M>) -> S::Conserved {
+        self.system.conserved(&state.configuration, &state.momentum())
+    }
+}
+
+/// Where the cost or the potential depends on the time.
+impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
+    /// The state (q, N) at the time t, checked as by [`state`](Self::state).
+    ///
+    /// # Errors
+    /// As [`state`](Self::state); [`Error::NotFinite`] for the time too.
+    pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+        check_finite("the time", &t)?;
+        self.checked_state(t, q, mu)
+    }
+
+    /// The state at the time t, made as by [`staggered_state`](Self::staggered_state).
+    ///
+    /// # Errors
+    /// As [`staggered_state`](Self::staggered_state); [`Error::NotFinite`] for the time too.
+    pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+        check_finite("the time", &t)?;
+        self.checked_staggered_state(t, q, mu)
+    }
+
+    /// The state (q, p) on T*Q at the time t, checked as by [`cotangent_state`](Self::cotangent_state).
+    ///
+    /// # Errors
+    /// As [`cotangent_state`](Self::cotangent_state); [`Error::NotFinite`] for the time too.
+    pub fn cotangent_state_at(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        p: S::Configuration,
+    ) -> Result<CotangentState<S>, Error> {
+        check_finite("the time", &t)?;
+        self.checked_cotangent_state(t, q, p)
     }
 }
 

@@ -59,19 +59,12 @@ pub trait Sums {
     fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V {
         if Self::ARE_COMPENSATED { Self::sum(sum, rest, &made) } else { made }
     }
-
-    /// The same without a look at rounding.
-    #[inline(always)]
-    fn made_plainly<T: Scalar, V: Space<T>>(sum: &V, made: V) -> V {
-        if Self::ARE_COMPENSATED { sum.zip_map(&made, |a, b| a + b) } else { made }
-    }
 }
 
 /// What rounding has taken off q and N.
 pub type Rests<S, T, Q, N> = (<S as Sums>::Rest<T, Q>, <S as Sums>::Rest<T, N>);
 
 /// Sums as numbers are added.
-#[derive(Clone, Copy, Debug)]
 pub struct Plain;
 
 impl Sums for Plain {
@@ -97,7 +90,6 @@ impl Sums for Plain {
 }
 
 /// Compensated sums.
-#[derive(Clone, Copy, Debug)]
 pub struct Compensated;
 
 impl Sums for Compensated {

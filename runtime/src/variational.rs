@@ -189,11 +189,7 @@ pub trait Sensitive<const M: usize, const P: usize>:
     const TIME: Option<usize> = None;
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
-    #[allow(
-        clippy::type_complexity,
-        clippy::too_many_arguments,
-        reason = "an edge is its place and time, its ends and its input; both its momenta have slopes"
-    )]
+    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     #[inline]
     fn edge_slopes(
         &self,
@@ -204,7 +200,7 @@ pub trait Sensitive<const M: usize, const P: usize>:
         d: &Self::Element,
         next: &Self::Configuration,
         u: &Self::Input,
-    ) -> (SMatrix<Self::Scalar, M, P>, SMatrix<Self::Scalar, M, P>) {
+    ) -> BothSlopes<Self::Scalar, M, P> {
         let slopes = Self::Scheme::visit(At::new(self, constants, t), edge, ByQuantities(Ends { q, d, next, u }));
         let of_step = |slopes| Self::Scheme::slopes_of_step(constants, edge, slopes, (Self::STEP_SIZE, Self::TIME));
         (of_step(slopes.0), of_step(slopes.1))

@@ -1,8 +1,6 @@
 //! Many bodies, side by side.
 
 mod chunk;
-#[cfg(feature = "rayon")]
-mod threads;
 
 use super::Drive;
 use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, State, Stepper, Time};
@@ -136,8 +134,7 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
         let mut chunks = Vec::new();
         for (number, chunk) in bodies.chunks(S::Scalar::LANES).enumerate() {
             let Some(stepper) = from(&steppers, number).first() else { break };
-            let refused = |(lane, error)| Failure { body: number * S::Scalar::LANES + lane, step: 0, error };
-            chunks.push(Chunk::new(stepper, chunk).map_err(refused)?);
+            chunks.push(Chunk::new(stepper, number * S::Scalar::LANES, chunk)?);
         }
         Ok(Self { steppers, chunks, bodies: bodies.len(), steps: 0 })
     }
@@ -201,19 +198,12 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
 
     /// The bodies that have failed, and why.
     pub fn failures(&self) -> impl Iterator<Item = Failure> + '_ {
-        self.chunks.iter().enumerate().flat_map(|(number, chunk)| {
-            chunk.failures().map(move |(lane, step, error)| Failure {
-                body: number * S::Scalar::LANES + lane,
-                step,
-                error,
-            })
-        })
+        self.chunks.iter().flat_map(Chunk::failures)
     }
 
     /// Why a body has failed; `None` where it has not.
     pub fn failure(&self, body: usize) -> Option<Failure> {
-        let (_, chunk, lane) = self.at(body)?;
-        chunk.failures().find(|failure| failure.0 == lane).map(|(_, step, error)| Failure { body, step, error })
+        self.at(body)?.1.failures().find(|failure| failure.body == body)
     }
 
     /// Where a body is.
@@ -221,6 +211,27 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
         let number = body / S::Scalar::LANES;
         let chunk = self.chunks.get(number).filter(|_| body < self.bodies)?;
         Some((from(&self.steppers, number).first()?, chunk, body % S::Scalar::LANES))
+    }
+}
+
+#[cfg(feature = "rayon")]
+impl<S: Clebsch, M: Method<S>> Ensemble<S, M>
+where
+    State<S, M>: Send,
+    Stepper<S, M>: Sync,
+{
+    /// [`advance`](Self::advance) on all threads of the present pool, with the same bits.
+    ///
+    /// Needs the feature `rayon`.
+    pub fn par_advance(&mut self, steps: u64) {
+        use rayon::prelude::*;
+        /// The least number of groups of chunks that a thread takes at a time.
+        const SHARE: usize = 4;
+        let (first, steppers) = (self.steps, &self.steppers);
+        self.chunks.par_chunks_mut(chunk::TOGETHER).enumerate().with_min_len(SHARE).for_each(|(group, chunks)| {
+            chunk::advance(chunks, from(steppers, group * chunk::TOGETHER), first, steps);
+        });
+        self.steps = self.steps.saturating_add(steps);
     }
 }
 

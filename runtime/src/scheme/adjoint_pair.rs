@@ -13,7 +13,6 @@ use core::marker::PhantomData;
 pub type AdjointPair<C> = InSequence<Order<C>>;
 
 /// The order of an [`AdjointPair`].
-#[derive(Clone, Copy, Debug)]
 pub struct Order<C>(PhantomData<C>);
 
 impl<S: Substep<0, M> + Substep<1, M> + Substep<2, M>, M: Method<S>, C: CarryKick<S, M>> Sequence<S, M> for Order<C> {

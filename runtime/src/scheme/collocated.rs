@@ -12,7 +12,6 @@ use crate::{Error, Method, Scalar, Space};
 pub type Collocated<const N: usize> = InSequence<Order<N>>;
 
 /// The order of a [`Collocated`] step.
-#[derive(Clone, Copy, Debug)]
 pub struct Order<const N: usize>;
 
 impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> Sequence<S, M> for Order<N> {

@@ -22,15 +22,12 @@ pub trait Sizes<const K: usize> {
 }
 
 /// Five steps.
-#[derive(Clone, Copy, Debug)]
 pub struct OfOrderFour;
 
 /// Nine steps.
-#[derive(Clone, Copy, Debug)]
 pub struct OfOrderSix;
 
 /// Seventeen steps.
-#[derive(Clone, Copy, Debug)]
 pub struct OfOrderEight;
 
 impl Sizes<3> for OfOrderFour {
@@ -63,7 +60,6 @@ impl Sizes<9> for OfOrderEight {
 }
 
 /// Steps of the scheme I with the K sizes Z, and the same backwards.
-#[derive(Clone, Copy, Debug)]
 pub struct Composed<I, Z, const K: usize>(PhantomData<(I, Z)>);
 
 impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Scheme<S, M> for Composed<I, Z, K> {

@@ -10,11 +10,9 @@ use crate::{Error, Method};
 pub type AlongFreeMotion = InSequence<Order>;
 
 /// The order of steps [`AlongFreeMotion`].
-#[derive(Clone, Copy, Debug)]
 pub struct Order;
 
 /// What the motion keeps.
-#[derive(Clone, Copy, Debug)]
 pub struct Kept;
 
 impl<S: FreeMotion<M>, M: Method<S>> Carry<S, M> for Kept {

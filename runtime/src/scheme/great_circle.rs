@@ -12,14 +12,12 @@ use num_traits::One;
 
 /// (q, w) ↦ (q⁺, w⁺): w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁. What is not perpendicular to q is taken off w in
 /// each step, which rounding makes necessary. C says how the gradients of a step and the next are told.
-#[derive(Clone, Copy, Debug)]
 pub struct GreatCircle<C>(PhantomData<C>);
 
 /// q ↦ q⁺ of a point that nothing pushes, with N = vuᵀ − uvᵀ, which stays: q⁺ = cq + aw with w = Nq, a = h/κ and c² = 1 − a²|w|². A state holds u and v.
 pub type FreeGreatCircle = GreatCircle<Unpushed>;
 
 /// There are no gradients.
-#[derive(Clone, Copy, Debug)]
 pub struct Unpushed;
 
 /// A point in n dimensions.

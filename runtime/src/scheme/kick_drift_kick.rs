@@ -16,7 +16,6 @@ use core::marker::PhantomData;
 pub type KickDriftKick<C, const W: usize = 0> = InSequence<Order<C, W>>;
 
 /// The order of a [`KickDriftKick`].
-#[derive(Clone, Copy, Debug)]
 pub struct Order<C, const W: usize>(PhantomData<C>);
 
 impl<S: Substep<0, M> + Substep<W, M>, M: Method<S>, C: CarryKick<S, M>, const W: usize> Sequence<S, M>

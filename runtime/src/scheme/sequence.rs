@@ -41,7 +41,6 @@ pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
 }
 
 /// The scheme with the sequence P.
-#[derive(Clone, Copy, Debug)]
 pub struct InSequence<P>(PhantomData<P>);
 
 impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSequence<P> {
@@ -146,7 +145,6 @@ pub trait CarryKick<S: Parts<M>, M: Method<S>>: Carry<S, M> {
 }
 
 /// The kick at the end of one step is that at the start of the next.
-#[derive(Clone, Copy, Debug)]
 pub struct Shared;
 
 impl<S: Substep<0, M>, M: Method<S>> Carry<S, M> for Shared {
@@ -180,7 +178,6 @@ impl<S: Substep<0, M>, M: Method<S>> CarryKick<S, M> for Shared {
 }
 
 /// Each step makes its own kicks.
-#[derive(Clone, Copy, Debug)]
 pub struct Apart;
 
 impl<S: Parts<M>, M: Method<S>> Carry<S, M> for Apart {

@@ -2,8 +2,9 @@
 
 use super::{At, Before, Pair, Parted, Scheme};
 use crate::parts::{F, Mu, Q};
-use crate::power::Power;
+use crate::power::{Power, SiteScheme};
 use crate::{Clock, Declared, Error, Space, Time};
+use core::array::from_fn;
 use core::marker::PhantomData;
 
 /// Half a kick, the moves, half a kick.
@@ -14,7 +15,6 @@ pub type SitesOfFirstOrder<const N: usize> = SitesInTurn<EndKick, N>;
 pub type FreeSites<const N: usize> = SitesInTurn<NoKick, N>;
 
 /// N sites, kicked as K says.
-#[derive(Clone, Copy, Debug)]
 pub struct SitesInTurn<K, const N: usize>(PhantomData<K>);
 
 /// When N sites are kicked.
@@ -28,7 +28,6 @@ pub trait SiteKicks<S: Power<N>, const N: usize> {
 }
 
 /// Half a kick before the moves, and half of one after them.
-#[derive(Clone, Copy, Debug)]
 pub struct BothKicks;
 
 impl<S: Power<N>, const N: usize> SiteKicks<S, N> for BothKicks {
@@ -38,7 +37,6 @@ impl<S: Power<N>, const N: usize> SiteKicks<S, N> for BothKicks {
 }
 
 /// A kick after the moves.
-#[derive(Clone, Copy, Debug)]
 pub struct EndKick;
 
 impl<S: Power<N>, const N: usize> SiteKicks<S, N> for EndKick {
@@ -48,7 +46,6 @@ impl<S: Power<N>, const N: usize> SiteKicks<S, N> for EndKick {
 }
 
 /// No kick.
-#[derive(Clone, Copy, Debug)]
 pub struct NoKick;
 
 impl<S: Power<N>, const N: usize> SiteKicks<S, N> for NoKick {
@@ -156,11 +153,29 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         Ok((q, mu, left))
     }
 
-    fn step_symmetric(at: At<'_, S>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
-        at.system.power_step_symmetric(at.constants, at.t, q, p, K::START, K::END)
+    fn step_symmetric(At { system, constants, t, .. }: At<'_, S>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
+        let kicked = |p: &Q<S>, t, q: &Q<S>, part: f64| -> Q<S> {
+            let (gradient, weight) = (system.slope(t, q), constants.part(part));
+            from_fn(|i| p[i].zip_map(&gradient[i], |p, slope| p + weight * slope))
+        };
+        let (mut next, mut moved) = (*q, kicked(p, t, q, K::START));
+        for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
+            (*q, *p) = system
+                .at_site(constants, i, |site, c| SiteScheme::<S, N>::step_symmetric(At::new(site, c, t), q, p))?;
+        }
+        let p = kicked(&moved, t + constants.h, &next, K::END);
+        Ok((next, p))
     }
 
-    fn inverse_legendre(at: At<'_, S>, q: &Q<S>, mu: &Mu<S>) -> Result<F<S>, Error> {
-        at.system.power_inverse_legendre(at.constants, at.t, q, mu, K::START)
+    fn inverse_legendre(At { system, constants, t, .. }: At<'_, S>, q: &Q<S>, mu: &Mu<S>) -> Result<F<S>, Error> {
+        let kick = system.power_kick(t, q, constants.part(K::START));
+        let mut elements = [Space::origin(); N];
+        for (i, element) in elements.iter_mut().enumerate() {
+            let n = mu[i].zip_map(&kick[i], |mu, kick| mu + kick);
+            *element = system.at_site(constants, i, |site, c| {
+                SiteScheme::<S, N>::inverse_legendre(At::new(site, c, t), &q[i], &n)
+            })?;
+        }
+        Ok(elements)
     }
 }

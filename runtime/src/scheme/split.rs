@@ -44,7 +44,6 @@ pub trait Kicks<const K: usize> {
 }
 
 /// Order 4, four kicks.
-#[derive(Clone, Copy, Debug)]
 pub struct GradientFour;
 
 impl Kicks<4> for GradientFour {
@@ -57,7 +56,6 @@ impl Kicks<4> for GradientFour {
 }
 
 /// Order 6, five kicks; the second and the fourth lie outside the step and are weak.
-#[derive(Clone, Copy, Debug)]
 pub struct GradientSix;
 
 impl Kicks<5> for GradientSix {
@@ -71,7 +69,6 @@ impl Kicks<5> for GradientSix {
 }
 
 /// Order 4 without force gradients, six kicks.
-#[derive(Clone, Copy, Debug)]
 pub struct PlainFour;
 
 impl Kicks<6> for PlainFour {
@@ -86,7 +83,6 @@ impl Kicks<6> for PlainFour {
 }
 
 /// Order 6 without force gradients, ten kicks.
-#[derive(Clone, Copy, Debug)]
 pub struct PlainSix;
 
 impl Kicks<10> for PlainSix {
@@ -108,7 +104,6 @@ impl Kicks<10> for PlainSix {
 pub type Split<Z, const K: usize> = InSequence<Order<Z, K>>;
 
 /// The order of a [`Split`] step.
-#[derive(Clone, Copy, Debug)]
 pub struct Order<Z, const K: usize>(PhantomData<Z>);
 
 impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize> Sequence<S, M> for Order<Z, K> {

@@ -171,5 +171,5 @@ pub(super) fn symmetric<S: Substep<K, M>, M: Method<S>, const K: usize>(
 #[inline(always)]
 pub(super) fn moved<S: Parts<M>, M: Method<S>>(system: &S, q: &Q<S>, x: &S::Coordinates, d: &S::Element) -> Q<S> {
     let moved = system.advance(q, &system.motion(x, || *d));
-    S::Sums::made_plainly(q, moved)
+    if S::Sums::ARE_COMPENSATED { q.zip_map(&moved, |a, b| a + b) } else { moved }
 }

@@ -5,7 +5,6 @@ use crate::parts::{Mu, Q};
 use crate::{Clebsch, Error, Method};
 
 /// No scheme: of a declaration with an error, so that nothing else is reported. It is never called.
-#[derive(Clone, Copy, Debug)]
 pub struct Unstepped;
 
 impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {

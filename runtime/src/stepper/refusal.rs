@@ -1,8 +1,9 @@
-//! What is told of a step that fails: what it is that is not finite, and how long a step would do.
+//! Steps that fail: of one body beside others that go on, what it is that is not finite, and how long a step would do.
 
 use super::Stepper;
-use crate::scheme::{At, Constants, Scheme};
+use crate::scheme::{At, Constants, Held, Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
+use num_traits::Zero;
 
 /// Step sizes that are tried to find the longest one that can be solved, at most.
 const TRIALS: usize = 32;
@@ -18,6 +19,36 @@ const CONSTANTS: usize = 2048;
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
+    /// One step in each lane by itself, and the lanes in which it succeeded; in the others the state stays as it is.
+    ///
+    /// [`step`](Self::step) is this where all lanes succeed.
+    #[inline]
+    pub fn step_each(&self, state: &State<S, M>) -> (State<S, M>, <S::Scalar as Scalar>::Mask) {
+        let Ok(next) = self.attempt(state, &S::Input::origin()) else {
+            return (*state, <S::Scalar as Scalar>::Mask::nowhere());
+        };
+        let stepped = next.finite();
+        if stepped.all() { (next, stepped) } else { (merged(&next, state, stepped), stepped) }
+    }
+
+    /// Why the step of a lane fails; `None` where it does not.
+    ///
+    /// The step is made once more, with the momenta of all other lanes NaN: what is left to fail is this lane.
+    #[cold]
+    pub fn failure(&self, state: &State<S, M>, lane: usize) -> Option<Error> {
+        let mut alone = *state;
+        alone.held = Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero());
+        alone.held.set_lane(lane, &state.held.lane(lane));
+        // nothing is known of their motions
+        alone.left = Left::<S, M>::filled(S::Scalar::zero());
+        alone.left.set_lane(lane, &state.left.lane(lane));
+        match self.attempt(&alone, &S::Input::origin()) {
+            Err(error) => Some(self.refusal(&alone, &S::Input::origin(), lane, error)),
+            Ok(next) if next.finite().lane(lane) => None,
+            Ok(next) => Some(self.overflow(&next, lane)),
+        }
+    }
+
     /// The error of a step from `state`, which is finite, in this lane.
     #[cold]
     #[inline(never)]
@@ -49,15 +80,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                     let solvable_step = M::IS_FREE_MOTION.then_some(h * solvable_fraction);
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };
                 }
-                let tried = |h: f64| match M::Scheme::constants(&self.system, S::Scalar::from_f64(h)) {
-                    Ok(constants) => stepped(&constants),
-                    Err(error) => Err(error),
-                };
-                Error::Unsolvable {
-                    solvable_fraction,
-                    step_size: Some(h),
-                    solvable_step: longest(h, solvable_fraction, tried),
-                }
+                let constants = |h: f64| M::Scheme::constants(&self.system, S::Scalar::from_f64(h));
+                let solvable_step = longest(h, solvable_fraction, |h| stepped(&constants(h)?));
+                Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step }
             }
             other => other,
         }
@@ -84,6 +109,18 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
         M::Scheme::left(self.at(t), q, &S::Momentum::origin()).finite().lane(lane)
     }
+}
+
+/// `next` in the lanes of `stepped`, `before` in the others.
+#[cold]
+fn merged<S: Clebsch, M: Method<S>>(
+    next: &State<S, M>,
+    before: &State<S, M>,
+    stepped: <S::Scalar as Scalar>::Mask,
+) -> State<S, M> {
+    let mut merged = *next;
+    (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)).for_each(|lane| merged.take_lane(lane, before));
+    merged
 }
 
 /// The longest step that `tried` solves, to [`WIDTH`], given the step `h` that has no solution and the fraction of its momentum that has one;

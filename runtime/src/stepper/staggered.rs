@@ -3,7 +3,7 @@
 use super::{GRADIENT, Stepper, check_momentum};
 use crate::parameters::check_finite;
 use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, Error, Method, Space, State, Time};
+use crate::{Clebsch, Error, Method, Space, State, Time};
 use num_traits::Zero;
 
 /// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
@@ -110,7 +110,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.checked_staggered_state(state.time.now(), *state.configuration(), other.synchronized(state))
     }
 
-    fn checked_staggered_state(
+    pub(super) fn checked_staggered_state(
         &self,
         t: S::Scalar,
         q: S::Configuration,
@@ -123,17 +123,5 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);
         check_finite("the momentum half a kick ahead", &staggered)?;
         self.made_state(t, q, staggered)
-    }
-}
-
-/// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
-    /// The state at the time t, made as by [`staggered_state`](Self::staggered_state).
-    ///
-    /// # Errors
-    /// As [`staggered_state`](Self::staggered_state); [`Error::NotFinite`] for the time too.
-    pub fn staggered_state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
-        check_finite("the time", &t)?;
-        self.checked_staggered_state(t, q, mu)
     }
 }

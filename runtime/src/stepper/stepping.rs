@@ -1,9 +1,8 @@
 //! State after state.
 
 use super::{GRADIENT, Stepper, check_momentum, first_without, whole_or_lane};
-use crate::parameters::check_finite;
 use crate::scheme::{Left, Scheme};
-use crate::{Clebsch, Clock, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
+use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -103,20 +102,13 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 }
 
-/// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
-    /// The state (q, N) at the time t, checked as by [`state`](Self::state).
-    ///
-    /// # Errors
-    /// As [`state`](Self::state); [`Error::NotFinite`] for the time too.
-    pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
-        check_finite("the time", &t)?;
-        self.checked_state(t, q, mu)
-    }
-}
-
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    fn checked_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+    pub(super) fn checked_state(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error> {
         self.check_configuration(&q)?;
         check_momentum(&self.system, &q, &mu)?;
         self.made_state(t, q, mu)

@@ -3,7 +3,7 @@
 use super::{Stepper, first_without, whole_or_lane};
 use crate::parameters::check_finite;
 use crate::scheme::{At, Scheme};
-use crate::{Clebsch, Clock, CotangentState, Error, Mask, Method, Scalar, Space, Time};
+use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, Time};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -42,7 +42,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) }))
     }
 
-    fn checked_cotangent_state(
+    pub(super) fn checked_cotangent_state(
         &self,
         t: S::Scalar,
         q: S::Configuration,
@@ -51,22 +51,5 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.check_configuration(&q)?;
         check_finite("the covector", &p)?;
         Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })
-    }
-}
-
-/// Where the cost or the potential depends on the time.
-impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
-    /// The state (q, p) on T*Q at the time t, checked as by [`cotangent_state`](Self::cotangent_state).
-    ///
-    /// # Errors
-    /// As [`cotangent_state`](Self::cotangent_state); [`Error::NotFinite`] for the time too.
-    pub fn cotangent_state_at(
-        &self,
-        t: S::Scalar,
-        q: S::Configuration,
-        p: S::Configuration,
-    ) -> Result<CotangentState<S>, Error> {
-        check_finite("the time", &t)?;
-        self.checked_cotangent_state(t, q, p)
     }
 }

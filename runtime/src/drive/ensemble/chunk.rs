@@ -1,7 +1,7 @@
 //! The bodies that share the lanes of one state.
 
 use crate::scheme::Held;
-use crate::{Body, Clebsch, Error, Mask, Method, Scalar, Space, State, Stepper, Time};
+use crate::{Body, Clebsch, Error, Failure, Mask, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
 use num_traits::Zero;
 
@@ -11,6 +11,8 @@ pub const TOGETHER: usize = 4;
 /// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.
 #[derive(Debug)]
 pub struct Chunk<X> {
+    /// The number of the first body.
+    first: usize,
     state: X,
     /// The lanes of bodies that are stepped, one bit for each. The momenta of the others are NaN, which ends their solve at once.
     live: u16,
@@ -21,25 +23,27 @@ pub struct Chunk<X> {
 #[derive(Debug)]
 struct Failed<X> {
     lane: usize,
-    /// The number of steps that it has made.
-    step: u64,
-    error: Error,
+    failure: Failure,
     /// The last state that it reached, in its lane.
     state: X,
 }
 
 impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
-    /// From at least one body, and at most one for each lane.
+    /// From at least one body, and at most one for each lane, of which the first has this number.
     ///
     /// # Errors
     /// The first body that [`Stepper::state`] refuses.
-    pub fn new(stepper: &Stepper<S, M>, bodies: &[Body<S>]) -> Result<Self, (usize, Error)> {
+    pub fn new(stepper: &Stepper<S, M>, first: usize, bodies: &[Body<S>]) -> Result<Self, Failure> {
         let body = |lane: usize| bodies[lane.min(bodies.len() - 1)];
         let q = S::Configuration::side_by_side(|lane| body(lane).0);
         let mu = S::Momentum::side_by_side(|lane| body(lane).1);
         match stepper.state(q, mu) {
-            Ok(state) => Ok(Self { state, live: u16::MAX >> (16 - bodies.len()), failed: Vec::new() }),
-            Err(error) => Err(refused(stepper, bodies).unwrap_or((0, error))),
+            Ok(state) => Ok(Self { first, state, live: u16::MAX >> (16 - bodies.len()), failed: Vec::new() }),
+            Err(error) => {
+                let refusal = |(lane, body)| alone(stepper, body).err().map(|error| (lane, error));
+                let (lane, error) = bodies.iter().enumerate().find_map(refusal).unwrap_or((0, error));
+                Err(Failure { body: first + lane, step: 0, error })
+            }
         }
     }
 
@@ -68,7 +72,8 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
             if self.live >> lane & 1 == 1 {
                 // by construction: the step has failed in this lane
                 let error = stepper.failure(&self.state, lane).unwrap_or(Error::InLane { lane });
-                self.failed.push(Failed { lane, step, error, state: self.state });
+                let failure = Failure { body: self.first + lane, step, error };
+                self.failed.push(Failed { lane, failure, state: self.state });
                 self.live &= !(1 << lane);
             }
             next.held.set_lane(lane, &undefined::<S, M>().lane(lane));
@@ -90,9 +95,9 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
         self.state.take_lane(lane, &state);
     }
 
-    /// Lane, number of steps made, and error of the bodies that stay.
-    pub fn failures(&self) -> impl Iterator<Item = (usize, u64, Error)> + '_ {
-        self.failed.iter().map(|failed| (failed.lane, failed.step, failed.error))
+    /// The bodies that stay.
+    pub fn failures(&self) -> impl Iterator<Item = Failure> + '_ {
+        self.failed.iter().map(|failed| failed.failure)
     }
 }
 
@@ -117,12 +122,6 @@ pub fn advance<S: Clebsch, M: Method<S>>(
 /// A state with the same body in all lanes, checked.
 pub fn alone<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, (q, mu): &Body<S>) -> Result<State<S, M>, Error> {
     stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
-}
-
-/// The first body that is refused.
-fn refused<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, bodies: &[Body<S>]) -> Option<(usize, Error)> {
-    let refusal = |(lane, body)| alone(stepper, body).err().map(|error| (lane, error));
-    bodies.iter().enumerate().find_map(refusal)
 }
 
 /// Momenta that are no numbers.

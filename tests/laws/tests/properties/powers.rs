@@ -58,7 +58,7 @@ proptest! {
     fn sites_are_systems_alone(ring in rings(), (q, mu) in spins(), p in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0) {
         let constants = ring.power_constants(H)?;
         let drifted = FreeSites::<N>::step(At::new(&ring, &constants, t), (&q, &mu, &()), &())?;
-        let f = ring.power_inverse_legendre(&constants, t, &q, &mu, 0.0)?;
+        let f = FreeSites::<N>::inverse_legendre(At::new(&ring, &constants, t), &q, &mu)?;
         let (image, momenta, coadjoint) = (ring.act(&f, &q), ring.momentum_map(&q, &p), ring.coadjoint(&f, &mu));
         let (matrices, projected) = (<Ring<N> as Power<N>>::matrices_of(&mu), ring.project_momentum(&q, &p));
         prop_assert_eq!(ring.each(|site, i| site.act(&f[i], &q[i])), image);
@@ -145,7 +145,7 @@ proptest! {
         let (mut image, mut moved, mut left) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::x(); N]);
         SitesOfSecondOrder::<N>::step_into(at, (&q, &mu, &start), &(), (&mut image, &mut moved, &mut left))?;
         prop_assert_eq!((image, moved, left), (next, momenta, kick));
-        let f = ring.power_inverse_legendre(&constants, t, &q, &mu, -0.5)?;
+        let f = SitesOfSecondOrder::<N>::inverse_legendre(at, &q, &mu)?;
         prop_assert!(apart(&ring.act(&f, &q), &next) < 1e-13);
         prop_assert!(apart(&ring.power_legendre(H, t, &q, &f, -0.5), &mu) < 1e-12);
         prop_assert!(apart(&ring.power_legendre_next(H, t, &q, &f, -0.5), &momenta) < 1e-12);
@@ -172,7 +172,7 @@ proptest! {
         prop_assert!(apart(&late, &std::array::from_fn(|i| moved[i] + whole[i])) < 1e-15);
         // p = N × q has J(q, p) = N, as N is across q
         let p: Spins = std::array::from_fn(|i| mu[i].cross(&q[i]));
-        let (there, covectors) = ring.power_step_symmetric(&constants, t, &q, &p, -0.5, -0.5)?;
+        let (there, covectors) = SitesOfSecondOrder::<N>::step_symmetric(at, &q, &p)?;
         prop_assert!(apart(&there, &next) < 1e-13);
         prop_assert!(apart(&ring.momentum_map(&there, &covectors), &momenta) < 1e-12);
     }
