@@ -18,11 +18,11 @@ struct Factored {
 /// Takes common factors out of all sums that the outputs are made of; of some of them other terms are known than those they were made with.
 pub(super) fn factored(
     operations: &mut Operations,
-    outputs: impl Iterator<Item = Id>,
+    outputs: &[Id],
     sums: Table<Id, Vec<(Rational, Id)>>,
 ) -> Table<Id, Vec<(Rational, Id)>> {
     let mut factored = Factored { uses: vec![0; operations.len()], sums, ..Factored::default() };
-    outputs.for_each(|output| factored.take(operations, output));
+    outputs.iter().for_each(|&output| factored.take(operations, output));
     while let Some(sum) = factored.waiting.pop() {
         factored.sum(operations, sum);
     }

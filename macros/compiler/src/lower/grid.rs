@@ -7,11 +7,48 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Expr, Graph, One, Operation, Rational, Role, Shape, Sparse, View, WordTerm, integer,
+    Algebra, Basis, Expr, Graph, One, Operation, Property, Rational, Shape, Sparse, Symbol, Table, View, WordTerm,
+    integer,
 };
 
-use super::entry::{Grid, Scalar};
-use super::scalar::{Call, Callee, Input, Scalars};
+use super::scalar::{Call, Callee, Input, Rate, Scalar, Scalars};
+
+/// A matrix of scalars, row by row.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Grid {
+    /// Rows and columns.
+    pub shape: Shape,
+    /// The entries, row by row.
+    pub entries: Vec<Scalar>,
+}
+
+/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
+#[derive(Default)]
+pub struct Grids {
+    grids: Table<usize, Rc<Grid>>,
+    constant: Table<usize, bool>,
+}
+
+impl Grid {
+    fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
+        Grid { shape, entries: shape.positions().map(entry).collect() }
+    }
+
+    /// A matrix of one entry.
+    pub fn scalar(entry: Scalar) -> Grid {
+        Grid::vector(vec![entry])
+    }
+
+    /// A column.
+    pub fn vector(entries: Vec<Scalar>) -> Grid {
+        Grid { shape: Shape::vector(entries.len()), entries }
+    }
+
+    /// The entry in row i and column j.
+    pub fn at(&self, i: usize, j: usize) -> Scalar {
+        self.entries[i * self.shape.columns + j]
+    }
+}
 
 /// Lowers expressions to grids, remembering what it has lowered.
 pub struct Lowering<'a> {
@@ -32,10 +69,9 @@ impl<'g> Lowering<'_> {
 
     fn lower(&mut self, expr: Expr<'g>) -> Grid {
         let shape = expr.shape();
-        let one = |scalar: Scalar| Grid { shape: Shape::scalar(), entries: vec![scalar] };
         match expr.view() {
             View::Symbol(symbol) => self.symbol(&symbol),
-            View::Pi => one(self.scalars.pi()),
+            View::Pi => Grid::scalar(self.scalars.pi()),
             View::Sum(terms) => self.terms(expr.graph(), shape, terms),
             View::Literal(entries) => {
                 Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() }
@@ -46,8 +82,7 @@ impl<'g> Lowering<'_> {
             View::Word(word) => self.word(&word),
             View::Trace(word) => {
                 let product = self.word(&word);
-                let diagonal: Vec<_> = (0..product.shape.rows).map(|i| (product.at(i, i), integer(1))).collect();
-                one(self.scalars.sum(integer(0), diagonal))
+                Grid::scalar(self.scalars.total((0..product.shape.rows).map(|i| product.at(i, i))))
             }
             View::Opaque(name, output, arguments) => {
                 let (name, arguments) =
@@ -66,7 +101,6 @@ impl<'g> Lowering<'_> {
     }
 
     fn operation(&mut self, operation: Operation, argument: Expr<'g>, shape: Shape) -> Grid {
-        let one = |scalar: Scalar| Grid { shape: Shape::scalar(), entries: vec![scalar] };
         let a = self.grid(argument);
         match operation {
             Operation::Transpose => Grid::from_fn(shape, |(i, j)| a.at(j, i)),
@@ -81,8 +115,11 @@ impl<'g> Lowering<'_> {
                 }
             }
             Operation::Analytic(function) => self.call(Callee::Analytic(function), vec![a], 0, shape),
-            Operation::Determinant => one(self.determinant(&a, &(0..a.shape.rows).collect::<Vec<_>>(), 0)),
-            Operation::Function(function) => one(self.scalars.function(function, a.entries[0])),
+            Operation::Determinant => {
+                let all: Vec<usize> = (0..a.shape.rows).collect();
+                Grid::scalar(self.determinant(&a, &all, &all))
+            }
+            Operation::Function(function) => Grid::scalar(self.scalars.function(function, a.entries[0])),
             Operation::Block(row, column) => Grid::from_fn(shape, |(i, j)| a.at(row + i, column + j)),
             Operation::Embed(row, column) => {
                 let zero = self.scalars.zero();
@@ -102,28 +139,15 @@ impl<'g> Lowering<'_> {
     }
 
     fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
-        let arguments = arguments.into_iter().map(|grid| (grid.shape, grid.entries.clone())).collect();
         Grid { shape, entries: self.scalars.call(Call { callee, arguments }, leaf, shape) }
     }
 
-    fn symbol(&mut self, symbol: &clebsch_symbolic::Symbol) -> Grid {
-        use clebsch_symbolic::Property;
-        let (is_vector, is_scalar) = (symbol.shape.is_column(), symbol.shape.is_scalar());
+    fn symbol(&mut self, symbol: &Symbol) -> Grid {
         let zero = self.scalars.zero();
-        Grid::from_fn(symbol.shape, |(i, j)| {
-            let (row, column) = match symbol.property {
-                Property::Symmetric => (i.min(j), i.max(j)),
-                Property::Diagonal if i != j => return zero,
-                _ => (i, j),
-            };
-            self.scalars.input(Input {
-                role: symbol.role,
-                name: symbol.name.clone(),
-                row,
-                column,
-                is_vector,
-                is_scalar,
-            })
+        Grid::from_fn(symbol.shape, |(i, j)| match symbol.property {
+            Property::Symmetric => self.scalars.input(Input::of(symbol, i.min(j), i.max(j))),
+            Property::Diagonal if i != j => zero,
+            _ => self.scalars.input(Input::of(symbol, i, j)),
         })
     }
 
@@ -134,7 +158,7 @@ impl<'g> Lowering<'_> {
         for (k, entries) in basis.elements.iter().enumerate() {
             for (i, j, value) in entries {
                 let entry = self.scalars.scale(a.at(k, 0), value.clone());
-                matrix.entries[i * shape.columns + j] = self.scalars.add(matrix.at(*i, *j), entry);
+                matrix.entries[i * shape.columns + j] = self.scalars.total([matrix.at(*i, *j), entry]);
             }
         }
         matrix
@@ -142,11 +166,9 @@ impl<'g> Lowering<'_> {
 
     fn components(&mut self, basis: &Basis, a: &Grid) -> Grid {
         let component = |entries: &Sparse| {
-            let terms: Vec<_> = entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())).collect();
-            self.scalars.sum(integer(0), terms)
+            self.scalars.sum(integer(0), entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())))
         };
-        let entries = basis.elements.iter().map(component).collect();
-        Grid { shape: Shape::vector(basis.elements.len()), entries }
+        Grid::vector(basis.elements.iter().map(component).collect())
     }
 
     /// The product of letters, associated so that vectors are multiplied first.
@@ -159,37 +181,24 @@ impl<'g> Lowering<'_> {
         let mut grids = grids.into_iter();
         // by construction: words are not empty
         let first = grids.next().expect("a word has letters");
-        grids.fold((*first).clone(), |product, letter| match from_right {
-            true => self.multiply(&letter, &product),
-            false => self.multiply(&product, &letter),
+        grids.fold((*first).clone(), |product, letter| {
+            if from_right { self.multiply(&letter, &product) } else { self.multiply(&product, &letter) }
         })
     }
 
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
-            let factors = (0..a.shape.columns).map(|k| (a.at(i, k), b.at(k, j)));
-            let factors: Vec<_> =
-                factors.filter(|(a, b)| !self.scalars.is_zero(*a) && !self.scalars.is_zero(*b)).collect();
-            let terms: Vec<_> = factors.into_iter().map(|(a, b)| (self.scalars.product([a, b]), integer(1))).collect();
-            self.scalars.sum(integer(0), terms)
+            let factors = (0..a.shape.columns).map(|k| [a.at(i, k), b.at(k, j)]);
+            let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.scalars.is_zero(*x))).collect();
+            let terms: Vec<Scalar> = factors.into_iter().map(|pair| self.scalars.product(pair)).collect();
+            self.scalars.total(terms)
         })
     }
 
     /// A sum of terms: components of one algebra are taken of the sum, constant letters are summed before they are multiplied.
     fn terms(&mut self, graph: &'g Graph, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
-        let mut under: BTreeMap<Algebra, Vec<WordTerm<'g>>> = BTreeMap::new();
-        let mut rest = Vec::new();
-        for term in terms {
-            match term.word.as_slice() {
-                [letter] => match letter.view() {
-                    View::Of(Operation::Components(algebra), inner) => {
-                        under.entry(algebra).or_default().extend(term.over(inner))
-                    }
-                    _ => rest.push(term),
-                },
-                _ => rest.push(term),
-            }
-        }
+        let (mut under, rest) = by_components(terms, |_, _| true);
+        under.sort_by_key(|(algebra, _)| *algebra);
         let mut grids = Vec::new();
         for (algebra, inner) in under {
             let matrix = self.gathered(algebra.matrix_shape(), inner);
@@ -203,10 +212,7 @@ impl<'g> Lowering<'_> {
         if let [only] = grids {
             return only.clone();
         }
-        Grid::from_fn(shape, |(i, j)| {
-            let terms: Vec<_> = grids.iter().map(|grid| (grid.at(i, j), integer(1))).collect();
-            self.scalars.sum(integer(0), terms)
-        })
+        Grid::from_fn(shape, |(i, j)| self.scalars.total(grids.iter().map(|grid| grid.at(i, j))))
     }
 
     fn gathered(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
@@ -240,22 +246,23 @@ impl<'g> Lowering<'_> {
         }
         for ((varying, prefix, suffix), runs) in groups {
             let middle = self.total(runs[0].shape, &runs);
-            let with_suffix = suffix_product(self, middle, &suffix, &prefix);
+            let product = self.between(&prefix, middle, &suffix);
             let scale = self.monomial(&integer(1), &varying);
-            grids.push(self.scaled(&with_suffix, scale));
+            grids.push(self.scaled(&product, scale));
         }
         self.total(shape, &grids)
     }
 
     /// Whether an expression is fixed once per stepper.
     fn is_constant(&mut self, expr: Expr<'g>) -> bool {
-        let once =
-            |role: Role| matches!(role, Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse);
         let constant = &mut self.scalars.lowered.constant;
         if let Some(known) = constant.get(&expr.position()) {
             return *known;
         }
-        let found = expr.symbols().into_iter().all(|symbol| symbol.as_symbol().is_some_and(|data| once(data.role)));
+        let found = expr
+            .symbols()
+            .into_iter()
+            .all(|symbol| symbol.as_symbol().is_some_and(|data| Rate::of(data.role) == Rate::Once));
         constant.insert(expr.position(), found);
         found
     }
@@ -285,12 +292,12 @@ impl<'g> Lowering<'_> {
     /// Z skew that arise in the Cayley chart.
     fn inverse(&mut self, a: &Grid) -> Grid {
         let n = a.shape.rows;
-        let indices: Vec<_> = (0..n).collect();
         if n <= 3 {
-            let determinant = self.determinant(a, &indices, 0);
+            let all: Vec<usize> = (0..n).collect();
+            let determinant = self.determinant(a, &all, &all);
             let reciprocal = self.scalars.reciprocal(determinant);
             return Grid::from_fn(a.shape, |(i, j)| {
-                let cofactor = self.minor(a, j, i);
+                let cofactor = self.determinant(a, &without(&all, j), &without(&all, i));
                 let sign = integer(if (i + j) % 2 == 0 { 1 } else { -1 });
                 let signed = self.scalars.scale(cofactor, sign);
                 self.scalars.product([signed, reciprocal])
@@ -320,48 +327,62 @@ impl<'g> Lowering<'_> {
         self.scalars.sum(integer(0), [(entry, integer(1)), (product, integer(-1))])
     }
 
-    /// The determinant of the rows `rows` and the columns from `column` on.
-    fn determinant(&mut self, a: &Grid, rows: &[usize], column: usize) -> Scalar {
-        if rows.is_empty() {
-            return self.scalars.number(integer(1));
-        }
+    /// The determinant of some rows and columns.
+    fn determinant(&mut self, a: &Grid, rows: &[usize], columns: &[usize]) -> Scalar {
+        let [column, columns @ ..] = columns else { return self.scalars.number(integer(1)) };
         let mut terms = Vec::new();
         for (position, &row) in rows.iter().enumerate() {
-            let others: Vec<_> = rows.iter().copied().filter(|&other| other != row).collect();
-            let minor = self.determinant(a, &others, column + 1);
+            let minor = self.determinant(a, &without(rows, row), columns);
             let sign = integer(if position % 2 == 0 { 1 } else { -1 });
-            terms.push((self.scalars.product([a.at(row, column), minor]), sign));
+            terms.push((self.scalars.product([a.at(row, *column), minor]), sign));
         }
         self.scalars.sum(integer(0), terms)
     }
 
-    fn minor(&mut self, a: &Grid, row: usize, column: usize) -> Scalar {
-        let n = a.shape.rows;
-        let keep = |skip: usize| (0..n).filter(move |&k| k != skip);
-        let entries: Vec<_> =
-            keep(row).flat_map(|i| keep(column).map(move |j| (i, j))).map(|(i, j)| a.at(i, j)).collect();
-        let inner = Grid { shape: Shape::square(n - 1), entries };
-        self.determinant(&inner, &(0..n - 1).collect::<Vec<_>>(), 0)
+    /// prefix · middle · suffix, vectors first.
+    fn between(&mut self, prefix: &[Expr<'g>], middle: Grid, suffix: &[Expr<'g>]) -> Grid {
+        let mut product = middle;
+        if suffix.last().is_some_and(|last| last.shape().columns == 1) {
+            let vector = self.word(suffix);
+            product = self.multiply(&product, &vector);
+        } else {
+            for letter in suffix {
+                let letter = self.grid(*letter);
+                product = self.multiply(&product, &letter);
+            }
+        }
+        for letter in prefix.iter().rev() {
+            let letter = self.grid(*letter);
+            product = self.multiply(&letter, &product);
+        }
+        product
     }
 }
 
-/// prefix · middle · suffix, vectors first.
-fn suffix_product<'g>(lowering: &mut Lowering<'_>, middle: Grid, suffix: &[Expr<'g>], prefix: &[Expr<'g>]) -> Grid {
-    let mut product = middle;
-    if let Some(last) = suffix.last()
-        && last.shape().columns == 1
-    {
-        let vector = lowering.word(suffix);
-        product = lowering.multiply(&product, &vector);
-    } else {
-        for letter in suffix {
-            let letter = lowering.grid(*letter);
-            product = lowering.multiply(&product, &letter);
+fn without(indices: &[usize], index: usize) -> Vec<usize> {
+    indices.iter().copied().filter(|&other| other != index).collect()
+}
+
+/// Terms by the bases whose components they are, in the order in which these come, and the other terms; for components that are meant.
+#[allow(clippy::type_complexity)]
+pub(super) fn by_components<'g>(
+    terms: Vec<WordTerm<'g>>,
+    is_meant: impl Fn(Algebra, Expr<'g>) -> bool,
+) -> (Vec<(Algebra, Vec<WordTerm<'g>>)>, Vec<WordTerm<'g>>) {
+    let mut under: Vec<(Algebra, Vec<WordTerm<'g>>)> = Vec::new();
+    let mut rest = Vec::new();
+    for term in terms {
+        let letter = if let [letter] = term.word[..] { Some(letter.view()) } else { None };
+        match letter {
+            Some(View::Of(Operation::Components(algebra), inner)) if is_meant(algebra, inner) => {
+                let inner = term.over(inner);
+                match under.iter_mut().find(|(other, _)| *other == algebra) {
+                    Some((_, terms)) => terms.extend(inner),
+                    None => under.push((algebra, inner)),
+                }
+            }
+            _ => rest.push(term),
         }
     }
-    for letter in prefix.iter().rev() {
-        let letter = lowering.grid(*letter);
-        product = lowering.multiply(&letter, &product);
-    }
-    product
+    (under, rest)
 }

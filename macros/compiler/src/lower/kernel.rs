@@ -3,9 +3,12 @@
 mod hoisted;
 mod shorten;
 
+use std::rc::Rc;
+
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
+use super::grid::Grid;
 use super::pairs::Pairs;
 use super::scalar::{CallId, Callee, Output};
 use super::signs;
@@ -24,23 +27,22 @@ pub enum Hoisting<'a> {
 }
 
 /// Makes a kernel of grids of outputs.
-pub fn kernel(scalars: &mut Scalars, outputs: &[(Shape, Vec<Scalar>)], hoisting: Hoisting<'_>) -> Kernel {
+pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -> Kernel {
     let (operations, products) = (Interner::default(), Pairs::default());
     let (sums, known, delays) = (Table::default(), Table::default(), Vec::new());
-    let mut builder = Builder { scalars, hoisting, operations, products, sums, known, delays };
-    let outputs: Vec<(Shape, Vec<Id>)> = outputs
-        .iter()
-        .map(|(shape, entries)| (*shape, entries.iter().map(|&entry| builder.convert(entry)).collect()))
-        .collect();
-    builder.share_pairs(&outputs);
-    if !builder.scalars.keeps_sums {
-        builder.shorten(&outputs);
+    let mut builder = Builder { scalars, hoisting, outputs: Vec::new(), operations, products, sums, known, delays };
+    for entry in outputs.iter().flat_map(|grid| &grid.entries) {
+        let entry = builder.convert(*entry);
+        builder.outputs.push(entry);
     }
-    signs::moved(builder.code(&outputs))
-}
-
-fn entries(outputs: &[(Shape, Vec<Id>)]) -> impl Iterator<Item = Id> {
-    outputs.iter().flat_map(|(_, entries)| entries.iter().copied())
+    builder.share_pairs();
+    if !builder.scalars.keeps_sums {
+        builder.shorten();
+    }
+    let (locals, entries) = builder.code();
+    let mut entries = entries.into_iter();
+    let output = |grid: &Grid| (grid.shape, entries.by_ref().take(grid.entries.len()).collect());
+    signs::moved(Kernel { locals, outputs: outputs.iter().map(output).collect() })
 }
 
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
@@ -88,6 +90,8 @@ impl Operation {
 struct Builder<'a, 'b> {
     scalars: &'a mut Scalars,
     hoisting: Hoisting<'b>,
+    /// The entries of all outputs.
+    outputs: Vec<Id>,
     operations: Operations,
     /// The factors of products once pairs are shared.
     products: Pairs,
@@ -163,11 +167,8 @@ impl Builder<'_, '_> {
 
     fn convert_call(&mut self, call: CallId) -> (Id, Callee) {
         let call = self.scalars.call_of(call).clone();
-        let arguments = call
-            .arguments
-            .into_iter()
-            .map(|(shape, entries)| (shape, entries.into_iter().map(|entry| self.convert(entry)).collect()));
-        let arguments = arguments.collect();
+        let argument = |grid: Rc<Grid>| (grid.shape, grid.entries.iter().map(|entry| self.convert(*entry)).collect());
+        let arguments = call.arguments.into_iter().map(argument).collect();
         (self.intern(Operation::Call(call.callee.clone(), arguments)), call.callee)
     }
 
@@ -287,8 +288,8 @@ impl Builder<'_, '_> {
     }
 
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
-    fn share_pairs(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let used = self.used(outputs);
+    fn share_pairs(&mut self) {
+        let used = self.used();
         let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
             Operation::Product(factors) => Some((id, factors.clone())),
             _ => None,
@@ -304,10 +305,10 @@ impl Builder<'_, '_> {
     }
 
     /// What the outputs are made of, in the order in which it was met.
-    fn used(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<Id> {
+    fn used(&self) -> Vec<Id> {
         work::spend(self.operations.len() / 4);
         let mut is_used = vec![false; self.operations.len()];
-        let mut waiting: Vec<Id> = entries(outputs).collect();
+        let mut waiting = self.outputs.clone();
         while let Some(id) = waiting.pop() {
             if !std::mem::replace(&mut is_used[id], true) {
                 waiting.extend(self.operands(id));
@@ -328,18 +329,15 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn code(mut self, outputs: &[(Shape, Vec<Id>)]) -> Kernel {
-        let mut uses = vec![0; self.operations.len()];
-        let mut order = Vec::new();
-        for entry in entries(outputs) {
-            self.count(entry, &mut uses, &mut order);
-        }
+    /// The codes of shared terms and of the outputs.
+    fn code(mut self) -> (Vec<Code>, Vec<Code>) {
+        let (uses, order) = self.uses();
         let mut locals = Vec::new();
         let mut names: Table<Id, usize> = Table::default();
         let (mut sizes, mut depths) = (vec![0; self.operations.len()], vec![0; self.operations.len()]);
         let delays = self.delays_in(&order);
         // where it is not, sums by pairs would only take registers
-        if !self.scalars.keeps_sums && self.waits(outputs, &delays) {
+        if !self.scalars.keeps_sums && self.waits(&delays) {
             self.delays = delays;
         }
         for id in order {
@@ -355,11 +353,16 @@ impl Builder<'_, '_> {
                 names.insert(id, locals.len() - 1);
             }
         }
-        let mut grids = Vec::new();
-        for (shape, entries) in outputs {
-            grids.push((*shape, entries.iter().map(|&entry| self.reference(entry, &names)).collect()));
-        }
-        Kernel { locals, outputs: grids }
+        let outputs = self.outputs.clone().into_iter().map(|entry| self.reference(entry, &names));
+        let outputs = outputs.collect();
+        (locals, outputs)
+    }
+
+    /// How often each operation stands in the code, and the operations behind their operands.
+    fn uses(&self) -> (Vec<usize>, Vec<Id>) {
+        let (mut uses, mut order) = (vec![0; self.operations.len()], Vec::new());
+        self.outputs.iter().for_each(|&entry| self.count(entry, &mut uses, &mut order));
+        (uses, order)
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Shape};
 
 use super::form::has_quaternions;
 use super::kernel::kernel;
-use super::{Hoisted, Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
+use super::{Grid, Hoisted, Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
 use crate::derive::{FormulaTable, Heat, Id, MatrixForm, SystemFormulas};
 
 /// Makes the kernels of formulas. Their order counts: it is that in which scalars are numbered.
@@ -106,12 +106,13 @@ fn is_stacked(id: Id) -> bool {
 pub(super) fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
     separate(scalars, expressions, Hoisting::Nothing)
 }
+
 /// Several expressions, one output each.
 pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
     if scalars.keeps_matrices {
         return matrices::kernel(expressions);
     }
-    let outputs = grids(scalars, expressions);
+    let outputs: Vec<Grid> = expressions.iter().map(|&expr| grid(scalars, expr)).collect();
     kernel(scalars, &outputs, hoisting)
 }
 
@@ -120,8 +121,8 @@ pub(super) fn stack(scalars: &mut Scalars, vectors: &[Expr<'_>], hoisting: Hoist
     if scalars.keeps_matrices {
         return matrices::stack(vectors);
     }
-    let entries = entries(scalars, vectors);
-    kernel(scalars, &[(Shape::vector(entries.len()), entries)], hoisting)
+    let outputs = [Grid::vector(entries(scalars, vectors))];
+    kernel(scalars, &outputs, hoisting)
 }
 
 /// Matrices, one output each: with whole matrices where all of them are such.
@@ -129,29 +130,28 @@ pub(super) fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoist
     if let Some(wholes) = MatrixForm::wholes(forms).filter(|_| scalars.keeps_matrices) {
         return matrices::kernel(&wholes);
     }
-    let outputs: Vec<_> = forms.iter().map(|form| output(scalars, form)).collect();
+    let outputs: Vec<Grid> = forms.iter().map(|form| output(scalars, form)).collect();
     kernel(scalars, &outputs, hoisting)
 }
 
-fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> (Shape, Vec<Scalar>) {
+fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> Grid {
     match matrix {
-        MatrixForm::Whole(expression) => (expression.shape(), entries(scalars, &[*expression])),
-        MatrixForm::Entries(shape, parts) => (*shape, entries(scalars, parts)),
+        MatrixForm::Whole(expression) => grid(scalars, *expression),
+        MatrixForm::Entries(shape, parts) => Grid { shape: *shape, entries: entries(scalars, parts) },
         MatrixForm::Columns(columns) => {
             let columns: Vec<Vec<Scalar>> = columns.iter().map(|parts| entries(scalars, parts)).collect();
             let shape = Shape::new(columns.first().map_or(0, Vec::len), columns.len());
-            (shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
+            Grid { shape, entries: shape.positions().map(|(i, j)| columns[j][i]).collect() }
         }
     }
 }
 
 /// The entries of expressions, one after the other.
 pub(super) fn entries(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<Scalar> {
-    grids(scalars, expressions).into_iter().flat_map(|(_, entries)| entries).collect()
+    expressions.iter().flat_map(|&expr| grid(scalars, expr).entries).collect()
 }
 
-/// The shape and the entries of each expression.
-pub(super) fn grids(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Scalar>)> {
-    let mut lowering = Lowering { scalars };
-    expressions.iter().map(|&expr| (expr.shape(), lowering.grid(expr).entries.clone())).collect()
+/// The scalars of an expression.
+pub(super) fn grid(scalars: &mut Scalars, expression: Expr<'_>) -> Grid {
+    (*Lowering { scalars }.grid(expression)).clone()
 }

@@ -13,6 +13,7 @@ use clebsch_symbolic::{
     WordTerm, integer, work,
 };
 
+use super::grid::by_components;
 use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
 use crate::derive::stacked;
@@ -201,7 +202,7 @@ impl Matrices {
         if shape.is_scalar()
             && let Some(symbol) = a.as_symbol()
         {
-            return Code::Read(input(&symbol, row, column));
+            return Code::Read(Input::of(&symbol, row, column));
         }
         let value = self.value(a);
         match shape.is_scalar() {
@@ -361,27 +362,13 @@ impl Matrices {
 
     /// A sum of terms: components in one basis are taken of the sum.
     fn sum(&mut self, graph: &Graph, shape: Shape, terms: Vec<WordTerm<'_>>) -> Code {
-        let mut under: Table<Algebra, Vec<WordTerm<'_>>> = Table::default();
-        let mut rest = Vec::new();
-        for term in terms {
-            match term.word.as_slice() {
-                [letter] => match letter.view() {
-                    View::Of(Operation::Components(algebra), inner)
-                        if outer_product(graph, algebra, inner).is_none() =>
-                    {
-                        under.entry(algebra).extend(term.over(inner));
-                    }
-                    _ => rest.push(term),
-                },
-                _ => rest.push(term),
-            }
-        }
+        let (under, rest) = by_components(terms, |algebra, inner| outer_product(graph, algebra, inner).is_none());
         let mut parts = Vec::new();
-        for (algebra, inner) in under.iter() {
+        for (algebra, inner) in under {
             let matrix = algebra.matrix_shape();
             let inner = inner.iter().map(|term| self.weighted(term)).collect();
             let sum = self.gathered(matrix, inner);
-            parts.push((integer(1), self.components(graph, *algebra, sum)));
+            parts.push((integer(1), self.components(graph, algebra, sum)));
         }
         if !rest.is_empty() {
             let rest = rest.iter().map(|term| self.weighted(term)).collect();
@@ -519,25 +506,10 @@ fn linear(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
 }
 
 fn argument(symbol: &Symbol) -> Code {
-    let input = input(symbol, 0, 0);
-    match symbol.shape.is_scalar() {
-        true => Code::Read(input),
-        false => Code::Whole(Box::new(Whole {
-            operation: MatrixOperation::Argument(input),
-            operands: Vec::new(),
-            shape: symbol.shape,
-            cost: Cost::default(),
-        })),
+    let input = Input::of(symbol, 0, 0);
+    if symbol.shape.is_scalar() {
+        return Code::Read(input);
     }
-}
-
-fn input(symbol: &Symbol, row: usize, column: usize) -> Input {
-    Input {
-        role: symbol.role,
-        name: symbol.name.clone(),
-        row,
-        column,
-        is_vector: symbol.shape.is_column(),
-        is_scalar: symbol.shape.is_scalar(),
-    }
+    let (operation, operands, shape) = (MatrixOperation::Argument(input), Vec::new(), symbol.shape);
+    Code::Whole(Box::new(Whole { operation, operands, shape, cost: Cost::default() }))
 }

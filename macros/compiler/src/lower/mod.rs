@@ -7,7 +7,6 @@ mod balance;
 mod code;
 mod control;
 mod cost;
-mod entry;
 mod factors;
 mod fixed_point;
 mod form;
@@ -26,24 +25,24 @@ mod sums;
 mod told;
 mod variation;
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::Expr;
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::Feature;
 use crate::model::{Isotropy, System};
 
-use made::{Maker, entries, grids, plain, stack};
+use grid::{Grid, Lowering};
+use kernel::{Hoisted, Hoisting};
+use made::{Maker, entries, grid as grid_of, plain, stack};
+use scalar::{Rate, Scalar, ScalarNode, Scalars};
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use cost::Cost;
-pub use entry::{Grid, Scalar};
 pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
-pub use grid::Lowering;
-pub use kernel::{Hoisted, Hoisting};
 pub(crate) use matrices::is_direction;
 pub use program::{KernelTable, MechanicsProgram, Program, SteeredProgram, Step};
-pub use scalar::{Callee, Input, Output, Rate, ScalarNode, Scalars};
+pub use scalar::{Callee, Input, Output};
 pub use stepping::Solve;
 
 /// More operations than this in one expansion are refused: unrolled code of that size helps nobody.
@@ -233,8 +232,7 @@ impl<'g> Maker<'_, 'g> {
         let all = entries(&mut self.scalars, equations).into_iter();
         let entries: Vec<Scalar> = all.filter(|&entry| !self.scalars.is_zero(entry)).collect();
         if !entries.is_empty() {
-            let outputs = [(Shape::vector(entries.len()), entries)];
-            let membership = kernel::kernel(&mut self.scalars, &outputs, Hoisting::Nothing);
+            let membership = kernel::kernel(&mut self.scalars, &[Grid::vector(entries)], Hoisting::Nothing);
             self.add(Id::Membership, membership);
         }
     }
@@ -254,18 +252,16 @@ impl<'g> Maker<'_, 'g> {
 
 /// Σ with its diagonal halved.
 fn energy_coefficients(formulas: &MechanicsFormulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let (shape, mut entries) = grids(scalars, &[formulas.inertia]).remove(0);
-    for i in 0..shape.rows {
-        let diagonal = i * shape.columns + i;
-        let halved = match scalars.node(entries[diagonal]).clone() {
+    let mut grid = grid_of(scalars, formulas.inertia);
+    let half = clebsch_symbolic::rational(1, 2);
+    for i in 0..grid.shape.rows {
+        let diagonal = i * grid.shape.columns + i;
+        grid.entries[diagonal] = match scalars.node(grid.entries[diagonal]).clone() {
             ScalarNode::Sum(constant, terms) => {
-                let half = clebsch_symbolic::rational(1, 2);
-                let terms: Vec<_> = terms.into_iter().map(|(term, weight)| (term, weight * &half)).collect();
-                scalars.sum(constant * &half, terms)
+                scalars.sum(constant * &half, terms.into_iter().map(|(term, weight)| (term, weight * &half)))
             }
-            _ => scalars.scale(entries[diagonal], clebsch_symbolic::rational(1, 2)),
+            _ => scalars.scale(grid.entries[diagonal], half.clone()),
         };
-        entries[diagonal] = halved;
     }
-    kernel::kernel(scalars, &[(shape, entries)], Hoisting::Nothing)
+    kernel::kernel(scalars, &[grid], Hoisting::Nothing)
 }

@@ -1,8 +1,16 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
-use clebsch_symbolic::{Analytic, Function, Interner, One, Rational, Role, Shape, Zero, integer, product, work};
+use std::rc::Rc;
 
-use super::entry::{Grids, Scalar};
+use clebsch_symbolic::{
+    Analytic, Function, Interner, One, Rational, Role, Shape, Symbol, Zero, integer, product, work,
+};
+
+use super::grid::{Grid, Grids};
+
+/// The identity of a scalar in its arena.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Scalar(u32);
 
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -13,6 +21,17 @@ pub enum Rate {
     Step,
     /// Different in each iteration.
     Iteration,
+}
+
+impl Rate {
+    /// How often an input changes.
+    pub fn of(role: Role) -> Rate {
+        match role {
+            Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse => Rate::Once,
+            Role::Chart(_) => Rate::Iteration,
+            _ => Rate::Step,
+        }
+    }
 }
 
 /// An entry of an input.
@@ -30,6 +49,15 @@ pub struct Input {
     pub is_vector: bool,
     /// Whether it is a scalar.
     pub is_scalar: bool,
+}
+
+impl Input {
+    /// An entry of a symbol.
+    pub(super) fn of(symbol: &Symbol, row: usize, column: usize) -> Input {
+        let Symbol { role, name, shape, .. } = symbol;
+        let (is_vector, is_scalar) = (shape.is_column(), shape.is_scalar());
+        Input { role: *role, name: name.clone(), row, column, is_vector, is_scalar }
+    }
 }
 
 /// A function of matrices that generated code calls as a whole.
@@ -51,7 +79,7 @@ pub struct Call {
     /// What is called.
     pub callee: Callee,
     /// Its arguments.
-    pub arguments: Vec<(Shape, Vec<Scalar>)>,
+    pub arguments: Vec<Rc<Grid>>,
 }
 
 /// The identity of a call in its arena.
@@ -148,11 +176,7 @@ impl Scalars {
 
     /// An entry of an input.
     pub fn input(&mut self, input: Input) -> Scalar {
-        let rate = match input.role {
-            Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse => Rate::Once,
-            Role::Chart(_) => Rate::Iteration,
-            _ => Rate::Step,
-        };
+        let rate = Rate::of(input.role);
         self.intern(ScalarNode::Input(input), rate)
     }
 
@@ -217,9 +241,9 @@ impl Scalars {
         }
     }
 
-    /// a + b.
-    pub fn add(&mut self, a: Scalar, b: Scalar) -> Scalar {
-        self.sum(integer(0), [(a, integer(1)), (b, integer(1))])
+    /// The sum of scalars.
+    pub fn total(&mut self, terms: impl IntoIterator<Item = Scalar>) -> Scalar {
+        self.sum(integer(0), terms.into_iter().map(|term| (term, integer(1))))
     }
 
     /// coefficient · a.
@@ -325,7 +349,7 @@ impl Scalars {
 
     /// The entries of what a call returns.
     pub fn call(&mut self, call: Call, leaf: usize, shape: Shape) -> Vec<Scalar> {
-        let rate = self.rate_of(call.arguments.iter().flat_map(|(_, entries)| entries.iter().copied()));
+        let rate = self.rate_of(call.arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
         let known = self.calls.iter().position(|other| *other == call);
         let index = known.unwrap_or_else(|| {
             self.calls.push(call);

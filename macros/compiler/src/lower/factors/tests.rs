@@ -1,6 +1,7 @@
+use crate::lower::grid::Grid;
 use crate::lower::kernel::kernel;
 use crate::lower::{Hoisting, Input, Scalar, Scalars};
-use clebsch_symbolic::{Role, Shape, integer};
+use clebsch_symbolic::{Role, integer};
 
 /// Entries of an input.
 fn inputs<const N: usize>(scalars: &mut Scalars) -> [Scalar; N] {
@@ -24,7 +25,7 @@ fn sum(scalars: &mut Scalars, terms: &[(i64, &[Scalar])]) -> Scalar {
 
 /// Additions and multiplications of outputs.
 fn operations(scalars: &mut Scalars, outputs: Vec<Scalar>) -> (usize, usize) {
-    let cost = kernel(scalars, &[(Shape::vector(outputs.len()), outputs)], Hoisting::Nothing).cost();
+    let cost = kernel(scalars, &[Grid::vector(outputs)], Hoisting::Nothing).cost();
     (cost.additions, cost.multiplications)
 }
 

@@ -1,8 +1,9 @@
 //! Values that are computed less often than the kernels that use them: of a value and its negative, one.
 
-use clebsch_symbolic::{Shape, Zero, integer, work};
+use clebsch_symbolic::{Zero, integer, work};
 
 use super::{Hoisting, kernel};
+use crate::lower::grid::Grid;
 use crate::lower::{Code, Kernel, Scalar, ScalarNode, Scalars, signs};
 
 /// Values that are computed less often than the kernels that use them.
@@ -55,7 +56,7 @@ impl Hoisted {
     /// Computes what is kept, one output each.
     pub(in crate::lower) fn kernel(&self, scalars: &mut Scalars, hoisting: Hoisting<'_>) -> Kernel {
         // with those that are not kept: what they share with others decides how these are rounded
-        let outputs: Vec<_> = self.met.iter().map(|met| (Shape::scalar(), vec![met.scalar])).collect();
+        let outputs: Vec<Grid> = self.met.iter().map(|met| Grid::scalar(met.scalar)).collect();
         let Kernel { locals, outputs } = kernel(scalars, &outputs, hoisting);
         let signed = |(number, met): (usize, &Met)| {
             let (shape, entries) = &outputs[number];

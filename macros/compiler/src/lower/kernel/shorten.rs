@@ -1,8 +1,8 @@
 //! Fewer operations for the same outputs, and when each of them is done.
 
-use clebsch_symbolic::{Rational, Shape, Table, Zero, integer};
+use clebsch_symbolic::{Rational, Table, Zero, integer};
 
-use super::{Builder, Id, Operation, entries};
+use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;
 use crate::lower::{balance, factors, sums};
 
@@ -22,30 +22,30 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
 
 impl Builder<'_, '_> {
     /// Looks for fewer operations: by common factors and by sums within sums, and where numbers can be separated, with them and without.
-    pub(super) fn shorten(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let separated = self.separate_numbers(outputs);
+    pub(super) fn shorten(&mut self) {
+        let separated = self.separate_numbers();
         let products = (!separated.is_empty()).then(|| self.products.clone());
-        self.factor_sums(outputs);
-        self.share_sums(outputs);
+        self.factor_sums();
+        self.share_sums();
         let Some(products) = products else { return };
-        let before = self.count_operations(outputs);
+        let before = self.count_operations();
         let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
-        self.factor_sums(outputs);
-        self.share_sums(outputs);
-        if self.count_operations(outputs) >= before {
+        self.factor_sums();
+        self.share_sums();
+        if self.count_operations() >= before {
             (self.sums, self.products) = plain;
         }
     }
 
     /// Writes a x with a taken out as n b, which stands nowhere else, as n times b x, where that is at hand: what other sums have of b x is then
     /// found in this one.
-    fn separate_numbers(&self, outputs: &[(Shape, Vec<Id>)]) -> Table<Id, Vec<(Rational, Id)>> {
+    fn separate_numbers(&self) -> Table<Id, Vec<(Rational, Id)>> {
         let mut sums = Table::default();
-        let used = self.used(outputs);
+        let used = self.used();
         let mut uses = vec![0_usize; self.operations.len()];
         used.iter()
             .for_each(|&id| self.operations.value(id).operands().into_iter().for_each(|operand| uses[operand] += 1));
-        entries(outputs).for_each(|entry| uses[entry] += 1);
+        self.outputs.iter().for_each(|&entry| uses[entry] += 1);
         let is_used = |id: Id| uses[id] > 0;
         for &id in &used {
             let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
@@ -78,22 +78,22 @@ impl Builder<'_, '_> {
     }
 
     /// Takes common factors out of sums, where that leaves fewer operations once pairs are shared again.
-    fn factor_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let before = self.count_operations(outputs);
-        let sums = factors::factored(&mut self.operations, entries(outputs), self.sums.clone());
+    fn factor_sums(&mut self) {
+        let before = self.count_operations();
+        let sums = factors::factored(&mut self.operations, &self.outputs, self.sums.clone());
         if sums.iter().all(|(id, terms)| self.sums.get(id) == Some(terms)) {
             return;
         }
         let products = std::mem::take(&mut self.products);
         let plain = std::mem::replace(&mut self.sums, sums);
-        self.share_pairs(outputs);
-        if self.count_operations(outputs) >= before {
+        self.share_pairs();
+        if self.count_operations() >= before {
             (self.sums, self.products) = (plain, products);
         }
     }
 
     /// The additions and multiplications of the outputs, shared ones once.
-    fn count_operations(&self, outputs: &[(Shape, Vec<Id>)]) -> usize {
+    fn count_operations(&self) -> usize {
         let count = |id: Id| match self.operations.value(id) {
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms);
@@ -103,12 +103,12 @@ impl Builder<'_, '_> {
             Operation::Product(_) => self.operands(id).len() - 1,
             _ => 0,
         };
-        self.used(outputs).into_iter().map(count).sum()
+        self.used().into_iter().map(count).sum()
     }
 
     /// Puts a sum that stands within others, as a + b in 1 − a − b, into them by its name.
-    fn share_sums(&mut self, outputs: &[(Shape, Vec<Id>)]) {
-        let used = self.used(outputs);
+    fn share_sums(&mut self) {
+        let used = self.used();
         let found = used.into_iter().filter_map(|id| match self.operations.value(id) {
             Operation::Sum(constant, terms) if terms.len() > 1 => {
                 Some((id, constant.is_zero(), self.terms(id, terms).to_vec()))
@@ -116,8 +116,8 @@ impl Builder<'_, '_> {
             _ => None,
         });
         // where the chain is what takes the time, no sum may wait longer than before
-        let delays = self.delays(outputs);
-        let waits = self.waits(outputs, &delays);
+        let delays = self.delays();
+        let waits = self.waits(&delays);
         let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
         let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
         for (sum, terms) in shared.iter() {
@@ -126,16 +126,14 @@ impl Builder<'_, '_> {
     }
 
     /// Whether the longest chain of operations takes longer than all of them side by side.
-    pub(super) fn waits(&self, outputs: &[(Shape, Vec<Id>)], delays: &[u32]) -> bool {
-        let longest = entries(outputs).map(|entry| delays[entry]).max().unwrap_or(0);
-        self.count_operations(outputs) < SIDE_BY_SIDE * longest as usize
+    pub(super) fn waits(&self, delays: &[u32]) -> bool {
+        let longest = self.outputs.iter().map(|&entry| delays[entry]).max().unwrap_or(0);
+        self.count_operations() < SIDE_BY_SIDE * longest as usize
     }
 
     /// When each operation is done, in cycles after the arguments are there, as common processors take them.
-    fn delays(&self, outputs: &[(Shape, Vec<Id>)]) -> Vec<u32> {
-        let (mut uses, mut order) = (vec![0; self.operations.len()], Vec::new());
-        entries(outputs).for_each(|entry| self.count(entry, &mut uses, &mut order));
-        self.delays_in(&order)
+    fn delays(&self) -> Vec<u32> {
+        self.delays_in(&self.uses().1)
     }
 
     /// The same of operations that stand behind their operands.
