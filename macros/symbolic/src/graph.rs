@@ -148,6 +148,30 @@ impl Graph {
         self.sparse_literal(shape, [(row, column, Rational::one())])
     }
 
+    /// Matrices with as many columns each, one below the other.
+    pub fn below<'g>(&'g self, parts: &[Expr<'g>]) -> Expr<'g> {
+        let columns = parts.first().map_or(1, |part| part.shape().columns);
+        let shape = Shape::new(parts.iter().map(|part| part.shape().rows).sum(), columns);
+        let mut row = 0;
+        let placed = parts.iter().map(|part| {
+            row += part.shape().rows;
+            part.embed(shape, row - part.shape().rows, 0)
+        });
+        self.total(shape, placed)
+    }
+
+    /// Matrices with as many rows each, one beside the other.
+    pub fn beside<'g>(&'g self, parts: &[Expr<'g>]) -> Expr<'g> {
+        let rows = parts.first().map_or(1, |part| part.shape().rows);
+        let shape = Shape::new(rows, parts.iter().map(|part| part.shape().columns).sum());
+        let mut column = 0;
+        let placed = parts.iter().map(|part| {
+            column += part.shape().columns;
+            part.embed(shape, 0, column - part.shape().columns)
+        });
+        self.total(shape, placed)
+    }
+
     /// A matrix of scalar expressions, row by row.
     pub fn stack<'g>(&'g self, shape: Shape, entries: Vec<Expr<'g>>) -> Expr<'g> {
         assert_eq!(entries.len(), shape.len(), "one expression for each entry");

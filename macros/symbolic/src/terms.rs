@@ -66,7 +66,7 @@ impl Graph {
 
     /// The sum of expressions of one shape. What stands there on the way makes no expressions: of a long sum they would be as many,
     /// and nearly as long.
-    pub(crate) fn total<'g>(&'g self, shape: Shape, parts: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
+    pub fn total<'g>(&'g self, shape: Shape, parts: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
         let mut sum: Vec<Term> = Vec::new();
         for part in parts {
             work::spend(1);

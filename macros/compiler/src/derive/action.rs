@@ -2,9 +2,9 @@
 
 use clebsch_symbolic::{Expr, Shape, identity};
 
-use super::Symbols;
 use super::symbols::logarithm;
-use crate::model::{Factor, Side, System};
+use super::{Symbols, SystemFormulas};
+use crate::model::{Side, System};
 
 /// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
 pub(super) fn generator<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
@@ -21,6 +21,16 @@ pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
 }
 
+/// The replacement of q by Φ_F(q).
+pub(super) fn moved<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).collect()
+}
+
+/// The replacement of (t, q) by (t + h, Φ_F(q)).
+pub(super) fn moved_on<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).collect()
+}
+
 /// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
 pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let pairing = generator.iter().zip(&symbols.covectors).map(|(velocity, p)| p.dot(*velocity)).reduce(|a, b| a + b);
@@ -31,102 +41,108 @@ pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) ->
     symbols.algebra.iter().map(gradient).collect()
 }
 
-/// Ad*_F μ.
-pub(super) fn coadjoint<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
-    model.factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).collect()
-}
-
-/// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
-pub(super) fn cotangent_lift<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
-    let inverses: Vec<_> =
-        model.factors.iter().map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
-    let images = model.action.iter().map(|image| image.substitute(&inverses));
-    let pairing = images.zip(&symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
-    let gradient = |pairing: Expr<'g>| -> Vec<Expr<'g>> {
-        model.configurations.iter().map(|leaf| pairing.gradient(leaf.symbol).expand()).collect()
-    };
-    pairing.map_or(Vec::new(), gradient)
-}
-
-/// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along: Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
-pub(super) fn adjoint_of<'g>(factor: &Factor<'g>, xi: Expr<'g>) -> Expr<'g> {
-    let element = match factor.side {
-        Side::Left => factor.symbol,
-        Side::Right => factor.group.inverse(factor.symbol),
-    };
-    factor.group.adjoint(element, xi)
-}
-
-/// The components of −J(q, ∂_q K) for each factor.
-pub(super) fn coupling<'g>(
-    model: &System<'g>,
-    symbols: &Symbols<'g>,
-    momentum_map: &[Expr<'g>],
-    kinetic: Expr<'g>,
-) -> Vec<Expr<'g>> {
-    let leaves = model.configurations.iter().zip(&symbols.covectors);
-    let gradients: Vec<_> = leaves.map(|(leaf, p)| (*p, kinetic.gradient(leaf.symbol))).collect();
-    momentum_map.iter().map(|momentum| -momentum.substitute(&gradients)).collect()
-}
-
-/// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
-pub(super) fn impulse<'g>(
-    model: &System<'g>,
-    symbols: &Symbols<'g>,
-    momentum_map: &[Expr<'g>],
-    potential: Expr<'g>,
-) -> Option<Vec<Expr<'g>>> {
-    let leaves = model.configurations.iter().zip(&symbols.covectors);
-    let gradients: Vec<_> = leaves.map(|(leaf, p)| (*p, potential.gradient(leaf.symbol))).collect();
-    let impulse: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&gradients)).collect();
-    impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
-}
-
-/// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are: then it is the orthogonal projection to them,
-/// for ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes of each other. c is 1 on spheres, and |E_i|² where matrices are multiplied.
-pub(super) fn projection<'g>(
-    model: &System<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    momentum_map: &[Expr<'g>],
-) -> Option<Vec<Expr<'g>>> {
-    let alike: Vec<_> = symbols.algebra.iter().zip(&symbols.momenta).map(|(xi, mu)| (*xi, *mu)).collect();
-    let velocities = generator.iter().map(|velocity| velocity.substitute(&alike));
-    let velocities: Vec<_> = symbols.covectors.iter().copied().zip(velocities).collect();
-    let projection: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&velocities)).collect();
-    let motions: Vec<_> = symbols.momenta.iter().zip(momentum_map).map(|(mu, momentum)| (*mu, *momentum)).collect();
-    let kept = |(k, momentum): (usize, &Expr<'g>)| {
-        let twice = projection[k].substitute(&motions);
-        let others = symbols.momenta.iter().enumerate().filter(|(j, _)| *j != k);
-        let is_alone = others.into_iter().all(|(_, mu)| !projection[k].depends_on(*mu));
-        let scale = [1, 2].into_iter().find(|&scale| identity::equal(&[twice], &[scale * *momentum]))?;
-        (is_alone || model.factors.len() == 1).then(|| projection[k] / scale)
-    };
-    momentum_map.iter().enumerate().map(kept).collect()
-}
-
-/// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
-pub(super) fn is_free<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> bool {
-    if generator.is_empty() {
-        return false;
+impl<'g> SystemFormulas<'g> {
+    /// J(q, p) of these covectors p.
+    pub(super) fn momenta_of(&self, covectors: impl IntoIterator<Item = Expr<'g>>) -> Vec<Expr<'g>> {
+        let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(covectors).collect();
+        self.momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
     }
-    let moving = model.factors.iter().filter(|factor| factor.moves);
-    let moving: usize = moving.map(|factor| factor.group.dimension()).sum();
-    let rows: usize = generator.iter().map(|velocity| velocity.shape().len()).sum();
-    if rows < moving {
-        return false;
-    }
-    let columns = generator_columns(symbols, generator);
-    let dimension = columns.len();
-    let entries = (0..rows).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-    identity::rank(model.graph.stack(Shape::new(rows, dimension), entries)) == moving
-}
 
-/// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
-pub(super) fn generator_columns<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
-    let column = |element: Vec<(Expr<'g>, Expr<'g>)>| {
-        let images = generator.iter().map(|velocity| velocity.substitute(&element));
-        images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect()
-    };
-    symbols.basis().into_iter().map(column).collect()
+    /// ξ_Q(q) for a velocity of all factors.
+    pub(super) fn motion_by(&self, velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let replaced: Vec<_> = self.symbols.algebra.iter().copied().zip(velocity.iter().copied()).collect();
+        self.generator.iter().map(|motion| motion.substitute(&replaced)).collect()
+    }
+
+    /// The gradients with respect to the leaves of the configuration.
+    pub(super) fn gradients(&self, part: Expr<'g>) -> Vec<Expr<'g>> {
+        self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect()
+    }
+
+    /// Ad*_F μ.
+    pub(super) fn coadjoint(&self) -> Vec<Expr<'g>> {
+        let factors = self.model.factors.iter().zip(&self.symbols.momenta);
+        factors.map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).collect()
+    }
+
+    /// Ad*_{F⁻¹} μ for a left action, Ad*_F μ for a right one: M⁺ of a factor whose momentum the drift carries along, of M = μ.
+    pub(super) fn carried(&self, k: usize, mu: Expr<'g>) -> Expr<'g> {
+        let factor = &self.model.factors[k];
+        match factor.side {
+            Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
+            Side::Right => factor.group.coadjoint(factor.symbol, mu),
+        }
+    }
+
+    /// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along: Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
+    pub(super) fn adjoint(&self, k: usize) -> Expr<'g> {
+        let factor = &self.model.factors[k];
+        let element = match factor.side {
+            Side::Left => factor.symbol,
+            Side::Right => factor.group.inverse(factor.symbol),
+        };
+        factor.group.adjoint(element, self.symbols.algebra[k])
+    }
+
+    /// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
+    pub(super) fn cotangent_lift(&self) -> Vec<Expr<'g>> {
+        let factors = self.model.factors.iter();
+        let inverses: Vec<_> = factors.map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
+        let images = self.model.action.iter().map(|image| image.substitute(&inverses));
+        let pairing = images.zip(&self.symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
+        let leaves =
+            pairing.into_iter().flat_map(|pairing| self.model.configurations.iter().map(move |leaf| (pairing, leaf)));
+        leaves.map(|(pairing, leaf)| pairing.gradient(leaf.symbol).expand()).collect()
+    }
+
+    /// The components of −J(q, ∂_q K) for each factor.
+    pub(super) fn coupling(&self, kinetic: Expr<'g>) -> Vec<Expr<'g>> {
+        self.momenta_of(self.gradients(kinetic)).into_iter().map(|momentum| -momentum).collect()
+    }
+
+    /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
+    pub(super) fn impulse(&self, potential: Expr<'g>) -> Option<Vec<Expr<'g>>> {
+        let impulse = self.momenta_of(self.gradients(potential));
+        impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
+    }
+
+    /// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are: then it is the orthogonal projection to
+    /// them, for ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes of each other. c is 1 on spheres, and |E_i|² where matrices are multiplied.
+    pub(super) fn projection(&self) -> Option<Vec<Expr<'g>>> {
+        let (momenta, momentum_map) = (&self.symbols.momenta, &self.momentum_map);
+        let projection = self.momenta_of(self.motion_by(momenta));
+        let motions: Vec<_> = momenta.iter().zip(momentum_map).map(|(mu, momentum)| (*mu, *momentum)).collect();
+        let kept = |(k, momentum): (usize, &Expr<'g>)| {
+            let twice = projection[k].substitute(&motions);
+            let mut others = momenta.iter().enumerate().filter(|(j, _)| *j != k);
+            let is_alone = others.all(|(_, mu)| !projection[k].depends_on(*mu));
+            let scale = [1, 2].into_iter().find(|&scale| identity::equal(&[twice], &[scale * *momentum]))?;
+            is_alone.then(|| projection[k] / scale)
+        };
+        momentum_map.iter().enumerate().map(kept).collect()
+    }
+
+    /// Whether ξ ↦ ξ_Q(q) is injective for a general q, for the factors that move anything.
+    pub(super) fn is_free(&self) -> bool {
+        let moving = self.model.factors.iter().filter(|factor| factor.moves);
+        let moving: usize = moving.map(|factor| factor.group.dimension()).sum();
+        let rows: usize = self.generator.iter().map(|velocity| velocity.shape().len()).sum();
+        !self.generator.is_empty() && rows >= moving && identity::rank(self.matrix_of_generator()) == moving
+    }
+
+    /// The matrix of ξ ↦ ξ_Q(q), a row for each entry of the configuration.
+    pub(super) fn matrix_of_generator(&self) -> Expr<'g> {
+        let columns = self.generator_columns();
+        let shape = Shape::new(columns[0].len(), columns.len());
+        self.model.graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
+    }
+
+    /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
+    pub(super) fn generator_columns(&self) -> Vec<Vec<Expr<'g>>> {
+        let column = |element: Vec<(Expr<'g>, Expr<'g>)>| {
+            let images = self.generator.iter().map(|velocity| velocity.substitute(&element));
+            images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect()
+        };
+        self.symbols.basis().into_iter().map(column).collect()
+    }
 }

@@ -1,25 +1,23 @@
 //! Residuals freed of denominators, by maps that are regular near the identity: components of the result vanish where those of the
 //! residual do.
 
-use clebsch_symbolic::{Chart, Expr, Fraction, Group, Operation, View, WordTerm};
+use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, Operation, View, WordTerm, integer};
 
-use super::Symbols;
-use super::symbols::ChartBlock;
-use crate::model::{Mechanics, Side};
+use super::{ChartBlock, SystemFormulas};
+use crate::model::{Factor, Side};
 
 /// The residual of a factor, the components of `array` less μ, by the congruence with I ∓ Z of a Cayley chart; `None` if denominators
 /// are left, or there are none.
 pub(super) fn by_congruence<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
+    system: &SystemFormulas<'g>,
     k: usize,
     (array, mu, plain): (Expr<'g>, Expr<'g>, Expr<'g>),
 ) -> Option<Expr<'g>> {
-    let factor = &model.factors[k];
-    let group = factor.group;
-    let (left, right) = symbols.charts[k].clearing(group, &symbols.coordinates(k), factor.side == Side::Left)?;
-    let congruent = |matrix: Expr<'g>| group.components((left * matrix * right).expand());
-    let cleared = congruent(array) - momentum(group, (left, right), &symbols.coordinates(k), mu);
+    let Factor { group, side, .. } = system.model.factors[k];
+    let coordinates = system.symbols.coordinates(k);
+    let (left, right) = system.symbols.charts[k].clearing(group, &coordinates, side == Side::Left)?;
+    let array = group.components((left * array * right).expand());
+    let cleared = array - momentum(group, (left, right), &coordinates, mu);
     (plain.has_inverse() && !cleared.has_inverse()).then_some(cleared)
 }
 
@@ -39,27 +37,21 @@ fn momentum<'g>(group: Group, (left, right): (Expr<'g>, Expr<'g>), coordinates: 
 
 /// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of the rotation;
 /// `None` if denominators are left, or there are none.
-pub(super) fn of_rotation<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    block: &ChartBlock<'g>,
-    rows: Expr<'g>,
-) -> Option<Expr<'g>> {
-    let factor = &model.factors[block.factor];
+pub(super) fn of_rotation<'g>(system: &SystemFormulas<'g>, block: &ChartBlock<'g>, rows: Expr<'g>) -> Option<Expr<'g>> {
+    let (factor, graph) = (&system.model.factors[block.factor], system.model.graph);
     let n = factor.group.linear_part()?;
-    if symbols.charts[block.factor] != Chart::Product || block.block != 0 || !rows.has_inverse() {
+    if system.symbols.charts[block.factor] != Chart::Product || block.block != 0 || !rows.has_inverse() {
         return None;
     }
     let turn = Group::SpecialOrthogonal(n);
     let (left, right) = Chart::Cayley.clearing(turn, &[block.coordinates], factor.side == Side::Left)?;
-    let congruent = |matrix: Expr<'g>| turn.components((left * matrix * right).expand());
-    let terms = rows.word_terms().into_iter().map(|term| congruent(skew_matrix(model, turn, term)));
-    let cleared = terms.fold(model.graph.zero(rows.shape()), |sum, term| sum + term).expand();
+    let congruent = |term: WordTerm<'g>| turn.components((left * skew_matrix(graph, turn, term) * right).expand());
+    let cleared = graph.total(rows.shape(), rows.word_terms().into_iter().map(congruent)).expand();
     (!cleared.has_inverse()).then_some(cleared)
 }
 
 /// The skew matrix with components that are a term: ½(A − Aᵀ) for ⟨A, E⟩.
-fn skew_matrix<'g>(model: &Mechanics<'g>, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
+fn skew_matrix<'g>(graph: &'g Graph, turn: Group, mut term: WordTerm<'g>) -> Expr<'g> {
     let matrix_of = |letter: Expr<'g>| match letter.view() {
         View::Of(Operation::Components(_), inner) => Some((inner - inner.transpose()) / 2),
         _ => None,
@@ -74,9 +66,9 @@ fn skew_matrix<'g>(model: &Mechanics<'g>, turn: Group, mut term: WordTerm<'g>) -
         }
         _ => None,
     };
-    let scale = term.scale(model.graph);
-    let one = model.graph.integer(1);
-    scale * known.unwrap_or_else(|| turn.momentum_matrix(term.word.into_iter().reduce(|a, b| a * b).unwrap_or(one)))
+    let scale = term.scale(graph);
+    let product = || term.word.into_iter().reduce(|a, b| a * b).unwrap_or(graph.integer(1));
+    scale * known.unwrap_or_else(|| turn.momentum_matrix(product()))
 }
 
 /// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.
@@ -85,9 +77,7 @@ pub(super) fn of_quaternions<'g>(coordinates: &[Expr<'g>], group: Group, plain: 
         return plain;
     }
     let square = coordinates[0].graph().integer(1) + coordinates[0].norm_squared();
-    let exponent = |expression: Expr<'g>| expression.least_exponent(square);
-    let negative =
-        |expression: Expr<'g>| exponent(expression).is_some_and(|least| least < clebsch_symbolic::integer(0));
-    let scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand()).find(|scaled| !negative(*scaled));
-    scaled.unwrap_or(plain)
+    let is_fraction = |expression: &Expr<'g>| expression.least_exponent(square).is_some_and(|least| least < integer(0));
+    let mut scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand());
+    scaled.find(|scaled| !is_fraction(scaled)).unwrap_or(plain)
 }

@@ -1,13 +1,14 @@
 //! Steps of order 16: Hamilton's equations on T*Q in the form of the Clebsch problem, to be collocated at the nodes of Gauss and Legendre.
 
-use clebsch_symbolic::{Expr, Property, Role, identity};
+use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
 
-use super::equation::{Sources, is_moving};
+use super::Energy;
+use super::equation::Sources;
 use super::exact::{by_inertia, inertia_inverse};
-use super::{Energy, Symbols};
+use super::symbols::{at_zero, entries};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Isotropy, Mechanics, Order};
+use crate::model::{Isotropy, Order, System};
 
 /// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
 ///
@@ -37,49 +38,51 @@ pub(super) fn collocation<'g>(
     sources: &Sources<'_, 'g>,
     energy: &Energy<'g>,
     potential: Expr<'g>,
-    generator: &[Expr<'g>],
     is_free: bool,
 ) -> Result<Option<Collocation<'g>>, Diagnostics> {
-    let (model, symbols) = (sources.model, sources.symbols);
+    let (model, symbols) = (sources.model, &sources.symbols);
     if model.order != Order::Sixteenth {
         return Ok(None);
     }
     check(sources, energy, is_free)?;
-    let general: Vec<_> =
-        model.configurations.iter().enumerate().map(|(i, leaf)| (leaf.symbol, off_orbit(model, i))).collect();
-    check_linear(model, symbols, &general, generator)?;
-    let lift = lift(model, symbols, sources.momentum_map, generator)?;
+    let leaves = model.configurations.iter().enumerate();
+    let general: Vec<_> = leaves.map(|(i, leaf)| (leaf.symbol, off_orbit(model, i))).collect();
+    check_linear(sources, &general)?;
+    let lift = lift(sources)?;
     // stages lie off the orbit of q, where what simplifies on it does not hold
     let everywhere = |expr: &Expr<'g>| expr.substitute(&general);
     let momentum: Vec<_> = sources.momentum_map.iter().map(everywhere).collect();
     let slope = symbols.slope(everywhere(&energy.gyroscopic));
     let velocities = velocities(sources, &momentum, slope);
-    let pairing = symbols.algebra.iter().zip(&momentum).map(|(xi, momentum)| xi.dot(*momentum));
-    let pairing = pairing.fold(model.graph.integer(0), |sum, part| sum + part);
+    let pairing = model
+        .graph
+        .total(Shape::scalar(), symbols.algebra.iter().zip(&momentum).map(|(xi, momentum)| xi.dot(*momentum)));
     let hamiltonian = pairing - everywhere(&energy.gyroscopic) + everywhere(&potential);
     let moving = |expr: Expr<'g>| expr.substitute(&velocities);
     let at_start = self::velocities(sources, &symbols.momenta, symbols.slope(energy.gyroscopic));
+    // J(0, p) is not zero
+    let origin = at_zero(model.configurations.iter().map(|leaf| leaf.symbol));
+    let is_moved = |momentum: &Expr<'g>| !identity::vanishes(momentum.substitute(&origin));
     Ok(Some(Collocation {
         algebra: at_start.into_iter().map(|(_, velocity)| velocity).collect(),
-        velocity: generator.iter().map(|velocity| moving(everywhere(velocity))).collect(),
+        velocity: sources.generator.iter().map(|velocity| moving(everywhere(velocity))).collect(),
         force: general.iter().map(|(_, q)| moving(-hamiltonian.gradient(*q))).collect(),
-        is_affine: is_affine(model, sources.momentum_map),
+        is_affine: sources.momentum_map.iter().any(is_moved),
         lift,
     }))
 }
 
 /// A leaf of the configuration that need not lie on its orbit.
-fn off_orbit<'g>(model: &Mechanics<'g>, i: usize) -> Expr<'g> {
+fn off_orbit<'g>(model: &System<'g>, i: usize) -> Expr<'g> {
     let leaf = &model.configurations[i];
     model.graph.symbol(&leaf.name, leaf.shape, Role::Configuration(i), Property::General)
 }
 
 /// ξ = Σ⁻¹(J − A) for each factor.
 fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let (model, inertia) = (sources.model, sources.inertia);
-    let graph = model.graph;
-    let entries = momentum.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0)));
-    let free: Vec<_> = entries.enumerate().map(|(i, entry)| entry - slope.entry(i, 0)).collect();
+    let (graph, inertia) = (sources.model.graph, sources.inertia);
+    let free = entries(momentum).into_iter().enumerate().map(|(i, entry)| entry - slope.entry(i, 0));
+    let free: Vec<_> = free.collect();
     let mut entries = by_inertia(inertia, || inertia_inverse(graph, inertia.shape()), &free).into_iter();
     let parts = sources.symbols.algebra.iter();
     parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).collect()))).collect()
@@ -87,19 +90,12 @@ fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<
 
 /// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity: J(q, p) = μ where the columns of the generator of each factor are
 /// orthogonal and of the same length.
-fn lift<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    momentum_map: &[Expr<'g>],
-    generator: &[Expr<'g>],
-) -> Result<Vec<Expr<'g>>, Diagnostics> {
-    let graph = model.graph;
+fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
+    let (graph, momentum_map) = (sources.model.graph, &sources.momentum_map);
     let along = |velocities: &[Expr<'g>]| -> Vec<(Expr<'g>, Expr<'g>)> {
-        let replaced: Vec<_> = symbols.algebra.iter().copied().zip(velocities.iter().copied()).collect();
-        let covectors = generator.iter().map(|velocity| velocity.substitute(&replaced));
-        symbols.covectors.iter().copied().zip(covectors).collect()
+        sources.symbols.covectors.iter().copied().zip(sources.motion_by(velocities)).collect()
     };
-    let zeros: Vec<_> = symbols.algebra.iter().map(|xi| graph.zero(xi.shape())).collect();
+    let zeros: Vec<_> = sources.symbols.algebra.iter().map(|xi| graph.zero(xi.shape())).collect();
     let scale = |k: usize| {
         let mut alone = zeros.clone();
         SCALES.into_iter().map(|(n, d)| graph.rational(n, d)).find(|scale| {
@@ -107,26 +103,19 @@ fn lift<'g>(
             identity::equal(&[momentum_map[k].substitute(&along(&alone))], &[momentum_map[k]])
         })
     };
-    let scales: Option<Vec<_>> = (0..model.factors.len()).map(scale).collect();
+    let scales: Option<Vec<_>> = (0..momentum_map.len()).map(scale).collect();
     let lifted = scales.and_then(|scales| {
         let scaled = |parts: &[Expr<'g>]| -> Vec<Expr<'g>> {
             scales.iter().zip(parts).map(|(scale, part)| *scale * *part).collect()
         };
-        let back = along(&scaled(momentum_map));
-        let returned: Vec<_> = momentum_map.iter().map(|momentum| momentum.substitute(&back)).collect();
-        identity::equal(&returned, momentum_map).then(|| along(&scaled(&symbols.momenta)))
+        let returned = sources.momenta_of(sources.motion_by(&scaled(momentum_map)));
+        identity::equal(&returned, momentum_map).then(|| sources.motion_by(&scaled(&sources.symbols.momenta)))
     });
-    lifted.map(|covectors| covectors.into_iter().map(|(_, covector)| covector).collect()).ok_or_else(|| {
-        let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(graph)).collect();
+    lifted.ok_or_else(|| {
+        let groups: Vec<String> = sources.model.factors.iter().map(|factor| factor.group.name(graph)).collect();
         let action = Found::somewhere().named(groups.join(" × "));
-        features::refusal((Feature::Collocation, asked(model)), (Feature::UnliftedMomentum, action)).into()
+        features::refusal((Feature::Collocation, asked(sources.model)), (Feature::UnliftedMomentum, action)).into()
     })
-}
-
-/// Whether J(0, p) is not zero.
-fn is_affine<'g>(model: &Mechanics<'g>, momentum_map: &[Expr<'g>]) -> bool {
-    let origin: Vec<_> = model.configurations.iter().map(|leaf| (leaf.symbol, model.graph.zero(leaf.shape))).collect();
-    momentum_map.iter().any(|momentum| !identity::vanishes(momentum.substitute(&origin)))
 }
 
 fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> Result<(), Diagnostics> {
@@ -136,7 +125,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
         Feature::Forces => Found::when(model.force.is_some()),
         Feature::Tangent => Found::when(model.has_variations()),
         Feature::GeneralLagrangian => Found::when(energy.general.is_some()),
-        Feature::MovingInertia => Found::when(is_moving(model, sources.inertia)),
+        Feature::MovingInertia => Found::when(sources.is_moving(sources.inertia)),
         Feature::UnmovedFactor => {
             let factor = model.factors.iter().find(|factor| !factor.moves)?;
             Some(Found::somewhere().named(&factor.name))
@@ -147,25 +136,20 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
 }
 
 /// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
-fn check_linear<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    general: &[(Expr<'g>, Expr<'g>)],
-    generator: &[Expr<'g>],
-) -> Result<(), Diagnostics> {
-    let directions: Vec<_> =
-        general.iter().zip(&symbols.covectors).map(|((_, q), direction)| (*q, *direction)).collect();
+fn check_linear<'g>(sources: &Sources<'_, 'g>, general: &[(Expr<'g>, Expr<'g>)]) -> Result<(), Diagnostics> {
+    let leaves = general.iter().zip(&sources.symbols.covectors);
+    let directions: Vec<_> = leaves.map(|((_, q), direction)| (*q, *direction)).collect();
     let slope = |velocity: &Expr<'g>| velocity.substitute(general).differential(&directions).expand();
     let bends = |velocity: &Expr<'g>| general.iter().any(|(_, q)| slope(velocity).depends_on(*q));
-    if generator.iter().any(bends) {
-        let action = (Feature::BentAction, Found::somewhere());
-        return Err(features::refusal((Feature::Collocation, asked(model)), action).into());
+    if !sources.generator.iter().any(bends) {
+        return Ok(());
     }
-    Ok(())
+    let action = (Feature::BentAction, Found::somewhere());
+    Err(features::refusal((Feature::Collocation, asked(sources.model)), action).into())
 }
 
 /// Where order 16 is asked for.
-fn asked(model: &Mechanics<'_>) -> Found {
+fn asked(model: &System<'_>) -> Found {
     // by construction: no other order is there without being written
     Found::at(model.spans.order.unwrap_or_else(proc_macro2::Span::call_site))
 }

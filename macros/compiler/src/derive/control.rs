@@ -6,7 +6,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape};
 
-use super::{EdgeDerivatives, Symbols, SystemFormulas, action};
+use super::{EdgeDerivatives, SystemFormulas};
 use crate::model::{Discretization, Factor, Motion, Side, Steered, System};
 
 /// The direction in which symbols move.
@@ -60,13 +60,14 @@ impl<'g> Jet<'g> {
                 gradients.push((*symbol, value.gradient(*symbol)));
             }
         }
-        let zero = value.graph().integer(0);
         let paired = |direction: &Direction<'g>, other: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>| {
-            let moving = direction.iter().filter_map(|(symbol, velocity)| {
-                let (_, gradient) = gradients.iter().find(|(known, _)| known == symbol)?;
-                Some(other(*gradient, *velocity))
-            });
-            moving.fold(zero, |sum, term| sum + term)
+            value.graph().total(
+                Shape::scalar(),
+                direction.iter().filter_map(|(symbol, velocity)| {
+                    let (_, gradient) = gradients.iter().find(|(known, _)| known == symbol)?;
+                    Some(other(*gradient, *velocity))
+                }),
+            )
         };
         let slope = directions.iter().map(|direction| paired(direction, &|gradient, velocity| gradient.dot(velocity)));
         // ∂_j ∂_i f
@@ -84,45 +85,6 @@ impl<'g> Jet<'g> {
     }
 }
 
-/// Each element of the basis as a motion of q.
-pub(super) fn motions<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Direction<'g>> {
-    let motion = |element: &Direction<'g>| {
-        let leaves = model.configurations.iter().zip(generator);
-        leaves.map(|(leaf, velocity)| (leaf.symbol, velocity.substitute(element))).collect()
-    };
-    symbols.basis().iter().map(motion).collect()
-}
-
-/// Each entry of the input.
-pub(super) fn inputs<'g>(model: &System<'g>) -> Vec<Direction<'g>> {
-    let entries = |symbol: Expr<'g>| {
-        symbol.shape().positions().map(move |(i, j)| vec![(symbol, symbol.graph().unit(symbol.shape(), i, j))])
-    };
-    model.inputs.iter().flat_map(|leaf| entries(leaf.symbol)).collect()
-}
-
-/// Everything that a declared choice of inputs needs.
-pub(super) fn steering<'g>(
-    model: &System<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    momentum_map: &[Expr<'g>],
-) -> Option<Steering<'g>> {
-    let control = model.control.as_ref()?;
-    let motions = motions(model, symbols, generator);
-    let all = [motions, inputs(model)].concat();
-    let along = |value: Expr<'g>, symbol: Expr<'g>| value.differential(&[(symbol, model.graph.integer(1))]);
-    let by_time = |value: Expr<'g>| [along(value, model.step_size), along(value, model.time)];
-    let count = Shape::vector(control.bounds.len().max(1));
-    Some(Steering {
-        price: Jet::of(control.price, &all),
-        price_of_time: by_time(control.price),
-        bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
-        weights: model.graph.symbol("z", count, Role::Weight, Property::General),
-        approach: approach(model, symbols, momentum_map),
-    })
-}
-
 /// The price of the end.
 pub struct Endpoint<'g> {
     /// φ(t, q).
@@ -131,18 +93,51 @@ pub struct Endpoint<'g> {
     pub by_time: Expr<'g>,
 }
 
-/// The price of the end with its derivatives.
-pub(super) fn endpoint<'g>(model: &System<'g>, symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Option<Endpoint<'g>> {
-    let price = model.endpoint?;
-    let by_time = price.differential(&[(model.time, model.graph.integer(1))]);
-    Some(Endpoint { price: Jet::of(price, &motions(model, symbols, generator)), by_time })
-}
+impl<'g> SystemFormulas<'g> {
+    /// Each element of the basis as a motion of q.
+    fn motions(&self) -> Vec<Direction<'g>> {
+        let leaves = || self.model.configurations.iter().zip(&self.generator);
+        let motion = |element: &Direction<'g>| {
+            leaves().map(|(leaf, velocity)| (leaf.symbol, velocity.substitute(element))).collect()
+        };
+        self.symbols.basis().iter().map(motion).collect()
+    }
 
-/// J(q, q⁺ − q).
-fn approach<'g>(model: &System<'g>, symbols: &Symbols<'g>, momentum_map: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let leaves = model.configurations.iter().zip(symbols.covectors.iter().zip(&symbols.images));
-    let gaps: Vec<_> = leaves.map(|(leaf, (p, image))| (*p, *image - leaf.symbol)).collect();
-    momentum_map.iter().map(|momentum| momentum.substitute(&gaps)).collect()
+    /// Each entry of the input.
+    fn inputs(&self) -> Vec<Direction<'g>> {
+        let entries = |symbol: Expr<'g>| {
+            symbol.shape().positions().map(move |(i, j)| vec![(symbol, symbol.graph().unit(symbol.shape(), i, j))])
+        };
+        self.model.inputs.iter().flat_map(|leaf| entries(leaf.symbol)).collect()
+    }
+
+    /// The derivatives with respect to h and t.
+    fn by_time(&self, value: Expr<'g>) -> [Expr<'g>; 2] {
+        let one = self.model.graph.integer(1);
+        [self.model.step_size, self.model.time].map(|symbol| value.differential(&[(symbol, one)]))
+    }
+
+    /// Everything that a declared choice of inputs needs.
+    pub(super) fn chosen_by(&self) -> Option<Steering<'g>> {
+        let control = self.model.control.as_ref()?;
+        let all = [self.motions(), self.inputs()].concat();
+        let count = Shape::vector(control.bounds.len().max(1));
+        let leaves = self.model.configurations.iter().zip(&self.symbols.images);
+        Some(Steering {
+            price: Jet::of(control.price, &all),
+            price_of_time: self.by_time(control.price),
+            bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
+            weights: self.model.graph.symbol("z", count, Role::Weight, Property::General),
+            approach: self.momenta_of(leaves.map(|(leaf, image)| *image - leaf.symbol)),
+        })
+    }
+
+    /// The price of the end with its derivatives.
+    pub(super) fn price_of_end(&self) -> Option<Endpoint<'g>> {
+        let price = self.model.endpoint?;
+        let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
+        Some(Endpoint { price: Jet::of(price, &self.motions()), by_time })
+    }
 }
 
 /// F − I for each factor, made of inputs.
@@ -188,43 +183,33 @@ fn coordinates<'g>(group: Group, element: Expr<'g>) -> Expr<'g> {
 
 /// The step that inputs make, with its derivatives.
 pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> InputStep<'g> {
-    let (symbols, dimension) = (&formulas.symbols, model.dimension());
-    let directions = [motions(model, symbols, &formulas.generator), inputs(model)].concat();
+    let (graph, dimension) = (model.graph, model.dimension());
+    let directions = [formulas.motions(), formulas.inputs()].concat();
     let increment = element(model);
-    let parts: Vec<Factored<'_, 'g>> = model
-        .factors
-        .iter()
-        .enumerate()
-        .map(|(k, factor)| {
-            let motions = symbols.basis();
-            let adjoint = |element: &Direction<'g>| action::adjoint_of(factor, symbols.algebra[k]).substitute(element);
-            Factored {
-                factor,
-                costate: symbols.momenta[k],
-                moved: motions.iter().map(adjoint).collect(),
-                changes: directions.iter().map(|direction| increment[k].differential(direction)).collect(),
-            }
-        })
-        .collect();
+    let factored = |(k, factor): (usize, &'_ Factor<'g>)| {
+        let basis = formulas.symbols.basis();
+        let moved = basis.iter().map(|element| formulas.adjoint(k).substitute(element)).collect();
+        let changes = directions.iter().map(|direction| increment[k].differential(direction)).collect();
+        Factored { factor: factor.clone(), costate: formulas.symbols.momenta[k], moved, changes }
+    };
+    let parts: Vec<Factored<'g>> = model.factors.iter().enumerate().map(factored).collect();
     let column = |i: usize| {
-        let of_factor = parts.iter().enumerate().map(|(k, part)| {
-            let whole = coordinates(part.factor.group, logarithmic(part.factor, part.changes[i]));
-            let whole = if i < dimension { part.moved[i] + whole } else { whole };
-            whole.embed(Shape::vector(dimension), model.offset(k), 0)
+        let of_factor = parts.iter().map(|part| {
+            let change = coordinates(part.factor.group, logarithmic(&part.factor, part.changes[i]));
+            if i < dimension { part.moved[i] + change } else { change }
         });
-        of_factor.fold(model.graph.zero(Shape::vector(dimension)), |sum, part| sum + part)
+        graph.below(&of_factor.collect::<Vec<_>>())
     };
-    let second = |i: usize, j: usize| {
-        let of_factor = parts.iter().map(|part| part.curvature(&directions, i, j));
-        of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
-    };
-    let one = model.graph.integer(1);
+    let second =
+        |i: usize, j: usize| graph.total(Shape::scalar(), parts.iter().map(|part| part.curvature(&directions, i, j)));
     let by_time = [model.step_size, model.time].map(|symbol| {
-        let of_factor = parts.iter().enumerate().map(|(k, part)| {
-            let change = increment[k].differential(&[(symbol, one)]);
-            part.costate.dot(coordinates(part.factor.group, logarithmic(part.factor, change)))
-        });
-        of_factor.fold(model.graph.integer(0), |sum, part| sum + part)
+        graph.total(
+            Shape::scalar(),
+            parts.iter().zip(&increment).map(|(part, increment)| {
+                let change = increment.differential(&[(symbol, graph.integer(1))]);
+                part.costate.dot(coordinates(part.factor.group, logarithmic(&part.factor, change)))
+            }),
+        )
     });
     InputStep {
         by_place: (0..dimension).map(column).collect(),
@@ -236,8 +221,8 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
 }
 
 /// A factor of a step with what moves it.
-struct Factored<'a, 'g> {
-    factor: &'a Factor<'g>,
+struct Factored<'g> {
+    factor: Factor<'g>,
     costate: Expr<'g>,
     /// Ad η for each motion.
     moved: Vec<Expr<'g>>,
@@ -245,14 +230,14 @@ struct Factored<'a, 'g> {
     changes: Vec<Expr<'g>>,
 }
 
-impl<'g> Factored<'_, 'g> {
+impl<'g> Factored<'g> {
     /// λ · (b″ along two directions, with the brackets).
     fn curvature(&self, directions: &[Direction<'g>], i: usize, j: usize) -> Expr<'g> {
         let group = self.factor.group;
         let second = (self.changes[i].differential(&directions[j]) + self.changes[j].differential(&directions[i])) / 2;
-        let mut sum = coordinates(group, logarithmic(self.factor, second));
+        let mut sum = coordinates(group, logarithmic(&self.factor, second));
         if !group.is_translation() {
-            let [a, b] = [i, j].map(|i| logarithmic(self.factor, self.changes[i]));
+            let [a, b] = [i, j].map(|i| logarithmic(&self.factor, self.changes[i]));
             let product = (group.compose(a, b) + group.compose(b, a)) / 2;
             sum = sum - coordinates(group, product) + self.bracket(i, b) + self.bracket(j, a);
         }
@@ -287,36 +272,34 @@ pub struct Bend<'g> {
 
 /// What a choice of the inputs of forces needs of an edge.
 pub(super) fn bend<'g>(
-    model: &System<'g>,
+    formulas: &SystemFormulas<'g>,
     variation: &EdgeDerivatives<'g>,
-    (costate, multiplier): (Expr<'g>, Expr<'g>),
-    ends: &[Direction<'g>],
+    ends: Vec<Direction<'g>>,
 ) -> Bend<'g> {
-    let directions = [ends.to_vec(), inputs(model)].concat();
-    let function = costate.dot(variation.after) + multiplier.dot(variation.before);
-    let one = model.graph.integer(1);
-    let columns = |momentum: Expr<'g>| inputs(model).iter().map(|input| momentum.differential(input)).collect();
+    let (symbols, inputs) = (&formulas.symbols, formulas.inputs());
+    let costate = formulas.model.graph.below(&symbols.momenta);
+    let function = costate.dot(variation.after) + symbols.multiplier.dot(variation.before);
+    let columns = |momentum: Expr<'g>| inputs.iter().map(|input| momentum.differential(input)).collect();
     Bend {
-        bracket: bracket(model, costate),
-        curvature: Jet::of(function, &directions).curvature,
+        bracket: bracket(&formulas.model, costate),
+        curvature: Jet::of(function, &[ends, inputs.clone()].concat()).curvature,
         before_by_input: columns(variation.before),
         after_by_input: columns(variation.after),
-        by_time: [model.step_size, model.time].map(|symbol| function.differential(&[(symbol, one)])),
+        by_time: formulas.by_time(function),
     }
 }
 
 /// ½ μ·[E_i, E_j] for a right action, −½ μ·[E_i, E_j] for a left one.
 fn bracket<'g>(model: &System<'g>, mu: Expr<'g>) -> Vec<Vec<Expr<'g>>> {
-    let (whole, zero) = (model.dimension(), model.graph.integer(0));
-    let mut entries = vec![vec![zero; whole]; whole];
+    let dimension = model.dimension();
+    let mut entries = vec![vec![model.graph.integer(0); dimension]; dimension];
     for (k, factor) in model.factors.iter().enumerate() {
-        let (offset, dimension) = (model.offset(k), factor.group.dimension());
-        let part = mu.block(offset, 0, Shape::vector(dimension));
-        for i in 0..dimension {
-            let ad = factor.group.ad(model.graph.unit(Shape::vector(dimension), i, 0));
-            let row = ad.transpose() * part / 2;
+        let (offset, shape) = (model.offset(k), Shape::vector(factor.group.dimension()));
+        let part = mu.block(offset, 0, shape);
+        for i in 0..shape.rows {
+            let row = factor.group.ad(model.graph.unit(shape, i, 0)).transpose() * part / 2;
             let row = if factor.side == Side::Right { row } else { -row };
-            (0..dimension).for_each(|j| entries[offset + i][offset + j] = row.entry(j, 0));
+            (0..shape.rows).for_each(|j| entries[offset + i][offset + j] = row.entry(j, 0));
         }
     }
     entries

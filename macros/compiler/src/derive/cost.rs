@@ -2,6 +2,7 @@
 
 use clebsch_symbolic::Expr;
 
+use super::action::moved_on;
 use super::{exact, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Discretization, Kinetic, Mechanics};
@@ -21,14 +22,8 @@ pub(super) fn kinetic_cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagno
         Discretization::Exact => exact::stand_in(model, energy, velocities),
         _ => Ok(h * energy.substitute(&discrete)),
     };
-    let moves = model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
-    match moves || energy.depends_on(model.time) {
-        false => at(energy),
-        true => {
-            let images = model.configurations.iter().zip(&model.action);
-            let mut end: Vec<_> = images.map(|(leaf, image)| (leaf.symbol, *image)).collect();
-            end.push((model.time, model.time + h));
-            Ok((at(energy)? + at(energy.substitute(&end))?) / 2)
-        }
+    if !model.reads_configuration(energy) && !energy.depends_on(model.time) {
+        return at(energy);
     }
+    Ok((at(energy)? + at(energy.substitute(&moved_on(model)))?) / 2)
 }

@@ -3,10 +3,10 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::action::identities;
+use super::action::{identities, moved};
 use super::symbols::logarithm;
 use super::trivialisation;
-use crate::model::{Factor, Mechanics, Order};
+use crate::model::{Factor, Mechanics, Order, System};
 
 /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), with U₀ and U₁ written as functions of a configuration and of its time.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -24,18 +24,14 @@ pub struct DiscreteLagrangian<'g> {
 /// Separates the cost into a part of F and a part of q where it is such a sum, and places the potential.
 pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Expr<'g>) -> DiscreteLagrangian<'g> {
     let static_part = cost.substitute(&identities(model));
-    let couples = |kinetic: Expr<'g>| model.configurations.iter().any(|leaf| kinetic.depends_on(leaf.symbol));
     let difference = cost - static_part;
-    let kinetic = if couples(difference) { difference.expand() } else { difference };
+    let kinetic = if model.reads_configuration(difference) { difference.expand() } else { difference };
     let (start, end) = placed_potential(model);
-    match couples(kinetic) {
-        true => DiscreteLagrangian { kinetic: cost, start, end, couples: true },
-        false => {
-            let constant = !couples(static_part);
-            let start = if constant { start } else { start + static_part };
-            DiscreteLagrangian { kinetic, start, end, couples: false }
-        }
+    if model.reads_configuration(kinetic) {
+        return DiscreteLagrangian { kinetic: cost, start, end, couples: true };
     }
+    let start = if model.reads_configuration(static_part) { start + static_part } else { start };
+    DiscreteLagrangian { kinetic, start, end, couples: false }
 }
 
 /// −h/2 V at both ends of a step of second order, −h V at the end of one of first order.
@@ -50,12 +46,12 @@ fn placed_potential<'g>(model: &Mechanics<'g>) -> (Expr<'g>, Expr<'g>) {
 
 impl<'g> DiscreteLagrangian<'g> {
     /// −ℓd(t + h, −h, Φ_F q, F⁻¹), whose scheme is the adjoint.
-    pub fn adjoint(&self, model: &Mechanics<'g>) -> DiscreteLagrangian<'g> {
+    pub fn adjoint(&self, model: &System<'g>) -> DiscreteLagrangian<'g> {
         let h = model.step_size;
         let inverse = |factor: &Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
         let mut reversed: Vec<_> = model.factors.iter().map(inverse).collect();
         reversed.extend((0..model.factors.len()).map(|k| logarithm(model, k)).map(|y| (y, -y)));
-        reversed.extend(model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)));
+        reversed.extend(moved(model));
         reversed.extend([(h, -h), (model.time, model.time + h)]);
         DiscreteLagrangian {
             kinetic: -self.kinetic.substitute(&reversed),
@@ -73,17 +69,15 @@ impl<'g> DiscreteLagrangian<'g> {
     }
 
     /// Whether ℓd is its own adjoint, up to what no variation sees: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials.
-    pub fn is_time_symmetric(&self, model: &Mechanics<'g>) -> bool {
+    pub fn is_time_symmetric(&self, model: &System<'g>) -> bool {
         let adjoint = self.adjoint(model);
         let leaves = || model.configurations.iter().map(|leaf| leaf.symbol);
         let potentials = |lagrangian: &DiscreteLagrangian<'g>| -> Vec<Expr<'g>> {
             leaves().flat_map(|q| [lagrangian.start.gradient(q), lagrangian.end.gradient(q)]).collect()
         };
         let variations = |kinetic: Expr<'g>| -> Vec<Expr<'g>> {
-            let factors = (0..model.factors.len()).map(|k| {
-                let (before, _) = trivialisation::trivialisations(model, kinetic, k);
-                before.components(model.factors[k].group)
-            });
+            let (before, _) = trivialisation::of_all(model, kinetic);
+            let factors = trivialisation::components(model, &before).into_iter();
             factors.chain(leaves().map(|q| kinetic.gradient(q))).collect()
         };
         let kinetic = identity::equal(&[self.kinetic], &[adjoint.kinetic])
@@ -92,7 +86,7 @@ impl<'g> DiscreteLagrangian<'g> {
     }
 
     /// The Lagrangian of a part of the step: the step `h` stands for is `step`, and its start is `later` than that of the whole.
-    fn of_part(&self, model: &Mechanics<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
+    fn of_part(&self, model: &System<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
         let scaled = |part: Expr<'g>| part.substitute(&[(model.step_size, step)]);
         DiscreteLagrangian {
             kinetic: self.kinetic.substitute(&[(model.step_size, step), (model.time, model.time + later)]),

@@ -40,9 +40,10 @@ fn displaced_leaf<'g>(formulas: &MechanicsFormulas<'g>, leaf: usize) -> Option<E
     if !identity::equal(&[turned], &[q + free[0] * once + free[1] * twice]) {
         return None;
     }
-    let added = match is_perpendicular(formulas, k, leaf, twice) {
-        true => alpha * once - (beta * x.norm_squared()) * q,
-        false => alpha * once + beta * twice,
+    let added = if is_perpendicular(formulas, k, leaf, twice) {
+        alpha * once - (beta * x.norm_squared()) * q
+    } else {
+        alpha * once + beta * twice
     };
     Some(if formulas.is_compensated() { added } else { q + added })
 }

@@ -2,7 +2,8 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{EdgeDerivatives, MatrixForm, MechanicsFormulas, SystemFormulas, increments, inserted, inverse_by};
+use super::increments::{inserted, inverse_by};
+use super::{EdgeDerivatives, MatrixForm, MechanicsFormulas, SystemFormulas};
 use crate::model::{Configuration, LeafSpace};
 
 /// What the kernels of an edge compute.
@@ -31,7 +32,7 @@ impl<'g> Inserted<'g> {
             }
             _ => Vec::new(),
         });
-        Inserted { elements: increments(formulas).into_iter().chain(inverses).collect() }
+        Inserted { elements: formulas.increments().into_iter().chain(inverses).collect() }
     }
 
     /// An expression, products distributed.

@@ -1,8 +1,10 @@
 //! A momentum equation: its residual in the chart, how it is solved, and what is known of its Jacobian.
 
-use clebsch_symbolic::{Chart, Expr, Shape, identity};
+use std::ops::Deref;
 
-use super::{ChartBlock, Symbols};
+use clebsch_symbolic::{Chart, Expr, identity};
+
+use super::{ChartBlock, Symbols, SystemFormulas};
 use crate::model::Mechanics;
 
 /// The momentum equation of coordinates that depend on each other.
@@ -78,8 +80,7 @@ pub struct SineForm<'g> {
 /// What an equation is derived from.
 pub(super) struct Sources<'a, 'g> {
     pub(super) model: &'a Mechanics<'g>,
-    pub(super) symbols: &'a Symbols<'g>,
-    pub(super) momentum_map: &'a [Expr<'g>],
+    pub(super) system: &'a SystemFormulas<'g>,
     pub(super) inertia: Expr<'g>,
     /// The number of substeps in a step, by which h is divided.
     pub(super) divisor: i64,
@@ -87,28 +88,47 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) forced: bool,
 }
 
+impl<'g> Deref for Sources<'_, 'g> {
+    type Target = SystemFormulas<'g>;
+
+    fn deref(&self) -> &SystemFormulas<'g> {
+        self.system
+    }
+}
+
 impl<'g> MomentumEquation<'g> {
     /// An equation for Newton's method.
     pub(super) fn new(
-        sources: &Sources<'_, 'g>,
+        system: &SystemFormulas<'g>,
         components: Vec<usize>,
         residual: Expr<'g>,
         cleared: bool,
     ) -> MomentumEquation<'g> {
-        let (model, symbols) = (sources.model, sources.symbols);
-        let blocks = symbols.blocks_of(&components);
-        let mut factors: Vec<usize> = blocks.iter().map(|&i| symbols.blocks[i].factor).collect();
+        let symbols = &system.symbols;
+        let blocks: Vec<_> = symbols.blocks_of(&components).into_iter().map(|i| symbols.blocks[i]).collect();
+        let mut factors: Vec<usize> = blocks.iter().map(|block| block.factor).collect();
         factors.dedup();
-        let directions: Vec<_> =
-            blocks.iter().map(|&i| (symbols.blocks[i].coordinates, symbols.blocks[i].direction)).collect();
-        let moves = is_moving(model, residual);
+        let directions: Vec<_> = blocks.iter().map(|block| (block.coordinates, block.direction)).collect();
+        let moves = system.is_moving(residual);
         let slope = residual.differential(&directions);
         let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
+        let directional = if kept { slope } else { slope.expand() };
+        MomentumEquation { moves, ..MomentumEquation::of(components, factors, residual, directional, cleared) }
+    }
+
+    /// An equation of which nothing more is known.
+    pub(super) fn of(
+        components: Vec<usize>,
+        factors: Vec<usize>,
+        residual: Expr<'g>,
+        directional: Expr<'g>,
+        cleared: bool,
+    ) -> MomentumEquation<'g> {
         MomentumEquation {
             components,
             factors,
             residual,
-            directional: if kept { slope } else { slope.expand() },
+            directional,
             cleared,
             solution: Solution::Newton,
             formula: None,
@@ -117,7 +137,7 @@ impl<'g> MomentumEquation<'g> {
             structure: Structure::Dense,
             coupled: Vec::new(),
             is_inertial: true,
-            moves,
+            moves: false,
         }
     }
 
@@ -133,10 +153,8 @@ impl<'g> MomentumEquation<'g> {
         let column = |&component: &usize| {
             let direction = |block: &ChartBlock<'g>| {
                 let shape = block.direction.shape();
-                let unit = match block.components().contains(&component) {
-                    true => graph.unit(shape, component - block.offset, 0),
-                    false => graph.zero(shape),
-                };
+                let is_own = block.components().contains(&component);
+                let unit = if is_own { graph.unit(shape, component - block.offset, 0) } else { graph.zero(shape) };
                 (block.direction, unit)
             };
             self.directional.substitute(&blocks.iter().map(direction).collect::<Vec<_>>())
@@ -145,45 +163,9 @@ impl<'g> MomentumEquation<'g> {
     }
 }
 
-/// The part of the momentum symbol that belongs to a block.
-pub(super) fn own_part<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, i: usize) -> Expr<'g> {
-    let block = symbols.blocks[i];
-    let start = block.offset - model.offset(block.factor);
-    symbols.momenta[block.factor].block(start, 0, Shape::vector(block.dimension()))
-}
-
-/// An expression with the momentum of a block set to zero.
-pub(super) fn without_part<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    expression: Expr<'g>,
-    i: usize,
-) -> Expr<'g> {
-    let block = symbols.blocks[i];
-    let (start, mu) = (block.offset - model.offset(block.factor), symbols.momenta[block.factor]);
-    let keep =
-        |a: usize| if a < start || a >= start + block.dimension() { mu.entry(a, 0) } else { mu.graph().integer(0) };
-    let rest = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(keep).collect());
-    expression.substitute(&[(mu, rest)])
-}
-
-/// dx/dξ at the identity in a block.
-pub(crate) fn chart_slope(model: &Mechanics<'_>, symbols: &Symbols<'_>, i: usize) -> (i64, i64) {
-    let block = symbols.blocks[i];
-    let group = model.factors[block.factor].group;
-    symbols.charts[block.factor].slope_at_identity(&model.graph.blocks(group)[block.block])
-}
-
 /// Whether a matrix is zero off its diagonal for all values of its symbols.
-pub(crate) fn is_diagonal(matrix: Expr<'_>) -> bool {
+pub(super) fn is_diagonal(matrix: Expr<'_>) -> bool {
     matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
-}
-
-/// Whether an expression depends on the configuration, on the time or on the input.
-pub(super) fn is_moving<'g>(model: &Mechanics<'g>, expression: Expr<'g>) -> bool {
-    expression.depends_on(model.time)
-        || model.inputs.iter().any(|leaf| expression.depends_on(leaf.symbol))
-        || model.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))
 }
 
 /// Whether D(x) = F − I is put in late and its products are not distributed, which would make them many times longer: in a chart with

@@ -5,14 +5,10 @@ use clebsch_symbolic::{Chart, Expr, Shape, identity};
 use super::action::identities;
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
-use super::equation::{
-    MomentumEquation, Solution, Sources, chart_slope, is_diagonal, is_kept, is_moving, own_part, without_part,
-};
+use super::equation::{MomentumEquation, Solution, Sources, is_diagonal, is_kept};
 use super::trivialisation::Covector;
-use super::{Substep, Symbols, exact, structure};
-use crate::diagnostic::Diagnostics;
-use crate::model::features::{self, Feature, Found};
-use crate::model::{ChartChoice, Discretization, Mechanics};
+use super::{ChartBlock, exact, structure};
+use crate::model::System;
 
 /// The momentum equations of a substep.
 ///
@@ -22,32 +18,30 @@ pub(super) fn equations<'g>(
     before: &[Covector<'g>],
     coupling: Option<&[Expr<'g>]>,
 ) -> Vec<MomentumEquation<'g>> {
-    let (model, symbols) = (sources.model, sources.symbols);
+    let (model, symbols) = (sources.model, &sources.symbols);
+    let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
     for k in 0..model.factors.len() {
-        let (residual, cleared) = match exact::is_free_rotation(model, k) {
-            true => (model.graph.zero(symbols.momenta[k].shape()), true),
-            false => residual(sources, before, coupling, k),
+        let (residual, cleared) = if exact::is_free_rotation(model, k) {
+            (model.graph.zero(symbols.momenta[k].shape()), true)
+        } else {
+            residual(sources, before, coupling, k)
         };
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
-            Residual { rows: residual.block(start, 0, Shape::vector(block.dimension())), cleared }
+            Residual { rows: residual.block(start, 0, block.coordinates.shape()), cleared }
         }));
     }
     if !sources.forced {
         substitute_explicit(sources, &mut residuals);
     }
-    for (residual, block) in residuals.iter_mut().zip(&symbols.blocks) {
-        if exact::is_free_rotation(model, block.factor) {
-            continue;
-        }
-        if let Some(rows) = clearing::of_rotation(model, symbols, block, residual.rows) {
+    for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| !is_free_rotation(block)) {
+        if let Some(rows) = clearing::of_rotation(sources, block, residual.rows) {
             *residual = Residual { rows, cleared: true };
         }
     }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
-    let groups = groups(residuals.len(), depends);
-    groups
+    groups(residuals.len(), depends)
         .into_iter()
         .map(|group| equation(sources, before, &residuals, group))
         .flat_map(|equation| structure::specialised(sources, equation))
@@ -64,42 +58,42 @@ struct Residual<'g> {
 /// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ, and its solution put into the others, where it often leaves
 /// nothing: b × hM_v = 0 for a body about its centre of mass.
 fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<'g>]) {
-    let (model, symbols) = (sources.model, sources.symbols);
     for i in 0..residuals.len() {
-        let block = symbols.blocks[i];
-        let others = |j: &usize| *j != i;
-        if exact::is_free_rotation(model, block.factor) {
-            continue;
-        }
-        let alone =
-            !(0..residuals.len()).filter(others).any(|j| residuals[i].rows.depends_on(symbols.blocks[j].coordinates));
-        if !alone || is_kept(symbols.charts[block.factor], is_moving(model, residuals[i].rows)) {
-            continue;
-        }
-        let slope = residuals[i].rows.differential(&[(block.coordinates, block.direction)]).expand();
-        let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(block.dimension()));
-        let linear = !slope.depends_on(block.coordinates) && !slope.depends_on(symbols.momenta[block.factor]);
-        if !linear || is_moving(model, slope) || !is_diagonal(inertia) {
-            continue;
-        }
-        let momentum = own_part(model, symbols, i);
-        let (numerator, denominator) = chart_slope(model, symbols, i);
-        let step = numerator * model.step_size / (denominator * sources.divisor);
-        let graph = model.graph;
-        let solution: Vec<Expr<'g>> =
-            (0..block.dimension()).map(|a| step * momentum.entry(a, 0) / inertia.entry(a, a).expand()).collect();
-        let solution = graph.stack(Shape::vector(block.dimension()), solution);
-        for j in (0..residuals.len()).filter(others) {
-            if !residuals[j].rows.depends_on(block.coordinates) {
+        let Some(solution) = explicit(sources, residuals, i) else { continue };
+        let coordinates = sources.symbols.blocks[i].coordinates;
+        for (_, residual) in residuals.iter_mut().enumerate().filter(|(j, _)| *j != i) {
+            if !residual.rows.depends_on(coordinates) {
                 continue;
             }
-            let inserted = residuals[j].rows.substitute(&[(block.coordinates, solution)]);
-            let without = without_part(model, symbols, inserted, i);
+            let inserted = residual.rows.substitute(&[(coordinates, solution)]);
+            let without = sources.without_momentum_of_block(inserted, i);
             if identity::equal(&[inserted], &[without]) {
-                residuals[j].rows = without.expand();
+                residual.rows = without.expand();
             }
         }
     }
+}
+
+/// The solution of a block whose equation is linear and holds no other coordinate.
+fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize) -> Option<Expr<'g>> {
+    let (graph, symbols, block, rows) =
+        (sources.model.graph, &sources.symbols, sources.symbols.blocks[i], residuals[i].rows);
+    let holds_others = || (0..residuals.len()).any(|j| j != i && rows.depends_on(symbols.blocks[j].coordinates));
+    if exact::is_free_rotation(sources.model, block.factor)
+        || holds_others()
+        || is_kept(symbols.charts[block.factor], sources.is_moving(rows))
+    {
+        return None;
+    }
+    let slope = rows.differential(&[(block.coordinates, block.direction)]).expand();
+    let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(block.dimension()));
+    let linear = !slope.depends_on(block.coordinates) && !slope.depends_on(symbols.momenta[block.factor]);
+    if !linear || sources.is_moving(slope) || !is_diagonal(inertia) {
+        return None;
+    }
+    let (momentum, step) = (sources.momentum_of_block(i), sources.chart_step(i, sources.divisor));
+    let entry = |a: usize| step * momentum.entry(a, 0) / inertia.entry(a, a).expand();
+    Some(graph.stack(block.coordinates.shape(), (0..block.dimension()).map(entry).collect()))
 }
 
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
@@ -111,18 +105,14 @@ fn residual<'g>(
     coupling: Option<&[Expr<'g>]>,
     k: usize,
 ) -> (Expr<'g>, bool) {
-    let (model, symbols) = (sources.model, sources.symbols);
-    let factor = &model.factors[k];
-    let group = factor.group;
+    let (model, symbols) = (sources.model, &sources.symbols);
+    let group = model.factors[k].group;
     // F = I + D in a chart with roots: what cancels in F − I does so before D(x) is put in
-    let late: Vec<(Expr<'g>, Expr<'g>)> = (0..model.factors.len())
-        .filter(|&j| is_kept(symbols.charts[j], coupling.is_some()))
-        .map(|j| (symbols.increments[j], symbols.chart_increment(model, j)))
-        .collect();
-    let element = |j: usize| match late.iter().any(|(increment, _)| *increment == symbols.increments[j]) {
-        true => model.factors[j].group.identity(model.graph) + symbols.increments[j],
-        false => symbols.chart_element(model, j),
-    };
+    let is_late = |j: &usize| is_kept(symbols.charts[*j], coupling.is_some());
+    let late = (0..model.factors.len()).filter(is_late).map(|j| (symbols.increments[j], sources.chart_increment(j)));
+    let late: Vec<(Expr<'g>, Expr<'g>)> = late.collect();
+    let by_increment = |j: usize| model.factors[j].group.identity(model.graph) + symbols.increments[j];
+    let element = |j: usize| if is_late(&j) { by_increment(j) } else { sources.chart_element(j) };
     let mut elements: Vec<_> = (0..model.factors.len()).map(|j| (model.factors[j].symbol, element(j))).collect();
     elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
     let array = before[k].array.substitute(&elements).expand();
@@ -145,15 +135,13 @@ fn residual<'g>(
         // freed of dexp⁻¹ by dexp, which is regular near the identity
         let (gradient, slope) = (gradient.substitute(&elements), slope.substitute(&elements));
         let freed = slope.transpose() * plain;
-        return match late.is_empty() {
-            true => (gradient.expand() + freed.expand(), true),
-            false => ((gradient + freed).substitute(&late), true),
-        };
+        let expanded = || gradient.expand() + freed.expand();
+        return (if late.is_empty() { expanded() } else { (gradient + freed).substitute(&late) }, true);
     }
     if coupling.is_some() || !late.is_empty() {
         return (plain.substitute(&late), false);
     }
-    match clearing::by_congruence(model, symbols, k, (array, mu, plain)) {
+    match clearing::by_congruence(sources, k, (array, mu, plain)) {
         Some(cleared) => (cleared, true),
         None => (clearing::of_quaternions(&symbols.coordinates(k), group, plain), false),
     }
@@ -161,7 +149,7 @@ fn residual<'g>(
 
 /// r(q, I), the momentum of the motion that rests.
 pub(super) fn at_identity<'g>(
-    model: &Mechanics<'g>,
+    model: &System<'g>,
     before: &[Covector<'g>],
     coupling: Option<&[Expr<'g>]>,
     k: usize,
@@ -193,55 +181,33 @@ fn equation<'g>(
     residuals: &[Residual<'g>],
     blocks: Vec<usize>,
 ) -> MomentumEquation<'g> {
-    let (model, symbols) = (sources.model, sources.symbols);
-    if let [only] = blocks.as_slice()
-        && exact::is_free_rotation(model, symbols.blocks[*only].factor)
+    let symbols = &sources.symbols;
+    if let [only] = blocks[..]
+        && exact::is_free_rotation(sources.model, symbols.blocks[only].factor)
     {
-        return exact::equation(sources, *only);
+        return exact::equation(sources, only);
     }
     let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).collect();
-    let shape = Shape::vector(components.len());
-    let mut residual = model.graph.zero(shape);
-    let mut row = 0;
-    for &i in &blocks {
-        residual = residual + residuals[i].rows.embed(shape, row, 0);
-        row += symbols.blocks[i].dimension();
-    }
+    let rows: Vec<_> = blocks.iter().map(|&i| residuals[i].rows).collect();
+    let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
     let mut equation = MomentumEquation::new(sources, components, residual, cleared);
     let moves = equation.moves;
-    let closed_form = match blocks.as_slice() {
-        [only] if !moves && !sources.forced => closed_form(sources, before, residual, *only),
+    let closed_form = match blocks[..] {
+        [only] if !moves && !sources.forced => closed_form(sources, before, residual, only),
         _ => None,
     };
     equation.solution = match &closed_form {
         Some(_) => Solution::ClosedForm,
         // where Σ changes with the configuration there is no predictor
-        _ if is_moving(model, sources.inertia) => Solution::Newton,
+        _ if sources.is_moving(sources.inertia) => Solution::Newton,
         None if !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
         None => Solution::Newton,
     };
-    equation.formula = closed_form.as_ref().map(|closed_form| closed_form.coordinates);
-    equation.sine = closed_form.as_ref().and_then(|closed_form| closed_form.sine);
-    equation.sine_squared = closed_form.map(|closed_form| closed_form.sine_squared);
+    if let Some(closed_form) = closed_form {
+        equation.formula = Some(closed_form.coordinates);
+        equation.sine = closed_form.sine;
+        equation.sine_squared = Some(closed_form.sine_squared);
+    }
     equation
-}
-
-/// Velocities by Cayley's map have poles in the exponential chart, which Cayley's own has not.
-pub(super) fn check_poles(
-    model: &Mechanics<'_>,
-    symbols: &Symbols<'_>,
-    substeps: &[Substep<'_>],
-) -> Result<(), Diagnostics> {
-    let by_cayley = model.kinetic.discretization() == Some(Discretization::Cayley);
-    let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
-    let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
-    let has_poles = |equation: &MomentumEquation<'_>| {
-        equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates)
-    };
-    let Some(chosen) = chosen else { return Ok(()) };
-    features::check((Feature::ExponentialChart, Found::at(chosen.span)), |feature| {
-        let mut equations = substeps.iter().flat_map(|substep| &substep.equations);
-        Found::when(feature == Feature::Poles && equations.any(has_poles))
-    })
 }

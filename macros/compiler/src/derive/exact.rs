@@ -1,23 +1,12 @@
-//! Drifts that are exact: the free motion of rigid bodies and of translations, and geodesics of bi-invariant metrics. They need no equation to be
-//! solved by iteration, and allow splittings with force gradients.
+//! The free motion of rigid bodies and of translations, which needs no equation to be solved by iteration.
 
-use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identity};
+use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape};
 
-use super::equation::{MomentumEquation, Solution, Sources, Structure, is_diagonal};
-use super::{DiscreteLagrangian, Substep, Symbols, action, velocity};
+use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
+use super::velocity;
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Mechanics, Order, Side};
-
-/// A step of drifts and kicks, with a force gradient where the potential is a formula.
-pub struct Splitting<'g> {
-    /// U = −h b V + h³ g G·Σ⁻¹G with G = J(q, ∂V): what a kick of the weights b and g adds to the discrete Lagrangian.
-    pub potential: Expr<'g>,
-    /// J(q, ∂U) for each factor.
-    pub kick: Vec<Expr<'g>>,
-    /// Whether there is a force gradient.
-    pub has_gradient: bool,
-}
+use crate::model::{Discretization, Mechanics};
 
 /// Whether a step without a potential is to be the exact free motion.
 pub(super) fn is_exact(model: &Mechanics<'_>) -> bool {
@@ -74,13 +63,9 @@ fn check<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -
 
 /// Whether an energy is a constant quadratic form of each velocity alone.
 fn is_constant_form<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
-    let moves = energy.depends_on(model.time) || model.configurations.iter().any(|leaf| energy.depends_on(leaf.symbol));
-    let quadratic = |velocity: &Expr<'g>| {
-        let gradient = energy.gradient(*velocity);
-        let inertia = gradient.matrix_of_linear(*velocity);
-        !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity])
-    };
-    !moves && velocities.iter().all(quadratic)
+    !model.reads_configuration(energy)
+        && !energy.depends_on(model.time)
+        && velocities.iter().all(|velocity| velocity::inertia(energy, velocities, *velocity).is_some())
 }
 
 /// Whether a distribution of mass has the energy, on the factors where this matters.
@@ -102,116 +87,39 @@ pub(super) fn turns_whole(model: &Mechanics<'_>) -> bool {
 pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquation<'g> {
     let (graph, block) = (sources.model.graph, sources.symbols.blocks[i]);
     let n = block.dimension();
-    let m = graph.symbol("m", Shape::vector(n), Role::Letter, Property::General);
-    let (residual, directional) = match turns_whole(sources.model) {
-        true => {
-            let group = sources.model.factors[block.factor].group;
-            let mass = graph.symbol("J̃", Shape::square(4), Role::Letter, Property::Symmetric);
-            let turned = graph.symbol("F̃", Shape::square(4), Role::Letter, Property::Orthogonal);
-            let skew = turned * mass - mass * turned.transpose();
-            (group.projected_coordinates(skew) - m, graph.zero(Shape::vector(n)))
-        }
-        false => {
-            let d = graph.symbol("d", Shape::square(3), Role::Letter, Property::Symmetric);
-            let hat = Group::SpecialOrthogonal(3).wedge(m);
-            (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
-        }
+    let letter = |name: &str, shape: Shape, property: Property| graph.symbol(name, shape, Role::Letter, property);
+    let m = letter("m", Shape::vector(n), Property::General);
+    let (residual, directional) = if turns_whole(sources.model) {
+        let mass = letter("J̃", Shape::square(4), Property::Symmetric);
+        let turned = letter("F̃", Shape::square(4), Property::Orthogonal);
+        let skew = turned * mass - mass * turned.transpose();
+        let group = sources.model.factors[block.factor].group;
+        (group.projected_coordinates(skew) - m, graph.zero(Shape::vector(n)))
+    } else {
+        let d = letter("d", Shape::square(3), Property::Symmetric);
+        let hat = Group::SpecialOrthogonal(3).wedge(m);
+        (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
     };
+    let (components, factors) = (block.components().collect(), vec![block.factor]);
     MomentumEquation {
-        components: block.components().collect(),
-        factors: vec![block.factor],
-        residual,
-        directional,
-        cleared: true,
         solution: Solution::FreeRotation,
-        formula: None,
-        sine_squared: None,
-        sine: None,
-        structure: Structure::Dense,
-        coupled: Vec::new(),
-        is_inertial: true,
-        moves: false,
-    }
-}
-
-/// F⁻ℓd and F⁺ℓd of a factor that moves freely, with the symbol μ for the momentum of the free motion that makes F.
-pub(super) fn legendre<'g>(model: &Mechanics<'g>, symbols: &Symbols<'g>, k: usize) -> (Expr<'g>, Expr<'g>) {
-    let (factor, mu) = (&model.factors[k], symbols.momenta[k]);
-    let carried = match factor.side {
-        Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
-        Side::Right => factor.group.coadjoint(factor.symbol, mu),
-    };
-    (mu, carried)
-}
-
-/// Whether a step without its kicks is the exact flow of the kinetic energy.
-pub(super) fn drifts_exactly(model: &Mechanics<'_>, symbols: &Symbols<'_>, substeps: &[Substep<'_>]) -> bool {
-    let [substep] = substeps else { return false };
-    let is_known = |equation: &MomentumEquation<'_>| match equation.solution {
-        Solution::FreeRotation => true,
-        Solution::Explicit => {
-            let chart = symbols.charts[equation.factors[0]];
-            equation.formula.is_none() && matches!(chart, Chart::Exponential | Chart::Identity)
-        }
-        _ => false,
-    };
-    let rests = substep.rest.is_none() && substep.other.is_none() && substep.force.is_none();
-    rests && model.force.is_none() && !substep.lagrangian.couples && substep.equations.iter().all(is_known)
-}
-
-/// The splitting that makes a step of order 4 or 6, where the drift is exact and there is a potential.
-pub(super) fn splitting<'g>(
-    sources: &Sources<'_, 'g>,
-    lagrangian: &DiscreteLagrangian<'g>,
-    substeps: &[Substep<'g>],
-) -> Option<Splitting<'g>> {
-    let (model, symbols, h) = (sources.model, sources.symbols, sources.model.step_size);
-    let energy = model.potential.filter(|_| matches!(model.order, Order::Fourth | Order::Sixth))?;
-    let half = -(h * energy / 2);
-    let plain = lagrangian.start == half && lagrangian.end == half && !model.has_variations();
-    if !plain || !drifts_exactly(model, symbols, substeps) {
-        return None;
-    }
-    let impulse = |potential: Expr<'g>| action::impulse(model, symbols, sources.momentum_map, potential);
-    let force = impulse(energy)?;
-    let weight = |name: &str, role: Role| model.graph.symbol(name, Shape::scalar(), role, Property::General);
-    let kick = -(h * weight("b", Role::Kick) * energy);
-    let has_gradient = model.opaque.is_none();
-    let potential = match has_gradient {
-        true => kick + h * h * h * weight("g", Role::KickGradient) * gradient_energy(sources, &force),
-        false => kick,
-    };
-    Some(Splitting { potential, kick: impulse(potential)?, has_gradient })
-}
-
-/// {V, {V, T}} = G·Σ⁻¹G.
-fn gradient_energy<'g>(sources: &Sources<'_, 'g>, force: &[Expr<'g>]) -> Expr<'g> {
-    let (graph, inertia) = (sources.model.graph, sources.inertia);
-    let entries: Vec<Expr<'g>> =
-        force.iter().flat_map(|part| (0..part.shape().rows).map(|i| part.entry(i, 0))).collect();
-    match is_diagonal(inertia) {
-        true => entries
-            .iter()
-            .enumerate()
-            .fold(graph.integer(0), |sum, (i, entry)| sum + *entry * *entry / inertia.entry(i, i).expand()),
-        false => {
-            let force = graph.stack(Shape::vector(entries.len()), entries);
-            force.dot(inertia_inverse(graph, inertia.shape()) * force)
-        }
+        ..MomentumEquation::of(components, factors, residual, directional, true)
     }
 }
 
 /// Σ⁻¹μ, by divisions where Σ is diagonal, else by `inverse`, its inverse.
-pub(crate) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'g>, mu: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub(super) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'g>, mu: &[Expr<'g>]) -> Vec<Expr<'g>> {
     if is_diagonal(inertia) {
         return mu.iter().enumerate().map(|(i, mu)| *mu / inertia.entry(i, i).expand()).collect();
     }
-    let (zero, inverse) = (inertia.graph().integer(0), inverse());
-    let row = |i: usize| mu.iter().enumerate().fold(zero, |sum, (j, mu)| sum + inverse.entry(i, j) * *mu);
+    let inverse = inverse();
+    let row = |i: usize| {
+        inertia.graph().total(Shape::scalar(), mu.iter().enumerate().map(|(j, mu)| inverse.entry(i, j) * *mu))
+    };
     (0..mu.len()).map(row).collect()
 }
 
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.
-pub(crate) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
+pub(super) fn inertia_inverse<'g>(graph: &'g Graph, shape: Shape) -> Expr<'g> {
     graph.symbol("inertia_inverse", shape, Role::InertiaInverse, Property::Symmetric)
 }

@@ -5,7 +5,8 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::velocity;
+use super::symbols::at_zero;
+use super::{SystemFormulas, velocity};
 use crate::model::{Discretization, Mechanics, Order};
 
 /// The forces on an edge, in the components of each factor.
@@ -22,22 +23,23 @@ pub struct EdgeForce<'g> {
 impl<'g> EdgeForce<'g> {
     /// The whole impulse at the start.
     pub fn whole_start(&self) -> Option<Vec<Expr<'g>>> {
-        super::total(self.start.clone(), self.start_moving.clone())
+        total(self.start.clone(), self.start_moving.clone())
     }
 }
 
 /// f in 𝔤*, that on configurations by J(q, f); `None` if nothing acts.
-pub(super) fn covector<'g>(
-    model: &Mechanics<'g>,
-    covectors: &[Expr<'g>],
-    momentum_map: &[Expr<'g>],
-) -> Option<Vec<Expr<'g>>> {
+pub(super) fn covector<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Option<Vec<Expr<'g>>> {
     let force = model.force.as_ref()?;
-    let on_leaves = force.on_configuration.as_ref().map(|leaves| -> Vec<Expr<'g>> {
-        let covectors: Vec<_> = covectors.iter().copied().zip(leaves.iter().copied()).collect();
-        momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
-    });
-    super::total(force.of_group.clone(), on_leaves)
+    let on_leaves = force.on_configuration.as_ref().map(|leaves| system.momenta_of(leaves.iter().copied()));
+    total(force.of_group.clone(), on_leaves)
+}
+
+/// The sum of two impulses.
+pub(super) fn total<'g>(one: Option<Vec<Expr<'g>>>, other: Option<Vec<Expr<'g>>>) -> Option<Vec<Expr<'g>>> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.into_iter().zip(other).map(|(a, b)| a + b).collect()),
+        (one, other) => one.or(other),
+    }
 }
 
 /// The impulses of a force f on an edge that is one of `parts` in a step.
@@ -47,10 +49,8 @@ pub(super) fn on_edge<'g>(model: &Mechanics<'g>, covector: &[Expr<'g>], divisor:
         Order::First => (model.graph.integer(0), part),
         _ => (part / 2, part / 2),
     };
-    let at_rest = |f: &Expr<'g>| {
-        let rest: Vec<_> = velocities(model).iter().map(|xi| (*xi, xi.graph().zero(xi.shape()))).collect();
-        f.substitute(&rest)
-    };
+    let rest = at_zero(velocities(model).iter().copied());
+    let at_rest = |f: &Expr<'g>| f.substitute(&rest);
     let moving = moving(model, part);
     let of = |weight: Expr<'g>, f: &dyn Fn(&Expr<'g>) -> Expr<'g>| -> Vec<Expr<'g>> {
         covector.iter().map(|component| weight * f(component)).collect()

@@ -9,11 +9,10 @@ use clebsch_symbolic::{Chart, Expr, Group};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, DiscreteLagrangian, EdgeDerivatives, EdgeForce, Endpoint, Energy, FormulaTable, InputStep,
-    MomentumEquation, Quantity, SiteTerm, Splitting, Steering, Symbols, Symmetries, equation, exact, signature,
-    variation,
+    Collocation, DiscreteLagrangian, Endpoint, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm,
+    Splitting, Steering, Substep, Symbols, Symmetries, action, exact, signature,
 };
-use crate::model::{Isotropy, LeafSpace, Mechanics, Steered, System};
+use crate::model::{Discretization, Isotropy, LeafSpace, Mechanics, Steered, System};
 
 /// What is derived, as matrix expressions.
 pub enum Formulas<'g> {
@@ -106,34 +105,17 @@ pub struct MechanicsFormulas<'g> {
     pub covector: Option<Vec<Expr<'g>>>,
 }
 
-/// One discrete Lagrangian with what a step of it needs.
-pub struct Substep<'g> {
-    /// Its part of the step: h is to be read as h divided by this.
-    pub divisor: i64,
-    /// The discrete Lagrangian, in terms of the whole step h.
-    pub lagrangian: DiscreteLagrangian<'g>,
-    /// How much later than the whole step it starts.
-    pub begins: Expr<'g>,
-    /// How much later than the start of the whole step it ends.
-    pub ends: Expr<'g>,
-    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`, which is apart where sums are compensated; `None` if there is
-    /// none.
-    pub start: Option<Vec<Expr<'g>>>,
-    /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
-    pub rest: Option<Vec<Expr<'g>>>,
-    /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
-    pub end: Option<Vec<Expr<'g>>>,
-    /// The momentum equations, each for the factors that depend on each other.
-    pub equations: Vec<MomentumEquation<'g>>,
-    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
-    pub unchanged: Vec<bool>,
-    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
-    /// changes with the time.
-    pub other: Option<Vec<Expr<'g>>>,
-    /// What acts beside the potential; `None` if nothing does.
-    pub force: Option<EdgeForce<'g>>,
-    /// Second derivatives of the discrete Lagrangian, where they are asked for.
-    pub variation: Option<EdgeDerivatives<'g>>,
+impl<'g> SystemFormulas<'g> {
+    pub(super) fn new(model: Rc<System<'g>>, discretization: Option<Discretization>) -> SystemFormulas<'g> {
+        let symbols = Symbols::new(&model, discretization);
+        let generator = action::generator(&model, &symbols);
+        let momentum_map = action::momentum_map(&symbols, &generator);
+        let (steering, endpoint, table) = (None, None, OnceCell::new());
+        let mut formulas = SystemFormulas { model, symbols, generator, momentum_map, steering, endpoint, table };
+        formulas.steering = formulas.chosen_by();
+        formulas.endpoint = formulas.price_of_end();
+        formulas
+    }
 }
 
 impl<'g> Deref for MechanicsFormulas<'g> {
@@ -170,14 +152,12 @@ impl<'g> Formulas<'g> {
 impl MechanicsFormulas<'_> {
     /// How many directions the kinetic energy is positive and negative in, for positive parameters.
     pub fn signature(&self) -> Option<(usize, usize)> {
-        match is_multiple_of_identity(self.inertia) {
-            true => {
-                let (positive, negative) = signature::signature(self.inertia.entry(0, 0))?;
-                let dimension = self.inertia.shape().rows;
-                Some((positive * dimension, negative * dimension))
-            }
-            false => signature::signature(self.inertia),
+        if !is_multiple_of_identity(self.inertia) {
+            return signature::signature(self.inertia);
         }
+        let (positive, negative) = signature::signature(self.inertia.entry(0, 0))?;
+        let dimension = self.inertia.shape().rows;
+        Some((positive * dimension, negative * dimension))
     }
 
     /// Of how many steps of second order a step is composed, where it is.
@@ -207,11 +187,6 @@ impl MechanicsFormulas<'_> {
         is_timed(&self.model, &self.lagrangian)
     }
 
-    /// The chart in which small motions of a factor are written.
-    pub fn retraction(&self, k: usize) -> Chart {
-        variation::retraction(&self.model, &self.symbols, k)
-    }
-
     /// Whether a step turns a point on a sphere along a great circle, its momentum M = wqᵀ − qwᵀ as it is: then it can be made in (q, w).
     pub fn follows_great_circles(&self) -> bool {
         let ([factor], [leaf], [substep]) =
@@ -219,10 +194,9 @@ impl MechanicsFormulas<'_> {
         else {
             return false;
         };
-        let rotates = matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3) && leaf.space == LeafSpace::Unit;
-        let turns = || factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol;
-        rotates
-            && self.generator[0] == turns()
+        matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3)
+            && leaf.space == LeafSpace::Unit
+            && self.generator[0] == factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol
             && self.symbols.charts[0] == Chart::Sine
             && self.uniform_inertia.is_some()
             && self.model.isotropy == Isotropy::Fixed
@@ -236,7 +210,7 @@ impl MechanicsFormulas<'_> {
 
     /// Whether the kinetic energy changes with the configuration or the time.
     pub fn inertia_moves(&self) -> bool {
-        equation::is_moving(&self.model, self.inertia)
+        self.is_moving(self.inertia)
     }
 
     /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.

@@ -2,27 +2,33 @@
 
 use clebsch_symbolic::{Expr, Group};
 
-use super::SystemFormulas;
+use super::{SystemFormulas, cayley};
 use crate::model::Factor;
 
-/// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
-pub(crate) fn increments<'g>(formulas: &SystemFormulas<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let symbols = &formulas.symbols;
-    let factors = formulas.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
-    let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
-        let element = from_increment(factor.group, *increment);
-        let mut replacements = inverse_by(factor.group, factor.symbol, element);
-        replacements.push((*y, factor.group.logarithm(element)));
-        replacements.push((factor.symbol, element));
-        replacements
-    };
-    let coordinates = symbols.increments.iter().enumerate();
-    let coordinates = coordinates.filter_map(|(k, d)| super::cayley_coordinates(&formulas.model, k, *d));
-    factors.flat_map(element).chain(coordinates).collect()
+impl<'g> SystemFormulas<'g> {
+    /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
+    pub(super) fn increments(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let symbols = &self.symbols;
+        let factors = self.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
+        let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
+            let element = from_increment(factor.group, *increment);
+            let logarithm = (*y, factor.group.logarithm(element));
+            inverse_by(factor.group, factor.symbol, element).into_iter().chain([logarithm, (factor.symbol, element)])
+        };
+        let coordinates = symbols.increments.iter().enumerate();
+        let coordinates = coordinates.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d));
+        factors.flat_map(element).chain(coordinates).collect()
+    }
+
+    /// Expressions with I + D put in for F, products distributed.
+    pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let elements = self.increments();
+        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
+    }
 }
 
 /// The replacement of the letters F⁻¹ and F⁻ᵀ by the explicit inverse of an element.
-pub(crate) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     if group.is_translation() || group.is_orthogonal() || group == Group::UnitQuaternions {
         return Vec::new();
     }
@@ -30,13 +36,13 @@ pub(crate) fn inverse_by<'g>(group: Group, symbol: Expr<'g>, element: Expr<'g>) 
     vec![(symbol.inverse(), inverse), (symbol.transpose().inverse(), inverse.transpose())]
 }
 
-pub(crate) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
+pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> {
     if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
 }
 
 /// An expression with I + D put in for F. Products are distributed, so that what cancels does so; but not around an inverse, where that
 /// only makes them many times longer: there F occurs as F − I and F + I.
-pub(crate) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
     let inserted = expression.substitute(elements);
     if inserted.has_inverse() { inserted } else { inserted.expand() }
 }

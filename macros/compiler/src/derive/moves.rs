@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, identity};
 
-use super::{MechanicsFormulas, Substep, SystemFormulas, increments};
+use super::{MechanicsFormulas, Substep};
 use crate::model::Factor;
 
 impl<'g> MechanicsFormulas<'g> {
@@ -22,15 +22,10 @@ impl<'g> MechanicsFormulas<'g> {
         acts.then_some(gradients)
     }
 
-    /// The gradients with respect to the leaves of the configuration.
-    pub(super) fn gradients(&self, part: Expr<'g>) -> Vec<Expr<'g>> {
-        self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect()
-    }
-
     /// ∂_q K of a cost that couples, at F = I + D.
     pub(super) fn coupled_kick(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         let acts = substep.lagrangian.couples && self.model.force.is_none();
-        let moved = increments(self);
+        let moved = self.increments();
         let kick = || self.gradients(substep.lagrangian.kinetic).iter().map(|part| part.substitute(&moved)).collect();
         acts.then(kick)
     }
@@ -45,7 +40,7 @@ impl<'g> MechanicsFormulas<'g> {
     fn chart_elements(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let symbols = &self.symbols;
         let element = |(k, factor): (usize, &Factor<'g>)| {
-            let element = symbols.chart_element(&self.model, k);
+            let element = self.chart_element(k);
             let logarithm = match symbols.charts[k] {
                 Chart::Exponential => symbols.stacked_coordinates(k),
                 _ => factor.group.logarithm(element),
@@ -60,7 +55,7 @@ impl<'g> MechanicsFormulas<'g> {
         let weighted = self.weighted();
         let increment = |k: usize| match weighted.iter().position(|&other| other == k) {
             Some(number) => self.weighted_increment(k, number),
-            None => self.symbols.chart_increment(&self.model, k),
+            None => self.chart_increment(k),
         };
         (0..self.model.factors.len()).map(increment).collect()
     }
@@ -88,13 +83,5 @@ impl<'g> MechanicsFormulas<'g> {
             return self.momentum_increments(substep);
         }
         self.carried_on(substep).map(|carried| self.at_increments(&carried))
-    }
-}
-
-impl<'g> SystemFormulas<'g> {
-    /// Expressions with I + D put in for F, products distributed.
-    pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let elements = increments(self);
-        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
     }
 }

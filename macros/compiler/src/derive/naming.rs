@@ -2,10 +2,10 @@
 
 use clebsch_symbolic::{Group, Rational, Zero, integer};
 
-use crate::model::Mechanics;
+use crate::model::System;
 
 /// The j-th basis element of all factors together, in words.
-pub(super) fn basis_direction(model: &Mechanics<'_>, mut j: usize) -> String {
+pub(super) fn basis_direction(model: &System<'_>, mut j: usize) -> String {
     for factor in &model.factors {
         let dimension = factor.group.dimension();
         if j < dimension {
@@ -17,7 +17,7 @@ pub(super) fn basis_direction(model: &Mechanics<'_>, mut j: usize) -> String {
     "a direction of the group".to_string()
 }
 
-fn direction_in_words(model: &Mechanics<'_>, group: Group, j: usize) -> String {
+fn direction_in_words(model: &System<'_>, group: Group, j: usize) -> String {
     let turn = |n: usize, j: usize| match n {
         3 => format!("rotation about `e{}`", j + 1),
         _ => {
@@ -43,13 +43,13 @@ fn direction_in_words(model: &Mechanics<'_>, group: Group, j: usize) -> String {
 }
 
 /// A basis element, `in the plane of e1 and e2`.
-pub(super) fn basis_element(model: &Mechanics<'_>, group: Group, index: usize) -> String {
+pub(super) fn basis_element(model: &System<'_>, group: Group, index: usize) -> String {
     let words = direction_in_words(model, group, index).replace('`', "");
     words.trim_start_matches("rotation ").trim_start_matches("translation ").to_string()
 }
 
 /// A combination of basis elements, `about e3`, `in the plane of e1 and e2`, `along E12 + E21`.
-pub(super) fn combination(model: &Mechanics<'_>, group: Group, weights: &[Rational]) -> String {
+pub(super) fn combination(model: &System<'_>, group: Group, weights: &[Rational]) -> String {
     let single = |index: &usize| weights.iter().enumerate().all(|(i, weight)| weight.is_zero() != (i == *index));
     let in_words = |index: usize| basis_element(model, group, index);
     let named = matches!(
@@ -83,7 +83,7 @@ pub(super) fn combination(model: &Mechanics<'_>, group: Group, weights: &[Ration
 }
 
 /// The entries that are not zero of Σ w_i E_i.
-fn entries(model: &Mechanics<'_>, group: Group, weights: &[Rational]) -> Vec<(usize, usize, Rational)> {
+fn entries(model: &System<'_>, group: Group, weights: &[Rational]) -> Vec<(usize, usize, Rational)> {
     let mut entries: Vec<(usize, usize, Rational)> = Vec::new();
     for block in model.graph.blocks(group).iter() {
         for (index, element) in model.graph.basis(block.algebra).elements.iter().enumerate() {

@@ -2,8 +2,8 @@
 
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
-use super::equation::chart_slope;
 use super::exact::{by_inertia, inertia_inverse};
+use super::symbols::{at_zero, entries, rows};
 use super::{MatrixForm, MechanicsFormulas, MomentumEquation, Solution, Substep};
 
 impl<'g> MechanicsFormulas<'g> {
@@ -24,12 +24,12 @@ impl<'g> MechanicsFormulas<'g> {
             graph.stack(shape, shape.positions().map(entry).collect())
         };
         let inertia = block(self.inertia);
-        let momentum: Vec<Expr<'g>> = components.iter().map(|&component| self.momentum_entry(component)).collect();
+        let momenta = entries(&self.symbols.momenta);
+        let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momenta[component]).collect();
         let inverse = || block(inertia_inverse(graph, self.inertia.shape()));
         let velocity = by_inertia(inertia, inverse, &momentum);
-        let coordinate = |(velocity, component): (Expr<'g>, usize)| {
-            self.slope_of_chart(component, substep.divisor) * self.model.step_size * velocity
-        };
+        let coordinate =
+            |(velocity, component): (Expr<'g>, usize)| self.step_of_component(component, substep.divisor) * velocity;
         velocity.into_iter().take(count).zip(components).map(coordinate).collect()
     }
 
@@ -47,8 +47,7 @@ impl<'g> MechanicsFormulas<'g> {
         equation: &MomentumEquation<'g>,
         inverse: Expr<'g>,
     ) -> Option<Vec<Expr<'g>>> {
-        let (symbols, h) = (&self.symbols, self.model.step_size);
-        let all = stacked(&symbols.momenta)?;
+        let all = self.model.graph.below(&self.symbols.momenta);
         let (first, count) = (*equation.components.first()?, equation.components.len());
         let is_run = equation.coupled.is_empty() && equation.components.iter().copied().eq(first..first + count);
         // of the momentum those components are read that the equation is about
@@ -57,19 +56,12 @@ impl<'g> MechanicsFormulas<'g> {
             Some(kappa) => momentum / kappa,
             None => inverse.block(start, start, Shape::square(momentum.shape().rows)) * momentum,
         };
-        let blocks = symbols.blocks_of(&equation.components).into_iter().map(|i| {
+        let blocks = self.symbols.blocks_of(&equation.components).into_iter().map(|i| {
             // an equation may be about some components of a block
-            let is_within = |component: &&usize| symbols.blocks[i].components().contains(component);
-            let within: Vec<usize> = equation.components.iter().filter(is_within).copied().collect();
-            let entries = || within.iter().map(|component| velocity.entry(component - start, 0)).collect();
-            let is_run = within.windows(2).all(|pair| pair[1] == pair[0] + 1);
-            let shape = Shape::vector(within.len());
-            let part = if is_run {
-                velocity.block(within[0] - start, 0, shape)
-            } else {
-                self.model.graph.stack(shape, entries())
-            };
-            self.slope_of_chart(within[0], substep.divisor) * h * part
+            let block = self.symbols.blocks[i].components();
+            let within: Vec<usize> = equation.components.iter().copied().filter(|c| block.contains(c)).collect();
+            let positions: Vec<usize> = within.iter().map(|component| component - start).collect();
+            self.chart_step(i, substep.divisor) * rows(velocity, &positions)
         });
         Some(blocks.collect())
     }
@@ -86,17 +78,13 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// The chart coordinates of the motion by the velocity of the start of a step that is collocated, to first order in h.
     pub(super) fn guess(&self) -> Option<Vec<Expr<'g>>> {
-        let collocation = self.collocation.as_ref()?;
-        let entries = collocation.algebra.iter().flat_map(|xi| (0..xi.shape().rows).map(|i| xi.entry(i, 0)));
-        let coordinate = |(component, velocity): (usize, Expr<'g>)| {
-            self.slope_of_chart(component, 1) * self.model.step_size * velocity
-        };
-        Some(entries.enumerate().map(coordinate).collect())
+        let velocities = entries(&self.collocation.as_ref()?.algebra).into_iter().enumerate();
+        Some(velocities.map(|(component, velocity)| self.step_of_component(component, 1) * velocity).collect())
     }
 
     /// −ρ(0) and Dρ(0), of an equation that is linear in the chart: column by column, or along one direction.
     pub fn linear_system(&self, equation: &MomentumEquation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
-        let zero = self.chart_at_zero();
+        let zero = at_zero(self.symbols.blocks.iter().map(|block| block.coordinates));
         let right_side = -equation.residual.substitute(&zero);
         if keeps_matrices {
             return [right_side, equation.directional].map(MatrixForm::Whole);
@@ -107,9 +95,10 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// ρ(x) and Dρ(x), of an equation that Newton's method solves: column by column, or along one direction, of bodies as B(x).
     pub fn newton_system(&self, equation: &MomentumEquation<'g>, keeps_matrices: bool) -> [MatrixForm<'g>; 2] {
-        let jacobian = match keeps_matrices {
-            true => MatrixForm::Whole(equation.large_jacobian_factor(self).unwrap_or(equation.directional)),
-            false => MatrixForm::of_columns(equation.columns(&self.symbols)),
+        let jacobian = if keeps_matrices {
+            MatrixForm::Whole(equation.large_jacobian_factor(self).unwrap_or(equation.directional))
+        } else {
+            MatrixForm::of_columns(equation.columns(&self.symbols))
         };
         [MatrixForm::Whole(equation.residual), jacobian]
     }
@@ -128,42 +117,8 @@ impl<'g> MechanicsFormulas<'g> {
         if slopes.is_empty() { equation.residual } else { equation.residual.substitute(&slopes) }
     }
 
-    /// The replacement of all chart coordinates by zero.
-    fn chart_at_zero(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let coordinates = self.symbols.blocks.iter().map(|block| block.coordinates);
-        coordinates.map(|x| (x, self.model.graph.zero(x.shape()))).collect()
+    /// s·h for a component of one of so many parts of a step.
+    fn step_of_component(&self, component: usize, divisor: i64) -> Expr<'g> {
+        self.chart_step(self.symbols.blocks_of(&[component])[0], divisor)
     }
-
-    /// dx/dξ at the identity for a component of one of so many parts of a step.
-    fn slope_of_chart(&self, component: usize, divisor: i64) -> Expr<'g> {
-        let block = self.symbols.blocks_of(&[component])[0];
-        let (numerator, denominator) = chart_slope(&self.model, &self.symbols, block);
-        self.model.graph.rational(numerator, denominator * divisor)
-    }
-
-    /// A component of the momentum, counted through all factors.
-    fn momentum_entry(&self, mut component: usize) -> Expr<'g> {
-        for mu in &self.symbols.momenta {
-            if component < mu.shape().rows {
-                return mu.entry(component, 0);
-            }
-            component -= mu.shape().rows;
-        }
-        self.model.graph.integer(0)
-    }
-}
-
-/// Vectors, one after the other.
-pub(crate) fn stacked<'g>(expressions: &[Expr<'g>]) -> Option<Expr<'g>> {
-    let (&first, rest) = expressions.split_first()?;
-    if rest.is_empty() {
-        return Some(first);
-    }
-    let shape = Shape::vector(expressions.iter().map(|part| part.shape().rows).sum());
-    let mut row = 0;
-    Some(expressions.iter().fold(first.graph().zero(shape), |sum, part| {
-        let placed = part.embed(shape, row, 0);
-        row += part.shape().rows;
-        sum + placed
-    }))
 }

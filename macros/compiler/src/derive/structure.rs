@@ -8,8 +8,8 @@ mod sylvester;
 
 use clebsch_symbolic::{Expr, Shape, identity};
 
-use super::equation::{MomentumEquation, Solution, Sources, chart_slope, is_moving};
-use super::symbols::ChartBlock;
+use super::equation::{MomentumEquation, Solution, Sources};
+use super::symbols::{ChartBlock, rows};
 use pattern::Pattern;
 
 /// Jacobians of more unknowns are taken as they are: those of large groups are full.
@@ -54,7 +54,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         equation: MomentumEquation<'g>,
         eliminated: Vec<MomentumEquation<'g>>,
     ) -> Reduced<'a, 'b, 'g> {
-        let columns = equation.columns(sources.symbols);
+        let columns = equation.columns(&sources.symbols);
         let pattern = Pattern::of(sources, &equation, &columns);
         Reduced { sources, equation, columns, pattern, eliminated }
     }
@@ -96,7 +96,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
 
     /// The chart blocks whose equations have a constant multiple of each of their coordinates, and nothing else of them.
     fn constant_blocks(&self) -> Vec<Vec<usize>> {
-        let (symbols, components) = (self.sources.symbols, &self.equation.components);
+        let (symbols, components) = (&self.sources.symbols, &self.equation.components);
         let position = |component| components.iter().position(|other| *other == component);
         let block = |i: usize| symbols.blocks[i].components().map(position).collect::<Option<Vec<usize>>>();
         let uncouples = |block: &[usize], i: usize| block.iter().all(|&j| i == j || self.pattern.is_zero(i, j));
@@ -106,7 +106,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
 
     /// Whether a coordinate has a constant slope that is its inertia: any other may vanish at some step size.
     fn may_go(&self, i: usize) -> bool {
-        let is_still = !self.equation.moves && !is_moving(self.sources.model, self.sources.inertia);
+        let is_still = !self.equation.moves && !self.sources.is_moving(self.sources.inertia);
         is_still && self.equation.is_inertial && self.pattern.is_constant(i)
     }
 
@@ -120,18 +120,16 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     fn without(&self, positions: &[usize]) -> Option<Reduced<'a, 'b, 'g>> {
         let first = self.slope(*positions.first()?);
         let (sources, graph, whole) = (self.sources, self.sources.model.graph, &self.equation);
-        let shape = Shape::vector(positions.len());
         let gone: Vec<usize> = positions.iter().map(|&i| whole.components[i]).collect();
         // what others a leaf has in its formula cancels
         let absent = if positions.iter().all(|&i| self.pattern.is_alone(i)) { &whole.components } else { &gone };
         let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows(whole.residual, positions));
         let rest = identity::without_vanishing_terms(rest.expand());
-        let formula = match positions.iter().all(|&i| identity::equal(&[self.slope(i)], &[first])) {
-            true => -(rest / first),
-            false => {
-                let value = |(row, &i): (usize, &usize)| -(rest.entry(row, 0) / self.slope(i));
-                graph.stack(shape, positions.iter().enumerate().map(value).collect())
-            }
+        let value = |(row, &i): (usize, &usize)| -(rest.entry(row, 0) / self.slope(i));
+        let formula = if positions.iter().all(|&i| identity::equal(&[self.slope(i)], &[first])) {
+            -(rest / first)
+        } else {
+            graph.stack(Shape::vector(positions.len()), positions.iter().enumerate().map(value).collect())
         };
         let own = identity::without_vanishing_terms(rows(whole.residual, positions));
         let own = MomentumEquation::new(sources, gone.clone(), own, whole.cleared);
@@ -147,20 +145,18 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
 
     /// The constant ∂ρ_i/∂x_i, from the inertia where it is that: Σ_ii/(s·h).
     fn slope(&self, i: usize) -> Expr<'g> {
-        let (model, symbols) = (self.sources.model, self.sources.symbols);
-        let component = self.equation.components[i];
-        let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[component])[0]);
-        let inertia = self.sources.inertia.entry(component, component).expand().blockwise();
-        let expected = denominator * self.sources.divisor * inertia / (numerator * model.step_size);
+        let (sources, component) = (self.sources, self.equation.components[i]);
+        let inertia = sources.inertia.entry(component, component).expand().blockwise();
+        let expected = inertia / sources.chart_step(sources.symbols.blocks_of(&[component])[0], sources.divisor);
         if identity::equal(&[self.columns[i].entry(i, 0)], &[expected]) {
             return expected;
         }
-        self.columns[i].entry(i, 0).substitute(&symbols.at_rest()).expand()
+        self.columns[i].entry(i, 0).substitute(&sources.symbols.at_rest()).expand()
     }
 
     /// An expression with values for some coordinates.
     fn with(&self, components: &[usize], values: Expr<'g>, expression: Expr<'g>) -> Expr<'g> {
-        let symbols = self.sources.symbols;
+        let symbols = &self.sources.symbols;
         let value = |block: &ChartBlock<'g>| {
             let known = |component: usize| components.iter().position(|other| *other == component);
             let first = known(block.offset).filter(|_| block.components().all(|component| known(component).is_some()));
@@ -205,10 +201,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     /// One equation for each set of coordinates that depend on each other.
     fn parts(&self) -> Vec<MomentumEquation<'g>> {
         let sets = self.pattern.connected();
-        match sets.len() {
-            1 => vec![self.whole()],
-            _ => sets.iter().map(|positions| self.part(positions)).collect(),
-        }
+        if sets.len() == 1 { vec![self.whole()] } else { sets.iter().map(|positions| self.part(positions)).collect() }
     }
 
     fn whole(&self) -> MomentumEquation<'g> {
@@ -232,14 +225,5 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let part = MomentumEquation::new(sources, components, residual, whole.cleared);
         let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part }, Vec::new());
         part.substituted().unwrap_or_else(|| part.whole())
-    }
-}
-
-/// Some rows of a vector.
-fn rows<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
-    let shape = Shape::vector(positions.len());
-    match positions {
-        [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),
-        _ => vector.graph().stack(shape, positions.iter().map(|&i| vector.entry(i, 0)).collect()),
     }
 }

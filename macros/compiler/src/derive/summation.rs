@@ -10,7 +10,8 @@
 
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
-use super::{MechanicsFormulas, Substep, increments, inverse_by};
+use super::increments::inverse_by;
+use super::{MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Factor, Located, Mechanics, Summation};
@@ -30,9 +31,9 @@ impl<'g> MechanicsFormulas<'g> {
     /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
     pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         let (inverses, momenta) = (self.inverses(), self.symbols.momenta.iter().zip(&substep.unchanged).enumerate());
-        let added = |(k, (m, unchanged)): (usize, (&Expr<'g>, &bool))| match unchanged {
-            true => self.model.graph.zero(m.shape()),
-            false => self.beside(self.carried(k, *m), *m).substitute(&inverses),
+        let added = |(k, (m, unchanged)): (usize, (&Expr<'g>, &bool))| {
+            let change = || self.beside(self.carried(k, *m), *m).substitute(&inverses);
+            if *unchanged { self.model.graph.zero(m.shape()) } else { change() }
         };
         substep.unchanged.contains(&false).then(|| momenta.map(added).collect())
     }
@@ -63,7 +64,7 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// `moved` − `from` with F = I + D and I − D S for F⁻¹.
     fn beside(&self, moved: Expr<'g>, from: Expr<'g>) -> Expr<'g> {
-        let mut near = increments(self);
+        let mut near = self.increments();
         let has_letter = |factor: &Factor<'_>| !inverse_by(factor.group, factor.symbol, factor.symbol).is_empty();
         for (k, factor) in self.model.factors.iter().enumerate().filter(|(_, factor)| has_letter(factor)) {
             let written = factor.group.identity(self.model.graph) - self.symbols.increments[k] * self.inverse_letter(k);
@@ -87,7 +88,7 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// What the letters stand for.
     fn inverses(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let near = increments(self);
+        let near = self.increments();
         let inverse = |k: usize| {
             let inverse = self.model.factors[k].symbol.inverse();
             let found = near.iter().find(|(letter, _)| *letter == inverse)?;
@@ -140,6 +141,6 @@ fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool
     };
     let terms = added.word_terms().into_iter().map(term);
     let left = terms.filter(|term| !increments.iter().any(|d| term.depends_on(*d)));
-    let left = left.fold(graph.zero(added.shape()), |sum, term| sum + term);
+    let left = graph.total(added.shape(), left);
     identity::equal(&[left], &[left.substitute(&[(from, graph.zero(from.shape()))])])
 }

@@ -2,7 +2,8 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use crate::model::{ChartChoice, Discretization, System};
+use super::SystemFormulas;
+use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
 pub struct Symbols<'g> {
@@ -71,17 +72,12 @@ impl<'g> Symbols<'g> {
 
     /// The chart coordinates of a factor in one vector.
     pub(super) fn stacked_coordinates(&self, factor: usize) -> Expr<'g> {
-        let shape = self.logarithms[factor].shape();
-        let blocks = self.blocks.iter().filter(|block| block.factor == factor);
-        let start = self.blocks.iter().find(|block| block.factor == factor).map_or(0, |block| block.offset);
-        let parts = blocks.map(|block| block.coordinates.embed(shape, block.offset - start, 0));
-        parts.fold(self.logarithms[factor].graph().zero(shape), |sum, part| sum + part)
+        self.logarithms[factor].graph().below(&self.coordinates(factor))
     }
 
     /// The replacement of all coordinates and momenta by zero: the motion that rests.
     pub fn at_rest(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let moving = self.blocks.iter().map(|block| &block.coordinates).chain(&self.momenta);
-        moving.map(|symbol| (*symbol, symbol.graph().zero(symbol.shape()))).collect()
+        at_zero(self.blocks.iter().map(|block| block.coordinates).chain(self.momenta.iter().copied()))
     }
 
     /// The replacements of ξ by each element of the basis, factor after factor.
@@ -99,59 +95,34 @@ impl<'g> Symbols<'g> {
 
     /// The gradient with respect to the velocities of all factors, in one vector.
     pub fn slope(&self, function: Expr<'g>) -> Expr<'g> {
-        let shape = Shape::vector(self.algebra.iter().map(|xi| xi.shape().rows).sum());
-        let mut row = 0;
-        self.algebra.iter().fold(function.graph().zero(shape), |sum, xi| {
-            let placed = function.gradient(*xi).embed(shape, row, 0);
-            row += xi.shape().rows;
-            sum + placed
-        })
+        let gradients: Vec<_> = self.algebra.iter().map(|xi| function.gradient(*xi)).collect();
+        function.graph().below(&gradients)
     }
 
     /// The derivative of a vector with respect to the velocities of all factors, as a matrix.
     pub fn slopes(&self, vector: Expr<'g>) -> Expr<'g> {
-        let columns = self.algebra.iter().map(|xi| xi.shape().rows).sum();
-        let shape = Shape::new(vector.shape().rows, columns);
-        let mut column = 0;
-        self.algebra.iter().fold(vector.graph().zero(shape), |sum, xi| {
-            let placed = vector.jacobian(*xi).embed(shape, 0, column);
-            column += xi.shape().rows;
-            sum + placed
-        })
+        let jacobians: Vec<_> = self.algebra.iter().map(|xi| vector.jacobian(*xi)).collect();
+        vector.graph().beside(&jacobians)
     }
 
-    /// The element of a factor in its chart.
-    pub(super) fn chart_element(&self, model: &System<'g>, factor: usize) -> Expr<'g> {
-        self.charts[factor].element(model.factors[factor].group, &self.coordinates(factor))
-    }
-
-    /// The increment F − I of a factor in its chart, without cancellation.
-    pub(super) fn chart_increment(&self, model: &System<'g>, factor: usize) -> Expr<'g> {
-        let (numerator, denominator) =
-            self.charts[factor].increment(model.factors[factor].group, &self.coordinates(factor));
-        numerator / denominator
-    }
-
+    /// The symbols that a model needs.
     pub(super) fn new(model: &System<'g>, discretization: Option<Discretization>) -> Symbols<'g> {
-        let graph = model.graph;
-        let taken = taken(model);
-        let covector = fresh(&["p", "α", "β"], &taken);
-        let covectors = model.configurations.iter().enumerate().map(|(i, leaf)| {
-            let name = subscripted(covector, i, model.configurations.len());
-            graph.symbol(&name, leaf.shape, Role::Covector(i), Property::General)
-        });
-        let factor = |letters: &[&'static str], role: fn(usize) -> Role, matrix: bool| -> Vec<Expr<'g>> {
+        let (graph, taken) = (model.graph, taken(model));
+        let numbered = |letters: &[&'static str], role: fn(usize) -> Role, shapes: &[Shape]| -> Vec<Expr<'g>> {
             let letter = fresh(letters, &taken);
-            let symbol = |(k, factor): (usize, &crate::model::Factor<'g>)| {
-                let shape = if matrix { factor.group.element_shape() } else { Shape::vector(factor.group.dimension()) };
-                graph.symbol(&subscripted(letter, k, model.factors.len()), shape, role(k), Property::General)
+            let symbol = |(index, shape): (usize, &Shape)| {
+                graph.symbol(&subscripted(letter, index, shapes.len()), *shape, role(index), Property::General)
             };
-            model.factors.iter().enumerate().map(symbol).collect()
+            shapes.iter().enumerate().map(symbol).collect()
         };
+        let leaves: Vec<Shape> = model.configurations.iter().map(|leaf| leaf.shape).collect();
+        let groups = || model.factors.iter().map(|factor| factor.group);
+        let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).collect();
+        let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).collect();
         Symbols {
-            covectors: covectors.collect(),
-            algebra: factor(&["ξ", "η", "ζ"], Role::Algebra, false),
-            momenta: factor(&["μ", "ν", "λ"], Role::Momentum, false),
+            covectors: numbered(&["p", "α", "β"], Role::Covector, &leaves),
+            algebra: numbered(&["ξ", "η", "ζ"], Role::Algebra, &vectors),
+            momenta: numbered(&["μ", "ν", "λ"], Role::Momentum, &vectors),
             multiplier: graph.symbol(
                 fresh(&["κ", "χ", "ϰ"], &taken),
                 Shape::vector(model.dimension()),
@@ -161,16 +132,82 @@ impl<'g> Symbols<'g> {
             charts: model.factors.iter().map(|factor| chart(model, factor, discretization)).collect(),
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
             logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
-            increments: factor(&["D", "Δ", "B"], Role::Increment, true),
-            following: factor(&["D⁺"], Role::Following, true),
+            increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
+            following: numbered(&["D⁺"], Role::Following, &matrices),
             images: model.configurations.iter().enumerate().map(|(i, leaf)| image(model, i, leaf)).collect(),
-            momentum_matrices: factor(&["M", "N", "P"], Role::MomentumMatrix, true),
+            momentum_matrices: numbered(&["M", "N", "P"], Role::MomentumMatrix, &matrices),
         }
     }
 }
 
+impl<'g> SystemFormulas<'g> {
+    /// The element of a factor in its chart.
+    pub(super) fn chart_element(&self, factor: usize) -> Expr<'g> {
+        self.symbols.charts[factor].element(self.model.factors[factor].group, &self.symbols.coordinates(factor))
+    }
+
+    /// The increment F − I of a factor in its chart, without cancellation.
+    pub(super) fn chart_increment(&self, factor: usize) -> Expr<'g> {
+        let (group, coordinates) = (self.model.factors[factor].group, self.symbols.coordinates(factor));
+        let (numerator, denominator) = self.symbols.charts[factor].increment(group, &coordinates);
+        numerator / denominator
+    }
+
+    /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.
+    pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
+        let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
+        let blocks = self.model.graph.blocks(self.model.factors[factor].group);
+        let (numerator, denominator) = self.symbols.charts[factor].slope_at_identity(&blocks[block]);
+        numerator * self.model.step_size / (denominator * divisor)
+    }
+
+    /// The part of the momentum symbol that belongs to a block.
+    pub(super) fn momentum_of_block(&self, i: usize) -> Expr<'g> {
+        let block = self.symbols.blocks[i];
+        let start = block.offset - self.model.offset(block.factor);
+        self.symbols.momenta[block.factor].block(start, 0, block.coordinates.shape())
+    }
+
+    /// An expression with the momentum of a block set to zero.
+    pub(super) fn without_momentum_of_block(&self, expression: Expr<'g>, i: usize) -> Expr<'g> {
+        let block = self.symbols.blocks[i];
+        let mu = self.symbols.momenta[block.factor];
+        let start = block.offset - self.model.offset(block.factor);
+        let is_own = |a: &usize| (start..start + block.dimension()).contains(a);
+        let entry = |a: usize| if is_own(&a) { mu.graph().integer(0) } else { mu.entry(a, 0) };
+        let others = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(entry).collect());
+        expression.substitute(&[(mu, others)])
+    }
+
+    /// Whether an expression depends on the configuration, on the time or on the input.
+    pub(super) fn is_moving(&self, expression: Expr<'g>) -> bool {
+        expression.depends_on(self.model.time)
+            || self.model.inputs.iter().any(|leaf| expression.depends_on(leaf.symbol))
+            || self.model.reads_configuration(expression)
+    }
+}
+
+/// Some rows of a vector.
+pub(super) fn rows<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
+    let shape = Shape::vector(positions.len());
+    match positions {
+        [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),
+        _ => vector.graph().stack(shape, positions.iter().map(|&i| vector.entry(i, 0)).collect()),
+    }
+}
+
+/// The entries of vectors, one after the other.
+pub(super) fn entries<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    vectors.iter().flat_map(|vector| (0..vector.shape().rows).map(|i| vector.entry(i, 0))).collect()
+}
+
+/// The replacement of symbols by zero.
+pub(super) fn at_zero<'g>(symbols: impl IntoIterator<Item = Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    symbols.into_iter().map(|symbol| (symbol, symbol.graph().zero(symbol.shape()))).collect()
+}
+
 /// The symbol of a leaf of q⁺, which lies in the same space as that of q.
-fn image<'g>(model: &System<'g>, i: usize, leaf: &crate::model::Configuration<'g>) -> Expr<'g> {
+fn image<'g>(model: &System<'g>, i: usize, leaf: &Configuration<'g>) -> Expr<'g> {
     let property = leaf.symbol.as_symbol().map_or(Property::General, |symbol| symbol.property);
     model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), property)
 }
@@ -185,7 +222,7 @@ pub(super) fn logarithm<'g>(model: &System<'g>, k: usize) -> Expr<'g> {
 
 /// The chart of a factor: what the velocity is made with, for then ξ is a multiple of x; else the user's choice, or that of the
 /// group.
-fn chart(model: &System<'_>, factor: &crate::model::Factor<'_>, discretization: Option<Discretization>) -> Chart {
+fn chart(model: &System<'_>, factor: &Factor<'_>, discretization: Option<Discretization>) -> Chart {
     if factor.group.is_translation() {
         return Chart::Identity;
     }
@@ -200,28 +237,22 @@ fn chart(model: &System<'_>, factor: &crate::model::Factor<'_>, discretization: 
 /// The chart coordinates and their directions, numbered through all factors.
 fn blocks<'g>(model: &System<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'g>> {
     let graph = model.graph;
-    let shapes: Vec<(usize, usize, usize)> = model
-        .factors
-        .iter()
-        .enumerate()
-        .flat_map(|(factor, data)| {
-            let blocks = graph.blocks(data.group);
-            let sizes: Vec<usize> = blocks.iter().map(|block| block.algebra.dimension()).collect();
-            sizes.into_iter().enumerate().map(move |(block, size)| (factor, block, size))
-        })
-        .collect();
-    let mut offset = 0;
-    let mut made = Vec::new();
-    for (index, &(factor, block, size)) in shapes.iter().enumerate() {
+    let of_factor = |(factor, data): (usize, &Factor<'g>)| {
+        let blocks = graph.blocks(data.group);
+        (0..blocks.len()).map(move |block| (factor, block, blocks[block].algebra.dimension()))
+    };
+    let places: Vec<_> = model.factors.iter().enumerate().flat_map(of_factor).collect();
+    let mut end = 0;
+    let block = |(index, &(factor, block, size)): (usize, &(usize, usize, usize))| {
         let symbol = |letter: &str, role: Role| {
-            graph.symbol(&subscripted(letter, index, shapes.len()), Shape::vector(size), role, Property::General)
+            graph.symbol(&subscripted(letter, index, places.len()), Shape::vector(size), role, Property::General)
         };
-        let (coordinates, direction) =
-            (symbol(letters[0], Role::Chart(index)), symbol(letters[1], Role::Direction(index)));
-        made.push(ChartBlock { factor, block, offset, coordinates, direction });
-        offset += size;
-    }
-    made
+        let coordinates = symbol(letters[0], Role::Chart(index));
+        let direction = symbol(letters[1], Role::Direction(index));
+        end += size;
+        ChartBlock { factor, block, offset: end - size, coordinates, direction }
+    };
+    places.iter().enumerate().map(block).collect()
 }
 
 /// The first letters of the user's own names, which the derivation does not take.
@@ -240,8 +271,10 @@ fn fresh(letters: &[&'static str], taken: &[String]) -> &'static str {
 
 /// The letter alone if there is one of them, else with a subscript that counts from one.
 fn subscripted(letter: &str, index: usize, count: usize) -> String {
-    let digits = (index + 1).to_string();
-    let subscript: String =
-        digits.bytes().filter_map(|digit| char::from_u32('₀' as u32 + (digit - b'0') as u32)).collect();
-    if count == 1 { letter.to_string() } else { format!("{letter}{subscript}") }
+    if count == 1 { letter.to_string() } else { format!("{letter}{}", subscript(index + 1)) }
+}
+
+/// A number below the line.
+pub(super) fn subscript(number: usize) -> String {
+    number.to_string().bytes().filter_map(|digit| char::from_u32('₀' as u32 + u32::from(digit - b'0'))).collect()
 }

@@ -2,10 +2,11 @@
 
 use clebsch_symbolic::{Expr, identity};
 
+use super::action::moved;
 use super::{ConservedMomentum, MechanicsFormulas, Solution, Substep};
 use crate::diagnostic::Diagnostics;
+use crate::model::Mechanics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Mechanics, Side};
 
 /// A tolerance ends an iteration, or the series of the free rotations between kicks; a number of iterations limits one.
 pub(super) fn check(model: &Mechanics<'_>, substeps: &[Substep<'_>], collocates: bool) -> Result<(), Diagnostics> {
@@ -29,15 +30,6 @@ pub(super) fn check(model: &Mechanics<'_>, substeps: &[Substep<'_>], collocates:
 }
 
 impl<'g> MechanicsFormulas<'g> {
-    /// Ad*_{F⁻¹} μ for a left action, Ad*_F μ for a right one: M⁺ of a factor whose momentum the drift carries along, of M = μ.
-    pub(super) fn carried(&self, k: usize, mu: Expr<'g>) -> Expr<'g> {
-        let factor = &self.model.factors[k];
-        match factor.side {
-            Side::Left => factor.group.coadjoint(factor.group.inverse(factor.symbol), mu),
-            Side::Right => factor.group.coadjoint(factor.symbol, mu),
-        }
-    }
-
     /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
     /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
     pub fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
@@ -45,15 +37,11 @@ impl<'g> MechanicsFormulas<'g> {
         if substeps().any(|substep| substep.other.is_some()) {
             return Vec::new();
         }
-        let moves: Vec<Vec<(Expr<'g>, Expr<'g>)>> = substeps()
-            .map(|substep| {
-                let leaves = self.model.configurations.iter().zip(&self.model.action);
-                let momenta = self.symbols.momenta.iter().enumerate();
-                let momenta =
-                    momenta.filter(|(k, _)| !substep.unchanged[*k]).map(|(k, mu)| (*mu, self.carried(k, *mu)));
-                leaves.map(|(leaf, image)| (leaf.symbol, *image)).chain(momenta).collect()
-            })
-            .collect();
+        let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {
+            let momenta = self.symbols.momenta.iter().enumerate().filter(|(k, _)| !substep.unchanged[*k]);
+            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).collect()
+        };
+        let moves: Vec<_> = substeps().map(move_of).collect();
         let stays = |momentum: &&ConservedMomentum<'g>| {
             moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
         };

@@ -1,10 +1,10 @@
 //! The trivialised derivatives T*_id L_F ∂_F K and T*_id R_F ∂_F K.
 
-use clebsch_symbolic::{Expr, Group, Property, Role, identity};
+use clebsch_symbolic::{Expr, Group, Property, Role};
 
 use super::cayley;
 use super::symbols::logarithm;
-use crate::model::{Mechanics, Side};
+use crate::model::{Side, System};
 
 /// A trivialised derivative T* ∂_F K of a factor.
 #[derive(Copy, Clone)]
@@ -21,19 +21,13 @@ impl<'g> Covector<'g> {
     /// The components.
     pub fn components(&self, group: Group) -> Expr<'g> {
         let plain = group.components(self.array);
-        let plain = match self.rational {
-            Some(rational) => plain + rational,
-            None => plain,
-        };
-        match self.logarithmic {
-            Some((gradient, slope)) => plain + slope.transpose().inverse() * gradient,
-            None => plain,
-        }
+        let plain = self.rational.map_or(plain, |rational| plain + rational);
+        self.logarithmic.map_or(plain, |(gradient, slope)| plain + slope.transpose().inverse() * gradient)
     }
 }
 
 /// T* ∂_F K before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
-pub(super) fn trivialisations<'g>(model: &Mechanics<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
+pub(super) fn trivialisations<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
     let factor = &model.factors[k];
     let gradient = kinetic.gradient(factor.symbol);
     let y = logarithm(model, k);
@@ -57,11 +51,12 @@ pub(super) fn trivialisations<'g>(model: &Mechanics<'g>, kinetic: Expr<'g>, k: u
     }
 }
 
-/// For each factor, whether both trivialisations have the same components.
-pub(super) fn agreement<'g>(model: &Mechanics<'g>, before: &[Covector<'g>], after: &[Covector<'g>]) -> Vec<bool> {
-    let same = |k: usize| {
-        let group = model.factors[k].group;
-        identity::equal(&[before[k].components(group)], &[after[k].components(group)])
-    };
-    (0..model.factors.len()).map(same).collect()
+/// Both for each factor.
+pub(super) fn of_all<'g>(model: &System<'g>, kinetic: Expr<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
+    (0..model.factors.len()).map(|k| trivialisations(model, kinetic, k)).unzip()
+}
+
+/// The components of each factor.
+pub(super) fn components<'g>(model: &System<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
+    model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).collect()
 }

@@ -2,13 +2,13 @@
 
 use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
-use super::symbols::logarithm;
+use super::symbols::{at_zero, logarithm};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Factor, Mechanics};
+use crate::model::{Discretization, Factor, System};
 
 /// The velocity ξ(F)/h of a factor.
-pub(super) fn of_element<'g>(model: &Mechanics<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
+pub(super) fn of_element<'g>(model: &System<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
     match discretization {
         Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
         _ => discrete_velocity(&model.factors[k], h, discretization),
@@ -34,22 +34,16 @@ fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discr
 
 /// h times ½ tr((F − I)/h 𝕄 (F − I)ᵀ/h), with the symmetric 𝕄 for which ½ tr(ξ 𝕄 ξᵀ) = ℓ(ξ) − ℓ(0), and ℓ(0).
 pub(super) fn moser_veselov<'g>(
-    model: &Mechanics<'g>,
+    model: &System<'g>,
     energy: Expr<'g>,
     velocities: &[Expr<'g>],
 ) -> Result<Expr<'g>, Diagnostics> {
     let (h, graph) = (model.step_size, model.graph);
-    let rest: Vec<_> = velocities.iter().map(|v| (*v, graph.zero(v.shape()))).collect();
-    let mut cost = h * energy.substitute(&rest);
+    let mut cost = h * energy.substitute(&at_zero(velocities.iter().copied()));
     for (factor, velocity) in model.factors.iter().zip(velocities) {
-        let gradient = energy.gradient(*velocity);
-        let inertia = gradient.matrix_of_linear(*velocity);
-        // a term that couples the velocities of two factors is no part of either's form
-        let quadratic =
-            !velocities.iter().any(|v| inertia.depends_on(*v)) && identity::equal(&[gradient], &[inertia * *velocity]);
-        if !quadratic {
+        let Some(inertia) = inertia(energy, velocities, *velocity) else {
             return Err(refused(model, Feature::CoupledVelocities, velocity));
-        }
+        };
         let Some(mass) = mass_matrix(factor.group, inertia) else {
             return Err(refused(model, Feature::NoMassMatrix, factor.group.name(graph)));
         };
@@ -63,6 +57,14 @@ pub(super) fn moser_veselov<'g>(
             };
     }
     Ok(cost)
+}
+
+/// Σ of a velocity, where the energy is a quadratic form of it alone: a term that couples two velocities is no part of either's form.
+pub(super) fn inertia<'g>(energy: Expr<'g>, velocities: &[Expr<'g>], velocity: Expr<'g>) -> Option<Expr<'g>> {
+    let gradient = energy.gradient(velocity);
+    let inertia = gradient.matrix_of_linear(velocity);
+    let is_constant = !velocities.iter().any(|v| inertia.depends_on(*v));
+    (is_constant && identity::equal(&[gradient], &[inertia * velocity])).then_some(inertia)
 }
 
 /// The symmetric 𝕄 with ½ tr(ξ 𝕄 ξᵀ) = ½ ξ·Σξ for all ξ, if there is one: ½tr(J)I − J on SO(3).
@@ -115,7 +117,7 @@ fn independent<'g>(units: Vec<(Expr<'g>, Vec<Expr<'g>>)>) -> (Vec<Expr<'g>>, Vec
 }
 
 /// The error for a Lagrangian that Moser and Veselov's discretisation cannot have.
-fn refused(model: &Mechanics<'_>, feature: Feature, name: impl ToString) -> Diagnostics {
+fn refused(model: &System<'_>, feature: Feature, name: impl ToString) -> Diagnostics {
     let beside = Found::somewhere().named(name);
     features::refusal((Feature::MoserVeselov, Found::at(model.spans.kinetic.place)), (feature, beside)).into()
 }

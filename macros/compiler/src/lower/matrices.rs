@@ -16,7 +16,6 @@ use clebsch_symbolic::{
 use super::grid::by_components;
 use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
-use crate::derive::stacked;
 use blocks::{times, total};
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
@@ -33,14 +32,18 @@ pub(super) fn short_kernel(expressions: &[Expr<'_>]) -> Kernel {
     lowering.kernel(expressions).without_unused().nested()
 }
 
+fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    vectors.first().map(|first| first.graph().below(vectors)).into_iter().collect()
+}
+
 /// Vectors, one after the other in one output.
 pub(super) fn stack(expressions: &[Expr<'_>]) -> Kernel {
-    kernel(&stacked(expressions).into_iter().collect::<Vec<_>>())
+    kernel(&below(expressions))
 }
 
 /// The same for a person to read.
 pub(super) fn short_stack(expressions: &[Expr<'_>]) -> Kernel {
-    short_kernel(&stacked(expressions).into_iter().collect::<Vec<_>>())
+    short_kernel(&below(expressions))
 }
 
 /// Numbers, one after the other in one output, for a person to read.

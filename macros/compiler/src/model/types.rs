@@ -87,7 +87,12 @@ pub struct Steered<'g> {
     pub motion: Motion<'g>,
 }
 
-impl System<'_> {
+impl<'g> System<'g> {
+    /// Whether an expression depends on the configuration.
+    pub fn reads_configuration(&self, expression: Expr<'g>) -> bool {
+        self.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))
+    }
+
     /// The number of components of all factors.
     pub fn dimension(&self) -> usize {
         self.offset(self.factors.len())
@@ -219,6 +224,13 @@ pub enum Side {
     Left,
     /// Φ_{F1 F2} = Φ_{F2} Φ_{F1}.
     Right,
+}
+
+impl Side {
+    /// The frame that momenta and velocities of such an action are in.
+    pub fn frame(self) -> &'static str {
+        if self == Side::Left { "spatial" } else { "body" }
+    }
 }
 
 /// A leaf of the configuration.

@@ -1,28 +1,23 @@
 //! The rows of small motions: how they retract, follow each other, and move a configuration.
 
-use clebsch_symbolic::{Block, Expr};
+use clebsch_symbolic::{Block, Chart, Expr, Shape};
 
-use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas, action, from_increment};
+use crate::derive::increments::from_increment;
+use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas};
 use crate::model::Side;
 
 impl<'g> SystemFormulas<'g> {
     /// J(q, ξ_Q(q)).
     pub(super) fn row_of_orbit_metric(&self) -> Formula<'g> {
         let symbol = format!("J({}, {}_Q({0}))", self.q(), self.letter(&self.symbols.algebra));
-        Formula::new(Id::OrbitMetric, symbol, &self.momenta_of(&self.generator))
-    }
-
-    /// J(q, v) of velocities.
-    fn momenta_of(&self, velocities: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(velocities.iter().copied()).collect();
-        self.momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
+        Formula::new(Id::OrbitMetric, symbol, &self.momenta_of(self.generator.iter().copied()))
     }
 
     /// GᵀG, column by column: J(q, (E_j)_Q(q)).
     pub fn orbit_metric(&self) -> MatrixForm<'g> {
         let column = |element: &Vec<(Expr<'g>, Expr<'g>)>| {
-            let velocities: Vec<_> = self.generator.iter().map(|velocity| velocity.substitute(element)).collect();
-            self.momenta_of(&velocities).into_iter().map(Expr::expand).collect()
+            let velocities = self.generator.iter().map(|velocity| velocity.substitute(element));
+            self.momenta_of(velocities).into_iter().map(Expr::expand).collect()
         };
         MatrixForm::Columns(self.symbols.basis().iter().map(column).collect())
     }
@@ -42,17 +37,26 @@ impl<'g> MechanicsFormulas<'g> {
         ]
     }
 
+    /// The chart in which small motions of a factor are written: Cayley's where it stays in the group, for it has no end, else that of the solve.
+    fn retraction(&self, k: usize) -> Chart {
+        let has_cayley_chart = self.model.factors[k].group.has_cayley_chart(self.model.graph);
+        if has_cayley_chart { Chart::Cayley } else { self.symbols.charts[k] }
+    }
+
     /// τ(x) − I of each factor, then τ(−x) − I of each.
     fn retractions(&self) -> Vec<Expr<'g>> {
-        let increment = |k: usize, forward: bool| {
-            let coordinates = self.symbols.coordinates(k).into_iter();
-            let coordinates: Vec<_> = coordinates.map(|x| if forward { x } else { -x }).collect();
+        let increment = |sign: i64, k: usize| {
+            let coordinates = self.symbols.coordinates(k).into_iter().map(|x| sign * x);
+            let coordinates: Vec<_> = coordinates.collect();
             let (numerator, denominator) = self.retraction(k).increment(self.model.factors[k].group, &coordinates);
             numerator / denominator
         };
         let factors = 0..self.model.factors.len();
-        let both = [true, false].into_iter().flat_map(|forward| factors.clone().map(move |k| (k, forward)));
-        both.map(|(k, forward)| increment(k, forward)).collect()
+        [1, -1]
+            .into_iter()
+            .flat_map(|sign| factors.clone().map(move |k| (sign, k)))
+            .map(|(sign, k)| increment(sign, k))
+            .collect()
     }
 
     /// For each component of ξ, the chart coordinate of exp ξ to first order, as numerator and denominator.
@@ -71,10 +75,8 @@ impl<'g> MechanicsFormulas<'g> {
             let factor = &self.model.factors[k];
             let elements = [self.symbols.increments[k], self.symbols.following[k]];
             let [first, second] = elements.map(|d| from_increment(factor.group, d));
-            let product = match factor.side {
-                Side::Left => factor.group.compose(second, first),
-                Side::Right => factor.group.compose(first, second),
-            };
+            let (left, right) = if factor.side == Side::Left { (second, first) } else { (first, second) };
+            let product = factor.group.compose(left, right);
             (product - factor.group.identity(self.model.graph)).expand()
         };
         (0..self.model.factors.len()).map(product).collect()
@@ -84,7 +86,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// them stands a row for each component of such a factor.
     pub fn generator_matrix(&self) -> Expr<'g> {
         let (graph, factors) = (self.model.graph, &self.model.factors);
-        let columns = action::generator_columns(&self.symbols, &self.generator);
+        let columns = self.generator_columns();
         let still = (0..factors.len()).filter(|&k| !factors[k].moves);
         let components = |k: usize| self.model.offset(k)..self.model.offset(k) + factors[k].group.dimension();
         let still: Vec<usize> = still.flat_map(components).collect();
@@ -93,7 +95,7 @@ impl<'g> MechanicsFormulas<'g> {
             Some(extra) => graph.integer((still[extra] == j) as i64),
             None => columns[j][i],
         };
-        let shape = clebsch_symbolic::Shape::new(rows + still.len(), columns.len());
+        let shape = Shape::new(rows + still.len(), columns.len());
         graph.stack(shape, shape.positions().map(entry).collect())
     }
 }

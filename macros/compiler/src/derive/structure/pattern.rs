@@ -1,9 +1,9 @@
 //! Which entries of a Jacobian vanish, are constant, and agree with those on the other side of its diagonal.
 
 use clebsch_symbolic::identity::{self, Point, Residue};
-use clebsch_symbolic::{Expr, Graph, Matrix, Number, Shape};
+use clebsch_symbolic::{Expr, Matrix, Number, Shape};
 
-use crate::derive::equation::{MomentumEquation, Sources, Structure, chart_slope};
+use crate::derive::equation::{MomentumEquation, Sources, Structure};
 
 /// The values of a Jacobian at a random point, and at two others with the same parameters.
 pub(super) struct Pattern {
@@ -14,30 +14,21 @@ pub(super) struct Pattern {
     elsewhere: Matrix<Residue>,
 }
 
-/// The matrix with these columns.
-fn matrix<'g>(graph: &'g Graph, columns: &[Expr<'g>]) -> Expr<'g> {
-    let shape = Shape::square(columns.len());
-    let placed = columns.iter().enumerate().map(|(j, column)| column.embed(shape, 0, j));
-    placed.fold(graph.zero(shape), |sum, column| sum + column)
-}
-
 /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h).
 pub(super) fn is_inertial<'g>(
     sources: &Sources<'_, 'g>,
     equation: &MomentumEquation<'g>,
     columns: &[Expr<'g>],
 ) -> bool {
-    let (model, symbols, components) = (sources.model, sources.symbols, &equation.components);
-    let graph = model.graph;
+    let (graph, symbols, components) = (sources.model.graph, &sources.symbols, &equation.components);
     let shape = Shape::square(columns.len());
     let entry = |(i, j): (usize, usize)| {
-        let (numerator, denominator) = chart_slope(model, symbols, symbols.blocks_of(&[components[j]])[0]);
         let inertia = sources.inertia.entry(components[i], components[j]);
-        denominator * sources.divisor * inertia / (numerator * model.step_size)
+        inertia / sources.chart_step(symbols.blocks_of(&[components[j]])[0], sources.divisor)
     };
     let expected = graph.stack(shape, shape.positions().map(entry).collect());
     let at_rest = symbols.at_rest();
-    identity::vanishes_where(matrix(graph, columns) - expected, &|point| {
+    identity::vanishes_where(graph.beside(columns) - expected, &|point| {
         for (symbol, zero) in &at_rest {
             let value = point.evaluate(*zero);
             point.set(*symbol, value);
@@ -47,28 +38,23 @@ pub(super) fn is_inertial<'g>(
 
 /// The same of the products with a direction of all unknowns, without the entries of the matrices.
 pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &MomentumEquation<'_>) -> bool {
-    let (model, symbols) = (sources.model, sources.symbols);
-    let blocks: Vec<usize> = symbols.blocks_of(&equation.components);
+    let symbols = &sources.symbols;
+    let blocks = symbols.blocks_of(&equation.components);
     // the unknowns are those of all factors, in their order
     if blocks.len() != symbols.blocks.len() {
         return false;
     }
-    let shape = Shape::vector(equation.components.len());
-    let direction = blocks.iter().fold(model.graph.zero(shape), |sum, &i| {
-        let (block, (numerator, denominator)) = (symbols.blocks[i], chart_slope(model, symbols, i));
-        let scaled = denominator * sources.divisor * block.direction / (numerator * model.step_size);
-        sum + scaled.embed(shape, block.offset, 0)
-    });
-    let at_rest = symbols.at_rest();
-    let slope = equation.directional.substitute(&at_rest);
+    let direction = |&i: &usize| symbols.blocks[i].direction / sources.chart_step(i, sources.divisor);
+    let direction = sources.model.graph.below(&blocks.iter().map(direction).collect::<Vec<_>>());
+    let slope = equation.directional.substitute(&symbols.at_rest());
     identity::equal(&[slope], &[sources.inertia * direction])
 }
 
 impl Pattern {
     pub(super) fn of<'g>(sources: &Sources<'_, 'g>, equation: &MomentumEquation<'g>, columns: &[Expr<'g>]) -> Pattern {
-        let (model, symbols) = (sources.model, sources.symbols);
+        let (model, symbols) = (sources.model, &sources.symbols);
         let shape = Shape::square(columns.len());
-        let jacobian = matrix(model.graph, columns);
+        let jacobian = model.graph.beside(columns);
         let coordinates = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i].coordinates);
         let coordinates: Vec<Expr<'g>> = coordinates.collect();
         let places = model.configurations.iter().chain(&model.inputs).map(|leaf| leaf.symbol).chain([model.time]);

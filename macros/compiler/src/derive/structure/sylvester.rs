@@ -3,8 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Operation, Shape, View};
 
 use crate::derive::equation::MomentumEquation;
-use crate::derive::{MechanicsFormulas, Solution, Symbols};
-use crate::model::Mechanics;
+use crate::derive::{Solution, SystemFormulas};
 
 /// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
 /// there, half as long for SO(10), and less memory in all.
@@ -12,18 +11,18 @@ const FEWEST_OF_SYLVESTER: usize = 21;
 
 impl<'g> MomentumEquation<'g> {
     /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
-    pub(in crate::derive) fn large_jacobian_factor(&self, formulas: &MechanicsFormulas<'g>) -> Option<Expr<'g>> {
+    pub(in crate::derive) fn large_jacobian_factor(&self, system: &SystemFormulas<'g>) -> Option<Expr<'g>> {
         let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;
-        if is_large { self.sylvester_factor(formulas) } else { None }
+        if is_large { self.sylvester_factor(system) } else { None }
     }
 
     /// B with Dρ(x)·δ = ⟨δ^·B, E⟩ for all δ in so(n), which is ΔB + BᵀΔ for Δ = δ^.
     ///
     /// ⟨A, E⟩ is the skew part of A, so that a term uΔ counts as Δuᵀ. `None` where Δ stands between two matrices, and for other groups.
-    pub fn sylvester_factor(&self, formulas: &MechanicsFormulas<'g>) -> Option<Expr<'g>> {
-        let (model, symbols) = (&formulas.model, &formulas.symbols);
-        let (n, direction) = self.whole_rotation(model, symbols)?;
-        let mut factor = model.graph.zero(Shape::square(n));
+    pub fn sylvester_factor(&self, system: &SystemFormulas<'g>) -> Option<Expr<'g>> {
+        let graph = system.model.graph;
+        let (n, direction) = self.whole_rotation(system)?;
+        let mut factor = graph.zero(Shape::square(n));
         for outer in self.directional.word_terms() {
             let [components] = outer.word[..] else { return None };
             let View::Of(Operation::Components(_), inner) = components.view() else { return None };
@@ -32,13 +31,12 @@ impl<'g> MomentumEquation<'g> {
                     |letter: &Expr<'g>| matches!(letter.view(), View::Of(Operation::Wedge(_), x) if x == direction);
                 let at = term.word.iter().position(turns)?;
                 let (before, after) = (&term.word[..at], &term.word[at + 1..]);
-                let scale = term.scale(model.graph);
+                let scale = term.scale(graph);
                 if before.iter().chain(after).chain([&scale]).any(|other| other.depends_on(direction)) {
                     return None;
                 }
-                let product = |letters: &[Expr<'g>]| {
-                    letters.iter().fold(model.graph.identity(n), |product, letter| product * *letter)
-                };
+                let product =
+                    |letters: &[Expr<'g>]| letters.iter().fold(graph.identity(n), |product, letter| product * *letter);
                 factor = factor
                     + match (before.is_empty(), after.is_empty()) {
                         (true, _) => scale * product(after),
@@ -51,10 +49,10 @@ impl<'g> MomentumEquation<'g> {
     }
 
     /// n and δ, where the unknowns are all those of one SO(n).
-    fn whole_rotation(&self, model: &Mechanics<'g>, symbols: &Symbols<'g>) -> Option<(usize, Expr<'g>)> {
-        let [block] = symbols.blocks_of(&self.components)[..] else { return None };
-        let block = &symbols.blocks[block];
-        let Group::SpecialOrthogonal(n) = model.factors[block.factor].group else { return None };
+    fn whole_rotation(&self, system: &SystemFormulas<'g>) -> Option<(usize, Expr<'g>)> {
+        let [block] = system.symbols.blocks_of(&self.components)[..] else { return None };
+        let block = &system.symbols.blocks[block];
+        let Group::SpecialOrthogonal(n) = system.model.factors[block.factor].group else { return None };
         self.components.iter().copied().eq(block.components()).then_some((n, block.direction))
     }
 }

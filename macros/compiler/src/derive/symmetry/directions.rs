@@ -3,214 +3,199 @@
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::{Direction, Family};
-use crate::derive::Symbols;
-use crate::derive::action::generator_columns;
+use crate::derive::SystemFormulas;
+use crate::derive::action::moved;
 use crate::model::{LeafSpace, Mechanics, Side};
 
-/// All directions, family by family.
-pub(super) fn directions<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-) -> (Vec<Family>, Vec<Direction<'g>>) {
-    let (mut families, mut all) = (Vec::new(), Vec::new());
-    let several = |count: usize, name: &str| if count > 1 { format!(" of `{name}`") } else { String::new() };
-    for (k, factor) in model.factors.iter().enumerate() {
-        let frame = if factor.side == Side::Left { "spatial" } else { "body" };
-        let of = several(model.factors.len(), &factor.name);
-        families.push(Family { group: factor.group, of, frame, offered: None });
-        all.extend(own_directions(model, symbols, generator, k, families.len() - 1));
-    }
-    for (j, leaf) in model.configurations.iter().enumerate() {
-        for from_left in [true, false] {
-            let Some(k) = commuting_factor(model, symbols, generator, j, from_left) else { continue };
-            let frame = if from_left { "spatial" } else { "body" };
-            let of = several(model.configurations.len(), &leaf.name);
-            families.push(Family { group: model.factors[k].group, of, frame, offered: None });
-            all.extend(other_directions(model, symbols, j, k, from_left, families.len() - 1));
+/// Collects directions, family by family.
+pub(super) struct Directions<'a, 'g> {
+    model: &'a Mechanics<'g>,
+    system: &'a SystemFormulas<'g>,
+    pub(super) families: Vec<Family>,
+    pub(super) all: Vec<Direction<'g>>,
+}
+
+impl<'a, 'g> Directions<'a, 'g> {
+    pub(super) fn of(model: &'a Mechanics<'g>, system: &'a SystemFormulas<'g>) -> Directions<'a, 'g> {
+        let mut directions = Directions { model, system, families: Vec::new(), all: Vec::new() };
+        let several = |count: usize, name: &str| if count > 1 { format!(" of `{name}`") } else { String::new() };
+        for (k, factor) in model.factors.iter().enumerate() {
+            let of = several(model.factors.len(), &factor.name);
+            directions.add(factor.group, of, factor.side, None, |own, index| Some(own.own(k, index)));
         }
+        for (j, leaf) in model.configurations.iter().enumerate() {
+            for side in [Side::Left, Side::Right] {
+                let Some(k) = directions.commuting_factor(j, side) else { continue };
+                let of = several(model.configurations.len(), &leaf.name);
+                directions
+                    .add(model.factors[k].group, of, side, None, |own, index| Some(own.commuting(j, k, side, index)));
+            }
+        }
+        for (offer, offered) in model.symmetries.iter().enumerate() {
+            let of = format!(" of `{}`", offered.name);
+            directions.add(offered.group, of, offered.side, Some(offer), |own, index| own.offered(offer, index));
+        }
+        directions
     }
-    for (index, offered) in model.symmetries.iter().enumerate() {
-        let of = format!(" of `{}`", offered.name);
-        let frame = if offered.side == Side::Left { "spatial" } else { "body" };
-        families.push(Family { group: offered.group, of, frame, offered: Some(index) });
-        all.extend(offered_directions(model, symbols, generator, index, families.len() - 1));
+
+    /// A family of directions, one for each basis element of a group.
+    fn add(
+        &mut self,
+        group: Group,
+        of: String,
+        side: Side,
+        offered: Option<usize>,
+        direction: impl Fn(&Self, usize) -> Option<Direction<'g>>,
+    ) {
+        self.families.push(Family { group, of, frame: side.frame(), offered });
+        let made: Vec<_> = (0..group.dimension()).filter_map(|index| direction(self, index)).collect();
+        self.all.extend(made);
     }
-    (families, all)
-}
 
-fn unit_vector<'g>(model: &Mechanics<'g>, group: Group, index: usize) -> Expr<'g> {
-    model.graph.unit(Shape::vector(group.dimension()), index, 0)
-}
+    /// The direction of a basis element in the family that was begun last.
+    fn direction(
+        &self,
+        index: usize,
+        momentum: Expr<'g>,
+        (leaves, factors): (Vec<Expr<'g>>, Vec<Expr<'g>>),
+        logarithms: Option<Vec<Expr<'g>>>,
+    ) -> Direction<'g> {
+        Direction { family: self.families.len() - 1, index, leaves, factors, logarithms, momentum }
+    }
 
-/// The velocity that is `xi` in factor k and zero in the others.
-pub(super) fn in_factor<'g>(symbols: &Symbols<'g>, k: usize, xi: Expr<'g>) -> Vec<Expr<'g>> {
-    let zero = |symbol: &Expr<'g>| symbol.graph().zero(symbol.shape());
-    symbols.algebra.iter().enumerate().map(|(other, symbol)| if other == k { xi } else { zero(symbol) }).collect()
-}
+    fn basis_element(&self, group: Group, index: usize) -> Expr<'g> {
+        self.model.graph.unit(Shape::vector(group.dimension()), index, 0)
+    }
 
-/// ξ_Q(q) for a velocity of all factors.
-pub(super) fn generated<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>], velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let replaced: Vec<_> = symbols.algebra.iter().copied().zip(velocity.iter().copied()).collect();
-    generator.iter().map(|motion| motion.substitute(&replaced)).collect()
-}
+    fn no_motion(&self) -> Vec<Expr<'g>> {
+        self.model.factors.iter().map(|factor| self.model.graph.zero(factor.group.element_shape())).collect()
+    }
 
-fn no_motion<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
-    model.factors.iter().map(|factor| model.graph.zero(factor.group.element_shape())).collect()
-}
-
-/// q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right).
-fn own_directions<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    k: usize,
-    family: usize,
-) -> Vec<Direction<'g>> {
-    let factor = &model.factors[k];
-    let exponential = symbols.charts[k] == Chart::Exponential;
-    let direction = |index: usize| {
-        let velocity = in_factor(symbols, k, unit_vector(model, factor.group, index));
-        let element = factor.group.wedge(velocity[k]);
-        let conjugation =
-            factor.group.translate_right(factor.symbol, element) - factor.group.translate_left(factor.symbol, element);
-        let mut factors = no_motion(model);
-        factors[k] = if factor.side == Side::Left { conjugation } else { -conjugation };
-        let momentum = symbols.momenta[k].entry(index, 0);
+    /// q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right).
+    fn own(&self, k: usize, index: usize) -> Direction<'g> {
+        let (system, factor) = (self.system, &self.model.factors[k]);
+        let signed = |change: Expr<'g>| if factor.side == Side::Left { change } else { -change };
+        let velocity = system.in_factor(k, self.basis_element(factor.group, index));
+        let mut factors = self.no_motion();
+        factors[k] = signed(system.conjugation(k, velocity[k]));
+        let momentum = system.symbols.momenta[k].entry(index, 0);
         // log gFg⁻¹ = g (log F) g⁻¹
-        let turned = match exponential {
-            true => factor.group.ad(velocity[k]) * symbols.logarithms[k],
-            false => model.graph.zero(velocity[k].shape()),
+        let turned = if system.symbols.charts[k] == Chart::Exponential {
+            factor.group.ad(velocity[k]) * system.symbols.logarithms[k]
+        } else {
+            self.model.graph.zero(velocity[k].shape())
         };
-        let logarithms = Some(in_factor(symbols, k, if factor.side == Side::Left { turned } else { -turned }));
-        Direction { logarithms, family, index, leaves: generated(symbols, generator, &velocity), factors, momentum }
-    };
-    (0..factor.group.dimension()).map(direction).collect()
+        let logarithms = Some(system.in_factor(k, signed(turned)));
+        self.direction(index, momentum, (system.motion_by(&velocity), factors), logarithms)
+    }
+
+    /// The factor of the leaf's own group for which q ↦ gq (or qg) commutes with the action: then ξ = q⁻¹wq (or qwq⁻¹).
+    fn commuting_factor(&self, j: usize, side: Side) -> Option<usize> {
+        let (model, leaf) = (self.model, &self.model.configurations[j]);
+        let LeafSpace::Group(group) = leaf.space else { return None };
+        let fits = |k: &usize| {
+            let factor = &model.factors[*k];
+            if factor.group != group || factor.side == side || group.is_translation() {
+                return false;
+            }
+            let xi = self.system.symbols.algebra[*k];
+            let motion = multiplied(group, leaf.symbol, group.wedge(xi), side);
+            let velocity = self.system.in_factor(*k, transported(group, leaf.symbol, xi, side));
+            let generated = self.system.motion_by(&velocity);
+            identity::equal(&generated, &alone(&generated, j, motion)) && self.commutes(j, motion)
+        };
+        (0..model.factors.len()).find(fits)
+    }
+
+    /// Whether a motion of leaf j is carried along by the action: DΦ_F(q)·δq = δq at Φ_F(q).
+    fn commutes(&self, j: usize, motion: Expr<'g>) -> bool {
+        let leaf = self.model.configurations[j].symbol;
+        let images: Vec<_> = self.model.action.iter().map(|image| image.differential(&[(leaf, motion)])).collect();
+        identity::equal(&images, &alone(&images, j, motion.substitute(&moved(self.model))))
+    }
+
+    /// q ↦ gq, or qg, of a leaf alone.
+    fn commuting(&self, j: usize, k: usize, side: Side, index: usize) -> Direction<'g> {
+        let (group, q) = (self.model.factors[k].group, self.model.configurations[j].symbol);
+        let w = self.basis_element(group, index);
+        let mut leaves: Vec<_> =
+            self.model.configurations.iter().map(|leaf| self.model.graph.zero(leaf.shape)).collect();
+        leaves[j] = multiplied(group, q, group.wedge(w), side);
+        // ⟨N, q⁻¹wq⟩ = ⟨Ad*_{q⁻¹}N, w⟩
+        let element = if side == Side::Left { group.inverse(q) } else { q };
+        let momentum = group.coadjoint(element, self.system.symbols.momenta[k]).entry(index, 0);
+        let still = self.model.graph.zero(self.system.symbols.logarithms[k].shape());
+        let logarithms = Some(self.system.in_factor(k, still));
+        self.direction(index, momentum, (leaves, self.no_motion()), logarithms)
+    }
+
+    /// A direction of an offered symmetry, where its motion of q is a motion of the group: ξ_Q(q) = δq.
+    fn offered(&self, offer: usize, index: usize) -> Option<Direction<'g>> {
+        let offered = &self.model.symmetries[offer];
+        let one = [(offered.symbol, offered.group.identity(self.model.graph))];
+        let along = [(offered.symbol, offered.group.wedge(self.basis_element(offered.group, index)))];
+        let motions = |images: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            images.iter().map(|image| image.differential(&along).substitute(&one)).collect()
+        };
+        let (leaves, factors) = (motions(&offered.configurations), motions(&offered.elements));
+        let velocity = self.velocity_of(&leaves)?;
+        let pairs = self.system.symbols.momenta.iter().zip(&velocity);
+        let momentum = self.model.graph.total(Shape::scalar(), pairs.map(|(mu, xi)| mu.dot(*xi)));
+        Some(self.direction(index, momentum, (leaves, factors), None))
+    }
+
+    /// ξ with ξ_Q(q) = δq, by least squares in the entries of q; `None` where the group cannot move q so.
+    fn velocity_of(&self, motion: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+        let (graph, matrix) = (self.model.graph, self.system.matrix_of_generator());
+        let entries = motion.iter().flat_map(|leaf| leaf.shape().positions().map(|(i, j)| leaf.entry(i, j)));
+        let given = graph.stack(Shape::vector(matrix.shape().rows), entries.collect());
+        let solved = if matrix.is_identity() {
+            given
+        } else {
+            (matrix.transpose() * matrix).inverse() * (matrix.transpose() * given)
+        };
+        if !identity::equal(&[matrix * solved], &[given]) {
+            return None;
+        }
+        let mut start = 0;
+        let part = |xi: &Expr<'g>| {
+            start += xi.shape().rows;
+            solved.block(start - xi.shape().rows, 0, xi.shape())
+        };
+        Some(self.system.symbols.algebra.iter().map(part).collect())
+    }
 }
 
-/// The factor of the leaf's own group for which q ↦ gq (or qg) commutes with the action: then ξ = q⁻¹wq (or qwq⁻¹).
-fn commuting_factor<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    j: usize,
-    from_left: bool,
-) -> Option<usize> {
-    let leaf = &model.configurations[j];
-    let LeafSpace::Group(group) = leaf.space else { return None };
-    let wanted = if from_left { Side::Right } else { Side::Left };
-    let fits = |k: &usize| {
-        let factor = &model.factors[*k];
-        if factor.group != group || factor.side != wanted || group.is_translation() {
-            return false;
-        }
-        let xi = symbols.algebra[*k];
-        let moved = multiplied(group, leaf.symbol, group.wedge(xi), from_left);
-        let velocity = in_factor(symbols, *k, transported(group, leaf.symbol, xi, from_left));
-        let generated = generated(symbols, generator, &velocity);
-        let expected = |other: usize| if other == j { moved } else { model.graph.zero(generated[other].shape()) };
-        let expected: Vec<_> = (0..generated.len()).map(expected).collect();
-        identity::equal(&generated, &expected) && commutes(model, j, moved)
-    };
-    (0..model.factors.len()).find(fits)
+/// The motion of leaf j alone, of leaves of these shapes.
+fn alone<'g>(leaves: &[Expr<'g>], j: usize, motion: Expr<'g>) -> Vec<Expr<'g>> {
+    let still = |leaf: &Expr<'g>| leaf.graph().zero(leaf.shape());
+    leaves.iter().enumerate().map(|(i, leaf)| if i == j { motion } else { still(leaf) }).collect()
 }
 
 /// w q, or q w.
-fn multiplied<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, from_left: bool) -> Expr<'g> {
-    if from_left { group.translate_right(q, w) } else { group.translate_left(q, w) }
+fn multiplied<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'g> {
+    if side == Side::Left { group.translate_right(q, w) } else { group.translate_left(q, w) }
 }
 
 /// The coordinates of q⁻¹wq, or of qwq⁻¹.
-fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, from_left: bool) -> Expr<'g> {
+fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'g> {
     let (element, inverse) = (group.wedge(w), group.inverse(q));
-    let (before, after) = if from_left { (inverse, q) } else { (q, inverse) };
+    let (before, after) = if side == Side::Left { (inverse, q) } else { (q, inverse) };
     group.projected_coordinates(group.compose(group.compose(before, element), after))
 }
 
-/// Whether a motion of leaf j is carried along by the action: DΦ_F(q)·δq = δq at Φ_F(q).
-fn commutes<'g>(model: &Mechanics<'g>, j: usize, motion: Expr<'g>) -> bool {
-    let leaf = model.configurations[j].symbol;
-    let moved: Vec<_> = model.action.iter().map(|image| image.differential(&[(leaf, motion)])).collect();
-    let images: Vec<_> =
-        model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).collect();
-    let expected = |i: usize| if i == j { motion.substitute(&images) } else { model.graph.zero(moved[i].shape()) };
-    let expected: Vec<_> = (0..moved.len()).map(expected).collect();
-    identity::equal(&moved, &expected)
-}
-
-fn other_directions<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    j: usize,
-    k: usize,
-    from_left: bool,
-    family: usize,
-) -> Vec<Direction<'g>> {
-    let (group, q) = (model.factors[k].group, model.configurations[j].symbol);
-    let direction = |index: usize| {
-        let w = unit_vector(model, group, index);
-        let mut leaves: Vec<_> = model.configurations.iter().map(|leaf| model.graph.zero(leaf.shape)).collect();
-        leaves[j] = multiplied(group, q, group.wedge(w), from_left);
-        // ⟨N, q⁻¹wq⟩ = ⟨Ad*_{q⁻¹}N, w⟩
-        let element = if from_left { group.inverse(q) } else { q };
-        let momentum = group.coadjoint(element, symbols.momenta[k]).entry(index, 0);
-        let logarithms = Some(in_factor(symbols, k, model.graph.zero(symbols.logarithms[k].shape())));
-        Direction { family, index, leaves, factors: no_motion(model), logarithms, momentum }
-    };
-    (0..group.dimension()).map(direction).collect()
-}
-
-/// The directions of an offered symmetry whose motions of q are motions of the group: ξ_Q(q) = δq.
-fn offered_directions<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    offer: usize,
-    family: usize,
-) -> Vec<Direction<'g>> {
-    let offered = &model.symmetries[offer];
-    let one = [(offered.symbol, offered.group.identity(model.graph))];
-    let along = |image: &Expr<'g>, w: Expr<'g>| {
-        image.differential(&[(offered.symbol, offered.group.wedge(w))]).substitute(&one)
-    };
-    let mut directions = Vec::new();
-    for index in 0..offered.group.dimension() {
-        let w = unit_vector(model, offered.group, index);
-        let leaves: Vec<_> = offered.configurations.iter().map(|image| along(image, w)).collect();
-        let factors: Vec<_> = offered.elements.iter().map(|image| along(image, w)).collect();
-        if let Some(velocity) = velocity_of(model, symbols, generator, &leaves) {
-            let pairs = symbols.momenta.iter().zip(&velocity);
-            let momentum = pairs.fold(model.graph.integer(0), |sum, (mu, xi)| sum + mu.dot(*xi));
-            directions.push(Direction { family, index, leaves, factors, logarithms: None, momentum });
-        }
+impl<'g> SystemFormulas<'g> {
+    /// The velocity that is `xi` in factor k and zero in the others.
+    pub(super) fn in_factor(&self, k: usize, xi: Expr<'g>) -> Vec<Expr<'g>> {
+        let zero = |symbol: &Expr<'g>| symbol.graph().zero(symbol.shape());
+        let factors = self.symbols.algebra.iter().enumerate();
+        factors.map(|(other, symbol)| if other == k { xi } else { zero(symbol) }).collect()
     }
-    directions
-}
 
-/// ξ with ξ_Q(q) = δq, by least squares in the entries of q; `None` where the group cannot move q so.
-fn velocity_of<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
-    motion: &[Expr<'g>],
-) -> Option<Vec<Expr<'g>>> {
-    let graph = model.graph;
-    let columns = generator_columns(symbols, generator);
-    let shape = Shape::new(columns[0].len(), columns.len());
-    let matrix = graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect());
-    let entries = motion.iter().flat_map(|leaf| leaf.shape().positions().map(|(i, j)| leaf.entry(i, j)));
-    let given = graph.stack(Shape::vector(shape.rows), entries.collect());
-    let solved = match matrix.is_identity() {
-        true => given,
-        false => (matrix.transpose() * matrix).inverse() * (matrix.transpose() * given),
-    };
-    if !identity::equal(&[matrix * solved], &[given]) {
-        return None;
+    /// ξF − Fξ, the motion of F by gFg⁻¹.
+    pub(super) fn conjugation(&self, k: usize, xi: Expr<'g>) -> Expr<'g> {
+        let (group, f) = (self.model.factors[k].group, self.model.factors[k].symbol);
+        let element = group.wedge(xi);
+        group.translate_right(f, element) - group.translate_left(f, element)
     }
-    let mut start = 0;
-    let part = |xi: &Expr<'g>| {
-        start += xi.shape().rows;
-        solved.block(start - xi.shape().rows, 0, xi.shape())
-    };
-    Some(symbols.algebra.iter().map(part).collect())
 }

@@ -11,10 +11,11 @@ mod special;
 
 use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
+use super::equation::Sources;
 use super::power::{self, SiteTerm};
-use super::{DiscreteLagrangian, Symbols, naming};
-use crate::model::{Isotropy, Mechanics, is_large};
-use directions::directions;
+use super::{DiscreteLagrangian, naming};
+use crate::model::{Isotropy, is_large};
+use directions::Directions;
 
 /// A conserved momentum.
 #[derive(Clone)]
@@ -66,23 +67,21 @@ struct Family {
 
 /// Finds the symmetries of a discrete Lagrangian.
 pub(super) fn find<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
-    generator: &[Expr<'g>],
+    sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
-    inertia: Expr<'g>,
     (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
 ) -> Symmetries<'g> {
+    let model = sources.model;
     if model.factors.iter().any(|factor| is_large(factor.group, &model.configurations)) {
-        return large::find(model, symbols, generator, lagrangian);
+        return large::find(sources, lagrangian);
     }
-    let (families, directions) = directions(model, symbols, generator);
+    let Directions { families, all: directions, .. } = Directions::of(model, sources.system);
     if directions.is_empty() {
         return Symmetries::default();
     }
-    let matrix = variations(model, symbols, lagrangian, &directions, (force, links));
+    let matrix = variations(sources, lagrangian, &directions, (force, links));
     let found = identity::null_space(matrix, &|_| {});
-    let finder = Finder { model, symbols, families, directions, matrix, inertia };
+    let finder = Finder { sources, families, directions, matrix };
     let mut symmetries = Symmetries {
         conserved: finder.momenta(&found),
         special: finder.special(&found),
@@ -91,7 +90,7 @@ pub(super) fn find<'g>(
     };
     symmetries.conserved.extend(finder.along_parameters(&found));
     if model.isotropy == Isotropy::Free {
-        symmetries.conserved.extend(finder.isotropy(generator));
+        symmetries.conserved.extend(finder.isotropy());
     }
     symmetries
 }
@@ -99,29 +98,27 @@ pub(super) fn find<'g>(
 /// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, what the force changes of its
 /// momentum, ⟨f, ξ⟩, and the variation of each term of a power where all sites move alike.
 fn variations<'g>(
-    model: &Mechanics<'g>,
-    symbols: &Symbols<'g>,
+    sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
     directions: &[Direction<'g>],
     (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
 ) -> Expr<'g> {
-    let graph = model.graph;
+    let (model, graph) = (sources.model, sources.model.graph);
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
-    let logarithms: Vec<Expr<'g>> = symbols.logarithms.iter().map(|y| lagrangian.kinetic.gradient(*y)).collect();
+    let logarithms: Vec<Expr<'g>> =
+        sources.symbols.logarithms.iter().map(|y| lagrangian.kinetic.gradient(*y)).collect();
     let gradients: Vec<(Vec<Expr<'g>>, Vec<Expr<'g>>)> = parts
         .iter()
         .map(|part| {
-            let leaves = model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect();
-            let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol)).collect();
-            (leaves, factors)
+            let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol));
+            (sources.gradients(*part), factors.collect())
         })
         .collect();
     let pairing = |gradients: &[Expr<'g>], motions: &[Expr<'g>]| {
-        let terms = gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion));
-        terms.fold(graph.integer(0), |sum, term| sum + term)
+        graph.total(Shape::scalar(), gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion)))
     };
-    let impulse: Vec<(Expr<'g>, Expr<'g>)> =
-        symbols.momenta.iter().copied().zip(force.unwrap_or_default().iter().copied()).collect();
+    let momenta = sources.symbols.momenta.iter().copied();
+    let impulse: Vec<_> = momenta.zip(force.unwrap_or_default().iter().copied()).collect();
     let own = parts.len() + usize::from(force.is_some());
     let of_links: Vec<Vec<Expr<'g>>> =
         directions.iter().map(|direction| power::moved(model, links, &direction.leaves)).collect();
@@ -147,12 +144,10 @@ fn variations<'g>(
 
 /// Everything that names and checks directions.
 struct Finder<'a, 'g> {
-    model: &'a Mechanics<'g>,
-    symbols: &'a Symbols<'g>,
+    sources: &'a Sources<'a, 'g>,
     families: Vec<Family>,
     directions: Vec<Direction<'g>>,
     matrix: Expr<'g>,
-    inertia: Expr<'g>,
 }
 
 impl<'g> Finder<'_, 'g> {
@@ -160,7 +155,7 @@ impl<'g> Finder<'_, 'g> {
     fn momenta(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
         let mut momenta: Vec<ConservedMomentum<'g>> = Vec::new();
         for combination in found {
-            let value = self.value(combination);
+            let value = self.combined(combination, Shape::scalar(), |direction| direction.momentum);
             // a motion that fixes every q has no momentum, and two ways to move q alike have the same
             let known = |value: Expr<'g>| momenta.iter().any(|other| identity::equal(&[other.value], &[value]));
             if !identity::vanishes(value) && !known(value) && !self.is_isotropy(combination) {
@@ -170,25 +165,20 @@ impl<'g> Finder<'_, 'g> {
         momenta
     }
 
-    /// Σ w_i ⟨N, ξ_i⟩.
-    fn value(&self, combination: &[Rational]) -> Expr<'g> {
-        let zero = self.model.graph.integer(0);
+    /// Σ w_i v_i of values of the directions.
+    fn combined(&self, combination: &[Rational], shape: Shape, value: impl Fn(&Direction<'g>) -> Expr<'g>) -> Expr<'g> {
+        let graph = self.sources.model.graph;
         let terms = self.directions.iter().zip(combination).filter(|(_, weight)| !weight.is_zero());
-        terms.fold(zero, |sum, (direction, weight)| sum + direction.momentum * self.model.graph.number(weight.clone()))
+        graph.total(shape, terms.map(|(direction, weight)| graph.number(weight.clone()) * value(direction)))
     }
 
     /// Whether the combination moves no configuration, so that its momentum is zero for every state that is one of q.
     fn is_isotropy(&self, combination: &[Rational]) -> bool {
-        let leaf = |j: usize| {
-            let zero = self.model.graph.zero(self.model.configurations[j].shape);
-            let terms = self.directions.iter().zip(combination).filter(|(_, weight)| !weight.is_zero());
-            terms.fold(zero, |sum, (direction, weight)| {
-                sum + self.model.graph.number(weight.clone()) * direction.leaves[j]
-            })
-        };
-        self.model.isotropy == Isotropy::Fixed
-            && self.model.factors.iter().all(|factor| factor.moves)
-            && (0..self.model.configurations.len()).all(|j| identity::vanishes(leaf(j)))
+        let model = self.sources.model;
+        let leaf = |j: usize| self.combined(combination, model.configurations[j].shape, |of| of.leaves[j]);
+        model.isotropy == Isotropy::Fixed
+            && model.factors.iter().all(|factor| factor.moves)
+            && (0..model.configurations.len()).all(|j| identity::vanishes(leaf(j)))
     }
 
     /// `about e3, spatial`.
@@ -204,16 +194,14 @@ impl<'g> Finder<'_, 'g> {
             if weights.iter().all(Rational::is_zero) {
                 continue;
             }
-            parts.push((naming::combination(self.model, family.group, &weights), family.of.replace('`', "")));
+            parts.push((naming::combination(self.sources.model, family.group, &weights), family.of.replace('`', "")));
             frames.push(family.frame);
         }
         frames.dedup();
         let frames = frames.join(" and ");
         // a diagonal of all factors has one name
-        if parts.len() > 1
-            && parts.len() == self.model.factors.len()
-            && parts.iter().all(|(words, _)| *words == parts[0].0)
-        {
+        let is_diagonal = parts.len() > 1 && parts.iter().all(|(words, _)| *words == parts[0].0);
+        if is_diagonal && parts.len() == self.sources.model.factors.len() {
             return format!("{} of all factors, {frames}", parts[0].0);
         }
         let parts: Vec<String> = parts.into_iter().map(|(words, of)| words + &of).collect();
@@ -225,10 +213,10 @@ impl<'g> Finder<'_, 'g> {
         let complete = |offer: &usize| {
             let of_offer = |i: &usize| self.families[self.directions[*i].family].offered == Some(*offer);
             let positions: Vec<usize> = (0..self.directions.len()).filter(of_offer).collect();
-            let dimension = self.model.symmetries[*offer].group.dimension();
+            let dimension = self.sources.model.symmetries[*offer].group.dimension();
             positions.len() == dimension && positions.iter().all(|&position| holds(found, position))
         };
-        (0..self.model.symmetries.len()).filter(|offer| !complete(offer)).collect()
+        (0..self.sources.model.symmetries.len()).filter(|offer| !complete(offer)).collect()
     }
 }
 

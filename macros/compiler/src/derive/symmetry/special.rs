@@ -3,35 +3,34 @@
 use clebsch_symbolic::identity::Point;
 use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, Zero, identity, integer};
 
-use super::directions::{generated, in_factor};
-use super::{ConservedMomentum, Direction, Family, Finder, holds};
+use super::{ConservedMomentum, Direction, Finder, holds};
 use crate::derive::naming;
-use crate::model::Side;
 
 impl<'g> Finder<'_, 'g> {
     /// Directions along vector parameters: in one family of rotations, or in all of them at once.
     pub(super) fn along_parameters(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
-        let is_turn = |family: &Family| matches!(family.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
-        let turns: Vec<usize> = (0..self.families.len()).filter(|&family| is_turn(&self.families[family])).collect();
+        let is_turn = |family: &usize| turns_in_space(self.families[*family].group);
+        let turns: Vec<usize> = (0..self.families.len()).filter(is_turn).collect();
         let mut choices: Vec<Vec<usize>> = turns.iter().map(|&family| vec![family]).collect();
         if turns.len() > 1 {
             choices.push(turns.clone());
         }
         let mut momenta = Vec::new();
         let own = |parameter: &&crate::model::Parameter<'g>| !parameter.per_site;
-        let of_terms = self.model.power.iter().flat_map(|power| &power.parameters);
-        let of_site = self.model.parameters.iter();
+        let of_terms = self.sources.model.power.iter().flat_map(|power| &power.parameters);
+        let of_site = self.sources.model.parameters.iter();
         // what both read is one
         let read = of_site.clone().chain(of_terms.filter(|one| of_site.clone().all(|other| other.name != one.name)));
         let leaves = read.filter(own).flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
         for (parameter, leaf) in leaves.filter(|(_, leaf)| leaf.shape == Shape::vector(3)) {
             for choice in &choices {
-                let weight = |direction: &Direction<'g>| match choice.contains(&direction.family) {
-                    true => leaf.symbol.entry(direction.index, 0),
-                    false => self.model.graph.integer(0),
+                let graph = self.sources.model.graph;
+                let weight = |direction: &Direction<'g>| {
+                    let is_of_choice = choice.contains(&direction.family);
+                    if is_of_choice { leaf.symbol.entry(direction.index, 0) } else { graph.integer(0) }
                 };
                 let weights: Vec<_> = self.directions.iter().map(weight).collect();
-                let general = self.matrix * self.model.graph.stack(Shape::vector(weights.len()), weights.clone());
+                let general = self.matrix * graph.stack(Shape::vector(weights.len()), weights.clone());
                 let whole = choice.iter().all(|family| self.is_whole(found, *family));
                 if whole || !identity::vanishes(general) {
                     continue;
@@ -54,19 +53,16 @@ impl<'g> Finder<'_, 'g> {
     }
 
     /// Where motions that fix q are motions too: the momentum along a vector leaf q of a group of rotations that turn about it.
-    pub(super) fn isotropy(&self, generator: &[Expr<'g>]) -> Vec<ConservedMomentum<'g>> {
+    pub(super) fn isotropy(&self) -> Vec<ConservedMomentum<'g>> {
         let mut momenta = Vec::new();
-        for (k, factor) in self.model.factors.iter().enumerate() {
-            if !matches!(factor.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions) {
-                continue;
-            }
-            for leaf in self.model.configurations.iter().filter(|leaf| leaf.shape == Shape::vector(3)) {
-                let velocity = in_factor(self.symbols, k, leaf.symbol);
-                let fixes = generated(self.symbols, generator, &velocity).into_iter().all(identity::vanishes);
-                if fixes {
-                    let frame = if factor.side == Side::Left { "spatial" } else { "body" };
-                    let value = self.symbols.momenta[k].dot(leaf.symbol);
-                    momenta.push(ConservedMomentum { name: format!("about {}, {frame}", leaf.name), value });
+        let factors = self.sources.model.factors.iter().enumerate();
+        for (k, factor) in factors.filter(|(_, factor)| turns_in_space(factor.group)) {
+            for leaf in self.sources.model.configurations.iter().filter(|leaf| leaf.shape == Shape::vector(3)) {
+                let motion = self.sources.motion_by(&self.sources.in_factor(k, leaf.symbol));
+                if motion.into_iter().all(identity::vanishes) {
+                    let value = self.sources.symbols.momenta[k].dot(leaf.symbol);
+                    let name = format!("about {}, {}", leaf.name, factor.side.frame());
+                    momenta.push(ConservedMomentum { name, value });
                 }
             }
         }
@@ -78,14 +74,13 @@ impl<'g> Finder<'_, 'g> {
         let mut sentences = Vec::new();
         for (position, direction) in self.directions.iter().enumerate() {
             let family = &self.families[direction.family];
-            let turns = matches!(family.group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions);
-            if !turns || holds(found, position) {
+            if !turns_in_space(family.group) || holds(found, position) {
                 continue;
             }
             if let Some(conditions) = self.conditions(position, direction.index) {
                 let mut weights = vec![Rational::zero(); family.group.dimension()];
                 weights[direction.index] = integer(1);
-                let words = naming::combination(self.model, family.group, &weights);
+                let words = naming::combination(self.sources.model, family.group, &weights);
                 sentences.push(format!("{words}{}, {}, where {conditions}", family.of.replace('`', ""), family.frame));
             }
         }
@@ -96,6 +91,7 @@ impl<'g> Finder<'_, 'g> {
     fn conditions(&self, position: usize, axis: usize) -> Option<String> {
         let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
         let leaves: Vec<Expr<'g>> = self
+            .sources
             .model
             .parameters
             .iter()
@@ -136,10 +132,16 @@ impl<'g> Finder<'_, 'g> {
             without.remove(position);
             if holds(&without) { special = without } else { position += 1 }
         }
-        let regular = identity::rank_where(self.inertia, &|point| set(&special, point)) == self.inertia.shape().rows;
+        let regular = identity::rank_where(self.sources.inertia, &|point| set(&special, point))
+            == self.sources.inertia.shape().rows;
         let texts: Vec<String> = special.into_iter().map(|special| special.text).collect();
         (regular && !texts.is_empty()).then(|| texts.join(" and "))
     }
+}
+
+/// Whether the elements of a group are the rotations of space.
+fn turns_in_space(group: Group) -> bool {
+    matches!(group, Group::SpecialOrthogonal(3) | Group::UnitQuaternions)
 }
 
 /// A special value of a parameter.

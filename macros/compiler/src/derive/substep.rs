@@ -1,0 +1,186 @@
+//! A substep: one discrete Lagrangian with what a step of it needs.
+
+use clebsch_symbolic::{Chart, Expr, identity};
+
+use super::equation::{MomentumEquation, Solution, Sources};
+use super::force::total;
+use super::trivialisation::{self, Covector};
+use super::{
+    DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, summation, variation,
+};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::features::{self, Feature, Found};
+use crate::model::{ChartChoice, Discretization, Mechanics, System};
+
+/// One discrete Lagrangian with what a step of it needs.
+pub struct Substep<'g> {
+    /// Its part of the step: h is to be read as h divided by this.
+    pub divisor: i64,
+    /// The discrete Lagrangian, in terms of the whole step h.
+    pub lagrangian: DiscreteLagrangian<'g>,
+    /// How much later than the whole step it starts.
+    pub begins: Expr<'g>,
+    /// How much later than the start of the whole step it ends.
+    pub ends: Expr<'g>,
+    /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`, which is apart where sums are compensated; `None` if there is
+    /// none.
+    pub start: Option<Vec<Expr<'g>>>,
+    /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
+    pub rest: Option<Vec<Expr<'g>>>,
+    /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
+    pub end: Option<Vec<Expr<'g>>>,
+    /// The momentum equations, each for the factors that depend on each other.
+    pub equations: Vec<MomentumEquation<'g>>,
+    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
+    pub unchanged: Vec<bool>,
+    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
+    /// changes with the time.
+    pub other: Option<Vec<Expr<'g>>>,
+    /// What acts beside the potential; `None` if nothing does.
+    pub force: Option<EdgeForce<'g>>,
+    /// Second derivatives of the discrete Lagrangian, where they are asked for.
+    pub variation: Option<EdgeDerivatives<'g>>,
+}
+
+impl<'g> Substep<'g> {
+    /// The substep of a discrete Lagrangian that starts `begins` after the whole step.
+    pub(super) fn new(
+        mut sources: Sources<'_, 'g>,
+        variations: &variation::Source<'_, 'g>,
+        lagrangian: DiscreteLagrangian<'g>,
+        begins: Expr<'g>,
+        force: Option<EdgeForce<'g>>,
+    ) -> Substep<'g> {
+        let model = sources.model;
+        let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
+        let coupling = lagrangian.couples.then(|| sources.coupling(lagrangian.kinetic));
+        // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
+        let moving = force.as_ref().and_then(|force| force.start_moving.as_ref()).map(|moving| -> Vec<Expr<'g>> {
+            moving.iter().map(|part| -part.substitute(&[(model.time, model.time + begins)])).collect()
+        });
+        sources.forced = moving.is_some();
+        let coupling = total(coupling, moving);
+        let rest = at_rest(model, &before, coupling.as_deref());
+        // impulses are functions of the time of the configuration, K of the time at which the whole step starts
+        let earlier = |rest: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            rest.iter().map(|part| part.substitute(&[(model.time, model.time - begins)])).collect()
+        };
+        let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
+        let other = lagrangian.couples || changes;
+        let ends = begins + model.step_size / sources.divisor;
+        Substep {
+            unchanged: (0..model.factors.len()).map(|k| !other && agree(model, (&before, &after), k)).collect(),
+            variation: model
+                .has_variations()
+                .then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
+            begins,
+            ends,
+            divisor: sources.divisor,
+            start: if summation::is_compensated(model) {
+                // what comes back after the move is added for the solve alone, and stays out of the sums
+                sources.impulse(lagrangian.start)
+            } else {
+                total(sources.impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest)))
+            },
+            end: sources.impulse(lagrangian.end),
+            equations: equations::equations(&sources, &before, coupling.as_deref()),
+            other: other.then(|| trivialisation::components(model, &after)),
+            rest,
+            force,
+            lagrangian,
+        }
+    }
+}
+
+/// Whether both trivialisations of a factor have the same components.
+fn agree<'g>(model: &System<'g>, (before, after): (&[Covector<'g>], &[Covector<'g>]), k: usize) -> bool {
+    let group = model.factors[k].group;
+    identity::equal(&[before[k].components(group)], &[after[k].components(group)])
+}
+
+/// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.
+pub(super) fn check_unmoved<'g>(model: &System<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<(), Diagnostics> {
+    let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
+    let has_sides = |k: &usize| !model.factors[*k].moves && !agree(model, (&before, &after), *k);
+    let Some(k) = (0..model.factors.len()).find(has_sides) else { return Ok(()) };
+    let factor = &model.factors[k];
+    let (name, group) = (&factor.name, factor.group.name(model.graph));
+    let error = Diagnostic::new(factor.span, format!("the factor `{name}: {group}` moves nothing"))
+        .help(format!("let it move a configuration, as in `R * {name}`, or give it a cost that is invariant under conjugation, as `({name} - I).norm_squared() / (2 * h)`"))
+        .note(format!("without a configuration to move it has no side, and this cost is not the same for {name} and g*{name}*g⁻¹"));
+    Err(error.into())
+}
+
+/// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.
+fn at_rest<'g>(model: &System<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
+    let rest: Vec<_> = (0..model.factors.len()).map(|k| -equations::at_identity(model, before, coupling, k)).collect();
+    rest.iter().any(|part| !identity::vanishes(*part)).then_some(rest)
+}
+
+/// F⁻ℓd, and F⁺ℓd without its last kick, of the declared discrete Lagrangian.
+pub(super) fn legendre<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
+    let mut before = trivialisation::components(model, &before);
+    let mut after = trivialisation::components(model, &after);
+    // with the symbol μ for the momentum of the free motion that makes F
+    for k in (0..model.factors.len()).filter(|&k| exact::is_free_rotation(model, k)) {
+        before[k] = system.symbols.momenta[k];
+        after[k] = system.carried(k, before[k]);
+    }
+    if lagrangian.couples {
+        let coupling = system.coupling(lagrangian.kinetic);
+        before.iter_mut().zip(coupling).for_each(|(before, coupling)| *before = *before + coupling);
+    }
+    if let Some(start) = system.impulse(lagrangian.start) {
+        before.iter_mut().zip(start).for_each(|(before, start)| *before = *before - start);
+    }
+    (before, after)
+}
+
+/// Takes the chart of the sine for the rotations that every substep solves in closed form: there the solution needs no root and the
+/// increment one division, where Cayley's chart has the tangent of half the angle to be undone.
+pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<'g>]) {
+    let count = substeps.len();
+    for block in symbols.blocks.clone() {
+        let mut own: Vec<&mut MomentumEquation<'g>> = substeps
+            .iter_mut()
+            .filter_map(|substep| {
+                substep.equations.iter_mut().find(|equation| equation.components.iter().copied().eq(block.components()))
+            })
+            .filter(|equation| equation.sine.is_some())
+            .collect();
+        if own.len() < count {
+            continue;
+        }
+        symbols.charts[block.factor] = Chart::Sine;
+        for equation in &mut own {
+            let Some(form) = equation.sine else { continue };
+            (equation.residual, equation.directional) = (form.residual, form.directional);
+            equation.formula = Some(form.solution);
+            equation.sine_squared = Some(block.coordinates.norm_squared());
+        }
+    }
+}
+
+/// Velocities by Cayley's map have poles in the exponential chart, which Cayley's own has not.
+pub(super) fn check_poles(
+    model: &Mechanics<'_>,
+    symbols: &Symbols<'_>,
+    substeps: &[Substep<'_>],
+) -> Result<(), Diagnostics> {
+    let by_cayley = model.kinetic.discretization() == Some(Discretization::Cayley);
+    let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
+    let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
+    let has_poles = |equation: &MomentumEquation<'_>| {
+        equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates)
+    };
+    let Some(chosen) = chosen else { return Ok(()) };
+    features::check((Feature::ExponentialChart, Found::at(chosen.span)), |feature| {
+        let mut equations = substeps.iter().flat_map(|substep| &substep.equations);
+        Found::when(feature == Feature::Poles && equations.any(has_poles))
+    })
+}
