@@ -48,7 +48,6 @@ impl<T: Copy, const K: usize> Conserved<T, K> {
     getters! {
         /// The names.
         ref names: [&'static str; K];
-
         /// The values, in the units of the momentum.
         ref values: [T; K];
     }

@@ -82,10 +82,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
     /// Σ⁻¹μ.
     #[inline]
     pub fn times(&self, mu: &SVector<T, N>) -> SVector<T, N> {
-        match &self.diagonal {
-            Some(diagonal) => diagonal.component_mul(mu),
-            None => self.matrix * mu,
-        }
+        self.diagonal.map_or_else(|| self.matrix * mu, |diagonal| diagonal.component_mul(mu))
     }
 
     /// Σ⁻¹ itself.

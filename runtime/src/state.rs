@@ -114,7 +114,6 @@ impl<S: Clebsch> CotangentState<S> {
     getters! {
         /// The configuration q.
         ref configuration: S::Configuration;
-
         /// The covector p.
         ref covector: S::Configuration;
     }

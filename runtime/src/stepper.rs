@@ -101,12 +101,6 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_finite("the momentum", &(*mu, projected))?;
         Ok(projected)
     }
-
-    /// What no step changes.
-    #[inline]
-    pub(crate) fn constants(&self) -> &Constants<S, M> {
-        &self.constants
-    }
 }
 
 /// Where conserved momenta were found.

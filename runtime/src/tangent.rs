@@ -198,7 +198,7 @@ where
         if !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        let (system, constants) = (self.system(), self.constants());
+        let (system, constants) = (&self.system, &self.constants);
         let increment = system.drift(constants, number, t, q, mu, u)?;
         let next = system.advance(q, &increment);
         let edge = system.carried(constants, number, t, q, &increment, &next, u);
@@ -254,7 +254,7 @@ where
     {
         let mut sensitivity = Sensitivity::zero();
         let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
-            let slopes = self.system().edge_slopes(self.constants(), number, state.time.now(), q, increment, next, u);
+            let slopes = self.system.edge_slopes(&self.constants, number, state.time.now(), q, increment, next, u);
             let motion = -times(&tangent.motion_by_momentum, &slopes.0);
             let of_edge = Sensitivity { motion, momentum: slopes.1 + times(&edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(tangent, &of_edge);

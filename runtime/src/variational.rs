@@ -1,7 +1,7 @@
 //! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
 
 use crate::parts::Varied;
-use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, Ends, FirstDerivatives, SecondDerivatives};
+use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, FirstDerivatives, SecondDerivatives};
 use crate::scheme::{At, Constants};
 use crate::steered::no_endpoint;
 use crate::{Clebsch, EndpointExpansion, Error};
@@ -54,7 +54,7 @@ pub trait Variational<const M: usize>:
         mu: &Self::Momentum,
         u: &Self::Input,
     ) -> Result<Self::Element, Error> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, Drift { q, mu, u })
+        Self::Scheme::visit(At::new(self, constants, t), edge, Drift(q, mu, u))
     }
 
     /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
@@ -69,7 +69,7 @@ pub trait Variational<const M: usize>:
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> Edge<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, SecondDerivatives(Ends { q, d, next, u }))
+        Self::Scheme::visit(At::new(self, constants, t), edge, SecondDerivatives((q, d, next, u)))
     }
 
     /// [`edge`](Self::edge) without derivatives of the momenta.
@@ -84,7 +84,7 @@ pub trait Variational<const M: usize>:
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> Momenta<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, FirstDerivatives(Ends { q, d, next, u }))
+        Self::Scheme::visit(At::new(self, constants, t), edge, FirstDerivatives((q, d, next, u)))
     }
 
     /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
@@ -100,7 +100,7 @@ pub trait Variational<const M: usize>:
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> Carried<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, AtFixedElement(Ends { q, d, next, u }))
+        Self::Scheme::visit(At::new(self, constants, t), edge, AtFixedElement((q, d, next, u)))
     }
 
     /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
@@ -201,7 +201,7 @@ pub trait Sensitive<const M: usize, const P: usize>:
         next: &Self::Configuration,
         u: &Self::Input,
     ) -> BothSlopes<Self::Scalar, M, P> {
-        let slopes = Self::Scheme::visit(At::new(self, constants, t), edge, ByQuantities(Ends { q, d, next, u }));
+        let slopes = Self::Scheme::visit(At::new(self, constants, t), edge, ByQuantities((q, d, next, u)));
         let of_step = |slopes| Self::Scheme::slopes_of_step(constants, edge, slopes, (Self::STEP_SIZE, Self::TIME));
         (of_step(slopes.0), of_step(slopes.1))
     }

@@ -72,7 +72,6 @@ impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
     getters! {
         /// The system with its step size.
         ref stepper: Stepper<S, M>;
-
         /// The number of steps that it has made, at most 2⁶⁴ − 1.
         copy steps: u64;
     }

@@ -63,10 +63,7 @@ impl From<SiteError> for Error {
 /// A step costs and computes what [`Stepper::step`] does, to the last bit; it reads one state and writes the other, so that the state is
 /// what it was where a step fails.
 #[derive(Clone, Debug)]
-pub struct Sites<P, Points, Momenta, const N: usize>
-where
-    P: Clebsch,
-{
+pub struct Sites<P: Clebsch, Points, Momenta, const N: usize> {
     stepper: Stepper<P>,
     time: P::Time,
     steps: u64,
@@ -206,7 +203,6 @@ where
     getters! {
         /// The system with its step size.
         ref stepper: Stepper<P>;
-
         /// The number of steps that it has made, at most 2⁶⁴ − 1.
         copy steps: u64;
     }

@@ -40,27 +40,11 @@ pub trait Visit<S: Clebsch + ?Sized, const M: usize> {
         S: VariedSubstep<K, M>;
 }
 
-/// The ends of an edge, and the input of its forces.
-pub struct Ends<'a, S: Clebsch + ?Sized> {
-    /// q
-    pub q: &'a Q<S>,
-    /// F − I
-    pub d: &'a F<S>,
-    /// q⁺
-    pub next: &'a Q<S>,
-    /// u
-    pub u: &'a U<S>,
-}
+/// q, F − I, q⁺ and u: the ends of an edge, and the input of its forces.
+pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
 
-/// The increment of the group element with the momentum μ at q.
-pub struct Drift<'a, S: Clebsch + ?Sized> {
-    /// q
-    pub q: &'a Q<S>,
-    /// μ
-    pub mu: &'a Mu<S>,
-    /// u
-    pub u: &'a U<S>,
-}
+/// The increment of the group element with the momentum μ at q, of q, μ and u.
+pub struct Drift<'a, S: Clebsch + ?Sized>(pub &'a Q<S>, pub &'a Mu<S>, pub &'a U<S>);
 
 impl<S: Clebsch + ?Sized, const M: usize> Visit<S, M> for Drift<'_, S> {
     type Output = Result<F<S>, Error>;
@@ -70,7 +54,7 @@ impl<S: Clebsch + ?Sized, const M: usize> Visit<S, M> for Drift<'_, S> {
     where
         S: VariedSubstep<K, M>,
     {
-        let x = solve_before_kick::<S, Declared, K>(at, self.q, self.mu, self.u)?;
+        let x = solve_before_kick::<S, Declared, K>(at, self.0, self.1, self.2)?;
         Ok(at.system.increment(&x))
     }
 }
@@ -89,7 +73,7 @@ macro_rules! asked {
             where
                 S: VariedSubstep<K, M>,
             {
-                let Ends { q, d, next, u } = self.0;
+                let (q, d, next, u) = self.0;
                 at.system.$method(at.constants, at.t, q, d, next, u)
             }
         }

@@ -88,10 +88,7 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
 
     #[inline(always)]
     fn gradient(at: At<'_, S, M>, q: &Point<S, N>) -> Point<S, N> {
-        match at.system.start_gradient(at.constants, at.t, q) {
-            Some(gradient) => gradient,
-            None => Space::origin(),
-        }
+        at.system.start_gradient(at.constants, at.t, q).unwrap_or_else(Space::origin)
     }
 
     #[inline(always)]
@@ -112,15 +109,12 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
         let one = S::Scalar::from_f64(1.0);
         let two = S::Scalar::from_f64(2.0);
         push(q, w, gradient, one);
-        for _ in 1..steps {
+        for left in (0..steps).rev() {
             turn_great_circle(a, q, w)?;
             *gradient = <Self as Turns<S, M, N>>::gradient(at, q);
             // between two steps both kicks are one
-            push(q, w, gradient, two);
+            push(q, w, gradient, if left > 0 { two } else { one });
         }
-        turn_great_circle(a, q, w)?;
-        *gradient = <Self as Turns<S, M, N>>::gradient(at, q);
-        push(q, w, gradient, one);
         Ok(())
     }
 }

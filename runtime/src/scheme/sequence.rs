@@ -165,10 +165,7 @@ impl<S: Substep<0, M>, M: Method<S>> Carry<S, M> for Shared {
 impl<S: Substep<0, M>, M: Method<S>> CarryKick<S, M> for Shared {
     #[inline(always)]
     fn impulse(kick: Option<Mu<S>>) -> Mu<S> {
-        match kick {
-            Some(kick) => kick,
-            None => Mu::<S>::origin(),
-        }
+        kick.unwrap_or_else(Space::origin)
     }
 
     #[inline(always)]
