@@ -9,7 +9,7 @@ use clebsch_symbolic::work::{self, Exhausted};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
 /// The work of one expansion, for each of its methods: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
@@ -44,16 +44,17 @@ const LESS: &str = "use a smaller group or fewer factors, or a struct for each p
 
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
-    let kinetic = || Location::of(&declaration.kinetic.closure().body);
-    let (place, what, instead) = match (culprit(declaration), stage) {
-        (Some(culprit), _) => culprit,
-        (None, CompilerStage::Model) => (Location::of(&declaration.action.body), "the laws of this action take", LESS),
-        (None, CompilerStage::Derive) => (kinetic(), "the formulas that are derived from this take", LESS),
-        (None, CompilerStage::Lower) => (kinetic(), "the code of a step with this takes", LESS),
-        (None, CompilerStage::Emit) => (kinetic(), "the text of a step with this takes", LESS),
-    };
-    let message = format!("`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
-    let error = Diagnostic::new(place, message);
+    let kinetic = &declaration.kinetic.closure().body;
+    let (place, what, instead) = culprit(declaration).unwrap_or_else(|| {
+        let (body, what) = match stage {
+            CompilerStage::Model => (&declaration.action.body, "the laws of this action take"),
+            CompilerStage::Derive => (kinetic, "the formulas that are derived from this take"),
+            CompilerStage::Lower => (kinetic, "the code of a step with this takes"),
+            CompilerStage::Emit => (kinetic, "the text of a step with this takes"),
+        };
+        (body.into(), what.to_string(), LESS)
+    });
+    let error = error!(place, "`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
     let error = smaller(declaration).into_iter().fold(error, |error, text| error.help(text));
     error
         .help(instead)
@@ -61,24 +62,15 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
 }
 
 /// What the declaration is small without, and what to write instead: the first closure that can be left out, without which a quarter of the budget is enough.
-fn culprit(declaration: &Declaration) -> Option<(Location, &'static str, &'static str)> {
+fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)> {
     type Without = fn(&mut Declaration);
     let potential = declaration.potential.as_ref().and_then(Potential::closure);
+    const METHODS: &str = "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`";
     let rows: [(Option<&Closure>, Without, &str, &str); 4] = [
-        (
-            declaration.endpoint.as_ref(),
-            |rest| rest.endpoint = None,
-            "what is derived from this price takes",
-            "write a shorter price of the end",
-        ),
-        (
-            potential,
-            |rest| rest.potential = None,
-            "what is derived from this potential takes",
-            "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`",
-        ),
-        (declaration.force.as_ref(), |rest| rest.force = None, FORCE, SHORTER_FORCE),
-        (declaration.force_on.as_ref(), |rest| rest.force_on = None, FORCE, SHORTER_FORCE),
+        (declaration.endpoint.as_ref(), |rest| rest.endpoint = None, "price", "write a shorter price of the end"),
+        (potential, |rest| rest.potential = None, "potential", METHODS),
+        (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
+        (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),
     ];
     let is_small = |without: Without| {
         let mut rest = declaration.clone();
@@ -88,11 +80,11 @@ fn culprit(declaration: &Declaration) -> Option<(Location, &'static str, &'stati
         work::within(WORK / 4, stages) == Ok(true)
     };
     rows.into_iter().find_map(|(closure, without, what, instead)| {
-        closure.filter(|_| is_small(without)).map(|closure| (Location::of(&closure.body), what, instead))
+        let closure = closure.filter(|_| is_small(without))?;
+        Some((Location::of(&closure.body), format!("what is derived from this {what} takes"), instead))
     })
 }
 
-const FORCE: &str = "what is derived from this force takes";
 const SHORTER_FORCE: &str = "write a shorter force, or put the part of it that is long into the input";
 
 /// What makes the formulas of a declaration long and can be left out.
@@ -129,8 +121,8 @@ pub(crate) fn without_panic<T>(item: &TokenStream, make: impl FnOnce() -> T) -> 
 
 fn bug(item: &TokenStream, payload: &(dyn Any + Send)) -> Diagnostic {
     let text = payload.downcast_ref::<String>().map(String::as_str).or(payload.downcast_ref::<&str>().copied());
-    Diagnostic::new(name(item), format!("this declaration has found a bug in clebsch: {}", text.unwrap_or("a panic")))
-        .help("report it with the declaration, which need not be right: any declaration is to have an integrator or an error that helps")
+    error!(name(item), "this declaration has found a bug in clebsch: {}", text.unwrap_or("a panic");
+        help "report it with the declaration, which need not be right: any declaration is to have an integrator or an error that helps")
 }
 
 /// The name of an item; its first token where it has none.
@@ -144,21 +136,4 @@ fn name(item: &TokenStream) -> Span {
 }
 
 #[cfg(test)]
-mod tests {
-    use quote::quote;
-
-    use super::without_panic;
-
-    #[test]
-    fn a_panic_is_an_error_that_asks_for_a_report() {
-        let item = quote!(
-            #[clebsch()]
-            pub struct Body;
-        );
-        let errors = without_panic(&item, || std::panic::resume_unwind(Box::new("no such thing"))).unwrap_err();
-        let text = errors.to_string();
-        assert!(text.starts_with("error: this declaration has found a bug in clebsch: no such thing"), "{text}");
-        assert!(text.contains("help: report it with the declaration"), "{text}");
-        assert_eq!(without_panic(&item, || 1).ok(), Some(1));
-    }
-}
+mod tests;

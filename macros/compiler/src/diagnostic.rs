@@ -1,5 +1,6 @@
 //! Errors that help: what is wrong, what to type instead, and why; collected, so that a stage reports all of its errors.
 
+use std::cell::RefCell;
 use std::fmt;
 
 use proc_macro2::{Span, TokenStream, TokenTree};
@@ -40,6 +41,37 @@ impl From<Span> for Location {
     }
 }
 
+impl<T: ToTokens + ?Sized> From<&T> for Location {
+    fn from(tokens: &T) -> Location {
+        Location::of(tokens)
+    }
+}
+
+/// An error at a place: its message, then help and notes, each a text with what it formats.
+macro_rules! error {
+    ($place:expr, $message:literal $(, $given:expr)* $(; $line:ident $text:literal $(, $also:expr)*)*) => {
+        $crate::diagnostic::Diagnostic::new($place, format_args!($message $(, $given)*))
+            $(.$line(format_args!($text $(, $also)*)))*
+    };
+}
+
+/// Returns an error.
+macro_rules! bail {
+    ($($error:tt)*) => { return Err($crate::diagnostic::error!($($error)*).into()) };
+}
+
+/// Reports an error to what collects them, and returns no value.
+macro_rules! refuse {
+    ($collector:expr, $($error:tt)*) => { return $collector.refuse($crate::diagnostic::error!($($error)*)) };
+}
+
+/// Reports an error to what collects them.
+macro_rules! report {
+    ($collector:expr, $($error:tt)*) => { $collector.push($crate::diagnostic::error!($($error)*)) };
+}
+
+pub(crate) use {bail, error, refuse, report};
+
 /// One error: a first line, then lines of help and notes in the order in which they were added.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
@@ -51,8 +83,8 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// What is wrong: lower case, no full stop, the user's names in backticks.
-    pub fn new(place: impl Into<Location>, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { place: place.into(), message: message.into(), lines: Vec::new(), comes_later: false }
+    pub fn new(place: impl Into<Location>, message: impl fmt::Display) -> Diagnostic {
+        Diagnostic { place: place.into(), message: message.to_string(), lines: Vec::new(), comes_later: false }
     }
 
     /// The text to type instead.
@@ -121,7 +153,7 @@ impl From<syn::Error> for Diagnostic {
 /// The errors of a stage, in the order in which they were found.
 #[derive(Clone, Default, Debug)]
 pub struct Diagnostics {
-    found: Vec<Diagnostic>,
+    found: RefCell<Vec<Diagnostic>>,
 }
 
 impl Diagnostics {
@@ -131,48 +163,75 @@ impl Diagnostics {
     }
 
     /// Adds an error.
-    pub fn push(&mut self, diagnostic: impl Into<Diagnostic>) {
-        self.found.push(diagnostic.into());
+    pub fn push(&self, diagnostic: impl Into<Diagnostic>) {
+        self.found.borrow_mut().push(diagnostic.into());
+    }
+
+    /// Adds an error, which leaves no value.
+    pub fn refuse<T>(&self, diagnostic: impl Into<Diagnostic>) -> Option<T> {
+        self.push(diagnostic);
+        None
+    }
+
+    /// The value, or none and its errors among these.
+    pub fn take<T>(&self, result: Result<T, impl Into<Diagnostics>>) -> Option<T> {
+        result.map_err(|errors| self.extend(errors.into())).ok()
+    }
+
+    /// Adds errors.
+    pub fn extend(&self, errors: impl IntoIterator<Item = Diagnostic>) {
+        self.found.borrow_mut().extend(errors);
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.found.is_empty()
+        self.len() == 0
     }
 
     /// The number of errors.
     pub fn len(&self) -> usize {
-        self.found.len()
+        self.found.borrow().len()
+    }
+
+    /// Forgets all errors but the first ones.
+    pub fn truncate(&self, len: usize) {
+        self.found.borrow_mut().truncate(len);
     }
 
     /// The errors.
     pub fn into_vec(self) -> Vec<Diagnostic> {
-        self.found
+        self.found.into_inner()
     }
 
     /// The value, unless there were errors.
     pub fn propagate<T>(self, value: T) -> Result<T, Diagnostics> {
-        match self.is_empty() {
-            true => Ok(value),
-            false => Err(self),
-        }
+        if self.is_empty() { Ok(value) } else { Err(self) }
     }
 
     /// One `compile_error!` for each error, at its place.
     pub fn to_compile_errors(&self) -> TokenStream {
-        self.found.iter().map(Diagnostic::to_compile_error).collect()
+        self.found.borrow().iter().map(Diagnostic::to_compile_error).collect()
     }
 }
 
 impl From<Diagnostic> for Diagnostics {
     fn from(diagnostic: Diagnostic) -> Diagnostics {
-        Diagnostics { found: vec![diagnostic] }
+        Diagnostics { found: vec![diagnostic].into() }
+    }
+}
+
+impl IntoIterator for Diagnostics {
+    type Item = Diagnostic;
+    type IntoIter = std::vec::IntoIter<Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.into_vec().into_iter()
     }
 }
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (position, diagnostic) in self.found.iter().enumerate() {
+        for (position, diagnostic) in self.found.borrow().iter().enumerate() {
             let separator = if position == 0 { "" } else { "\n\n" };
             let text = diagnostic.to_string().replace("\n\n", "\n").replace('\n', "\n       ");
             write!(f, "{separator}error: {text}")?;

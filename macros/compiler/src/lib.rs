@@ -82,7 +82,7 @@ fn program<'g>(
         // what inputs move has no methods
         steered => return Ok(steered),
     };
-    let mut diagnostics = Diagnostics::new();
+    let diagnostics = Diagnostics::new();
     // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
     let graphs = std::iter::successors(Some(graph), |graph| Some(graph.another())).skip(1);
     for (method, graph) in declaration.methods.iter().zip(graphs) {

@@ -2,7 +2,7 @@
 
 use proc_macro2::Ident;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostics, error};
 use crate::lower::{MechanicsProgram, Program};
 
 /// A further way to step the system of a program.
@@ -40,8 +40,7 @@ impl<'g> MethodProgram<'g> {
         match of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
             None => Ok(MethodProgram { name: name.clone(), program: *program }),
             Some(lost) => {
-                let message = format!("the method `{name}` does not conserve the momentum `{lost}`");
-                let error = Diagnostic::new(name.span(), message);
+                let error = error!(name.span(), "the method `{name}` does not conserve the momentum `{lost}`");
                 let error = error.help("write another `discretization` for it, or declare another struct");
                 Err(error
                     .note("the steps with the declared dials do, and what is conserved is said for the system")

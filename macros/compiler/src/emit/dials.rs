@@ -38,6 +38,6 @@ impl Emitter<'_, '_> {
     }
 
     fn iterations(&self) -> Option<Literal> {
-        Some(Literal::u32_unsuffixed(self.model.dials.iterations.as_ref()?.value))
+        Some(Literal::u32_unsuffixed(self.model.dials.limit()?))
     }
 }

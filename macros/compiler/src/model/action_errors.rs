@@ -6,27 +6,26 @@ use super::action_laws::Action;
 use super::elaborate::shortened;
 use super::membership::Verdict;
 use super::{Configuration, Factor, LeafSpace};
-use crate::diagnostic::{Diagnostic, Location};
-use crate::parse::spell;
+use crate::diagnostic::{Diagnostic, error};
+use crate::parse::{joined, spell};
 
 impl<'g> Action<'_, 'g> {
     /// The identity moves something.
     pub(super) fn identity_moves(&self) -> Diagnostic {
         let images = self.of_identity();
         let moved = self.configurations.iter().zip(&images).find(|(leaf, image)| leaf.symbol != **image);
-        let names: Vec<String> =
-            self.factors.iter().map(|factor| format!("{} = {}", factor.name, identity_name(factor.group))).collect();
         let error = self.no_action(None);
-        match moved {
+        let error = match moved {
             Some((leaf, &image)) => {
-                let formula = Some(ascii(image)).filter(|formula| self.is_readable(formula));
-                let place = formula.map_or("elsewhere".to_string(), |formula| format!("to {formula}"));
-                let names = names.join(", ");
+                let identity = |group: Group| if group.is_translation() { "0" } else { "I" };
+                let names =
+                    joined(self.factors.iter().map(|factor| format!("{} = {}", factor.name, identity(factor.group))));
+                let place = self.formula(image).map_or("elsewhere".to_string(), |formula| format!("to {formula}"));
                 error.note(format!("the identity has to move nothing, but with {names} it moves {} {place}", leaf.name))
             }
             None => error.note("the identity has to move nothing"),
-        }
-        .help(self.example(0))
+        };
+        error.help(self.example(0))
     }
 
     fn name_of(&self, factor: &Factor) -> String {
@@ -39,27 +38,22 @@ impl<'g> Action<'_, 'g> {
             LeafSpace::Group(group) => format!("in {}", group.name(self.graph)),
             _ => "a unit vector".to_string(),
         };
-        let (key, name) = (&self.closure.key, &leaf.name);
-        let plain = plain_name(leaf);
         let which = if verdict == Verdict::Open { "cannot be shown to be always" } else { "is not always" };
-        let formula = Some(ascii(moved)).filter(|formula| self.is_readable(formula));
-        let moved = formula.unwrap_or_else(|| shortened(&spell(&self.closure.body)));
-        let message = format!("the {key} moves `{name}` to `{moved}`, which {which} {promise}");
-        Diagnostic::new(Location::of(&self.closure.body), message)
-            .help(format!("write `{name}: {plain}` if any value is a configuration"))
+        let moved = self.formula(moved).unwrap_or_else(|| shortened(&spell(&self.closure.body)));
+        let (key, name) = (&self.closure.key, &leaf.name);
+        error!(&self.closure.body, "the {key} moves `{name}` to `{moved}`, which {which} {promise}";
+            help "write `{name}: {}` if any value is a configuration", plain_name(leaf))
     }
 
     pub(super) fn no_action(&self, factor: Option<usize>) -> Diagnostic {
-        let names: Vec<String> = self.closure.arguments.iter().map(|argument| argument.pattern.spell()).collect();
-        let text = format!("|{}| {}", names.join(", "), spell(&self.closure.body));
-        let group = match factor {
-            Some(index) if self.factors.len() > 1 => {
-                format!("{} by its factor `{}`", self.name_of(&self.factors[index]), self.factors[index].name)
-            }
-            _ if self.factors.len() > 1 => "the group".to_string(),
-            _ => self.name_of(&self.factors[0]),
+        let names = joined(self.closure.arguments.iter().map(|argument| argument.pattern.spell()));
+        let group = match (self.factors, factor) {
+            ([only], _) => self.name_of(only),
+            (factors, Some(k)) => format!("{} by its factor `{}`", self.name_of(&factors[k]), factors[k].name),
+            _ => "the group".to_string(),
         };
-        Diagnostic::new(Location::of(&self.closure.body), format!("`{text}` is not an action of {group}"))
+        let body = &self.closure.body;
+        error!(body, "`|{names}| {}` is not an action of {group}", spell(body))
     }
 
     pub(super) fn composition(&self, index: usize, composed: &[Expr<'g>]) -> String {
@@ -67,20 +61,20 @@ impl<'g> Action<'_, 'g> {
         let element = self.element(index, 1);
         // the first leaf that the factor moves shows the formula
         let shown = composed.iter().find(|image| image.depends_on(element)).unwrap_or(&composed[0]);
-        let order = format!("acting by {name}1 and then by {name}2");
-        let text = ascii(*shown);
-        let formula = match self.is_readable(&text) {
-            true => format!("gives {text}, which"),
-            false => String::new(),
+        let formula = self.formula(*shown).map_or(String::new(), |text| format!(" gives {text}, which"));
+        let products = if self.factors[index].group.is_translation() {
+            format!("is not the action of {name}1 + {name}2")
+        } else {
+            format!("is neither the action of {name}2*{name}1 nor of {name}1*{name}2")
         };
-        match self.factors[index].group.is_translation() {
-            true => format!("{order} {formula} is not the action of {name}1 + {name}2"),
-            false => format!("{order} {formula} is neither the action of {name}2*{name}1 nor of {name}1*{name}2"),
-        }
-        .replace("  ", " ")
+        format!("acting by {name}1 and then by {name}2{formula} {products}")
     }
 
-    /// Whether a formula says more than the closure itself: it is short, and no products of quaternions are written out in it.
+    /// A formula that says more than the closure itself: it is short, and no products of quaternions are written out in it.
+    fn formula(&self, expr: Expr<'g>) -> Option<String> {
+        Some(ascii(expr)).filter(|formula| self.is_readable(formula))
+    }
+
     fn is_readable(&self, formula: &str) -> bool {
         const LONGEST: usize = 160;
         let quaternions = self.factors.iter().any(|factor| factor.group == Group::UnitQuaternions)
@@ -93,83 +87,58 @@ impl<'g> Action<'_, 'g> {
         let Factor { group, name: f, symbol, .. } = &self.factors[index];
         let moved = self.configurations.iter().zip(self.value).find(|(_, image)| image.depends_on(*symbol));
         let leaf = moved.map_or(&self.configurations[0], |(leaf, _)| leaf);
-        let (q, rows) = (&leaf.name, group.element_shape().rows);
-        let inverse = if group.is_orthogonal() { "transpose" } else { "inverse" };
-        match (group, group.linear_part()) {
-            (Group::Translation(_), _) => format!("`{q} + {f}` is an action"),
-            (Group::UnitQuaternions, _) if !leaf.is_quaternion => {
-                format!("`{f} * {q}` (left) and `{f}.inverse() * {q}` (right) are actions")
-            }
-            (Group::UnitQuaternions, _) => {
-                format!("`{f} * {q}` (left), `{q} * {f}` (right) and `{f} * {q} * {f}.inverse()` (left) are actions")
-            }
-            (_, Some(n)) if leaf.shape == Shape::vector(n) => {
-                format!("`{f}.rotation() * {q} + {f}.translation()` (left) is an action")
-            }
-            _ if leaf.shape.rows != rows && leaf.shape.columns == rows => format!("`{q} * {f}` (right) is an action"),
-            _ if leaf.shape.columns != rows => {
-                format!("`{f} * {q}` (left) and `{f}.{inverse}() * {q}` (right) are actions")
-            }
-            _ => {
-                format!("`{f} * {q}` (left), `{q} * {f}` (right) and `{f} * {q} * {f}.{inverse}()` (left) are actions")
-            }
+        let (q, rows, shape) = (&leaf.name, group.element_shape().rows, leaf.shape);
+        let is_turn = group.is_orthogonal() && *group != Group::UnitQuaternions;
+        let inverse = if is_turn { "transpose" } else { "inverse" };
+        if group.is_translation() {
+            format!("`{q} + {f}` is an action")
+        } else if group.linear_part().is_some_and(|n| shape == Shape::vector(n)) {
+            format!("`{f}.rotation() * {q} + {f}.translation()` (left) is an action")
+        } else if shape.columns == rows && shape.rows != rows {
+            format!("`{q} * {f}` (right) is an action")
+        } else if shape.columns == rows || leaf.is_quaternion {
+            format!("`{f} * {q}` (left), `{q} * {f}` (right) and `{f} * {q} * {f}.{inverse}()` (left) are actions")
+        } else {
+            format!("`{f} * {q}` (left) and `{f}.{inverse}() * {q}` (right) are actions")
         }
     }
 
     pub(super) fn do_not_commute(
         &self,
-        first: usize,
-        second: usize,
+        [one, other]: [&Factor<'g>; 2],
         then_second: &[Expr<'g>],
         then_first: &[Expr<'g>],
     ) -> Diagnostic {
         let differs = |(&a, &b): (&Expr<'g>, &Expr<'g>)| !identity::equal(&[a], &[b]);
         let leaf = then_second.iter().zip(then_first).position(differs).unwrap_or(0);
-        let (one, other) = (&self.factors[first], &self.factors[second]);
         let declared = |factor: &Factor| format!("`{}: {}`", factor.name, self.name_of(factor));
-        Diagnostic::new(
-            Location::of(&self.closure.body),
-            format!("the factors {} and {} do not commute", declared(one), declared(other)),
-        )
-        .note(self.both_orders(one, other, leaf, [then_second[leaf], then_first[leaf]]))
-        .help(self.one_group(one, other, &self.configurations[leaf]))
-    }
-
-    fn both_orders(&self, one: &Factor, other: &Factor, leaf: usize, images: [Expr<'g>; 2]) -> String {
-        let (first, second, name) = (verb(one), verb(other), &self.configurations[leaf].name);
-        let [then_second, then_first] = images.map(ascii);
-        match self.is_readable(&format!("{then_second}{then_first}")) {
-            true => {
-                format!("{first} and then {second} moves {name} to {then_second}, in the other order to {then_first}")
-            }
-            false => format!("{first} and then {second} moves {name} elsewhere than in the other order"),
-        }
+        let [then_second, then_first] = [then_second[leaf], then_first[leaf]].map(ascii);
+        let (leaf, first, second) = (&self.configurations[leaf], verb(one), verb(other));
+        let orders = if self.is_readable(&format!("{then_second}{then_first}")) {
+            format!("to {then_second}, in the other order to {then_first}")
+        } else {
+            "elsewhere than in the other order".to_string()
+        };
+        error!(&self.closure.body, "the factors {} and {} do not commute", declared(one), declared(other);
+            note "{first} and then {second} moves {} {orders}", leaf.name;
+            help "{}", self.one_group(one, other, leaf))
     }
 
     /// The one group to write instead of two factors that do not commute.
     fn one_group(&self, one: &Factor, other: &Factor, leaf: &Configuration) -> String {
         let f = if one.group.is_translation() { &other.name } else { &one.name };
-        let (q, space) = (&leaf.name, self.space_name(leaf));
-        match smallest_group(one.group, other.group) {
-            Some(group) if group.linear_part().is_some() && !leaf.shape.is_square() => {
-                let name = group.name(self.graph);
-                format!("write one group: `|{f}: {name}, {q}: {space}| {f}.rotation() * {q} + {f}.translation()`")
-            }
-            Some(group) => {
-                format!("write one group: `|{f}: {}, {q}: {space}| {f} * {q}`", group.name(self.graph))
-            }
-            None => "write one group that holds both, by its equation: `group Both = |F: Matrix4| …`".to_string(),
-        }
-    }
-
-    /// The type of a leaf of the configuration.
-    fn space_name(&self, leaf: &Configuration) -> String {
-        let plain = plain_name(leaf);
-        match leaf.space {
+        let Some(group) = smallest_group(one.group, other.group) else {
+            return "write one group that holds both, by its equation: `group Both = |F: Matrix4| …`".to_string();
+        };
+        let (q, plain) = (&leaf.name, plain_name(leaf));
+        let space = match leaf.space {
             LeafSpace::Vectors => plain,
             LeafSpace::Unit => format!("Unit<{plain}>"),
             LeafSpace::Group(group) => group.name(self.graph),
-        }
+        };
+        let is_affine = group.linear_part().is_some() && !leaf.shape.is_square();
+        let moved = if is_affine { format!("{f}.rotation() * {q} + {f}.translation()") } else { format!("{f} * {q}") };
+        format!("write one group: `|{f}: {}, {q}: {space}| {moved}`", group.name(self.graph))
     }
 }
 
@@ -186,34 +155,27 @@ fn plain_name(leaf: &Configuration) -> String {
 
 /// The smallest group that is built in and holds two groups that act on the same space.
 fn smallest_group(one: Group, other: Group) -> Option<Group> {
-    let translations = [one, other].into_iter().find(|group| group.is_translation());
-    let linear = [one, other].into_iter().find(|group| !group.is_translation());
-    match (translations, linear?) {
-        (None, _) if one == other => Some(one),
-        // both turn R³
-        (None, _) if [one, other].contains(&Group::UnitQuaternions) => {
-            [one, other].contains(&Group::SpecialOrthogonal(3)).then_some(Group::SpecialOrthogonal(3))
-        }
-        (None, _) => {
-            let (a, b) = (one.element_shape(), other.element_shape());
-            match (a.is_scalar(), b.is_scalar()) {
-                (true, false) => Some(Group::GeneralLinear(b.rows)),
-                (false, true) => Some(Group::GeneralLinear(a.rows)),
-                _ if a == b => Some(Group::GeneralLinear(a.rows)),
-                _ => None,
-            }
-        }
-        (Some(shift), linear) => {
-            let n = shift.dimension();
-            match linear {
-                Group::SpecialOrthogonal(m) if m == n => Some(Group::SpecialEuclidean(n)),
-                Group::UnitQuaternions if n == 3 => Some(Group::SpecialEuclidean(n)),
-                Group::GeneralLinear(1) if n > 1 => Some(Group::Similarity(n)),
-                Group::SpecialEuclidean(m) | Group::Affine(m) | Group::Similarity(m) if m == n => Some(linear),
-                _ if linear.element_shape().rows == n => Some(Group::Affine(n)),
-                _ => None,
-            }
-        }
+    let both = [one, other];
+    let linear = both.into_iter().find(|group| !group.is_translation())?;
+    let Some(shift) = both.into_iter().find(|group| group.is_translation()) else {
+        let [a, b] = both.map(|group| group.element_shape());
+        return if one == other {
+            Some(one)
+        } else if both.contains(&Group::UnitQuaternions) {
+            // both turn R³
+            both.into_iter().find(|group| *group == Group::SpecialOrthogonal(3))
+        } else {
+            (a == b || a.is_scalar() || b.is_scalar()).then_some(Group::GeneralLinear(a.rows.max(b.rows)))
+        };
+    };
+    let n = shift.dimension();
+    match linear {
+        Group::SpecialOrthogonal(m) if m == n => Some(Group::SpecialEuclidean(n)),
+        Group::UnitQuaternions if n == 3 => Some(Group::SpecialEuclidean(n)),
+        Group::GeneralLinear(1) if n > 1 => Some(Group::Similarity(n)),
+        Group::SpecialEuclidean(m) | Group::Affine(m) | Group::Similarity(m) if m == n => Some(linear),
+        _ if linear.element_shape().rows == n => Some(Group::Affine(n)),
+        _ => None,
     }
 }
 
@@ -224,13 +186,6 @@ fn verb(factor: &Factor) -> String {
         _ => "acting",
     };
     format!("{verb} by {}", factor.name)
-}
-
-fn identity_name(group: Group) -> &'static str {
-    match group {
-        Group::Translation(_) => "0",
-        _ => "I",
-    }
 }
 
 /// A formula with the operators of the declaration.

@@ -28,15 +28,14 @@ pub(super) struct Law {
 }
 
 /// Checks all laws and returns how each factor acts.
-pub(super) fn check(action: &Action, diagnostics: &mut Diagnostics) -> Option<Vec<Law>> {
+pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<Law>> {
     let before = diagnostics.len();
     action.stays_in_space(diagnostics);
     if diagnostics.len() > before {
         return None;
     }
     if !identity::equal(&action.of_identity(), &action.points()) {
-        diagnostics.push(action.identity_moves());
-        return None;
+        return diagnostics.refuse(action.identity_moves());
     }
     let sides: Vec<Option<Sides>> = (0..action.factors.len()).map(|factor| action.sides(factor, diagnostics)).collect();
     action.factors_commute(diagnostics);
@@ -72,15 +71,11 @@ impl<'g> Action<'_, 'g> {
 
     /// Φ at elements for some factors (the identity for all others) and a point.
     fn at(&self, elements: &[(usize, Expr<'g>)], point: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let mut rules: Vec<(Expr<'g>, Expr<'g>)> = self
-            .factors
-            .iter()
-            .enumerate()
-            .map(|(index, factor)| {
-                let given = elements.iter().find(|(other, _)| *other == index).map(|&(_, element)| element);
-                (factor.symbol, given.unwrap_or_else(|| factor.group.identity(self.graph)))
-            })
-            .collect();
+        let at_factor = |(index, factor): (usize, &Factor<'g>)| {
+            let given = elements.iter().find(|(other, _)| *other == index).map(|&(_, element)| element);
+            (factor.symbol, given.unwrap_or_else(|| factor.group.identity(self.graph)))
+        };
+        let mut rules: Vec<(Expr<'g>, Expr<'g>)> = self.factors.iter().enumerate().map(at_factor).collect();
         rules.extend(self.points().into_iter().zip(point.iter().copied()));
         self.value.iter().map(|expr| expr.substitute(&rules)).collect()
     }
@@ -97,14 +92,14 @@ impl<'g> Action<'_, 'g> {
     }
 
     /// A promise about the configuration has to survive the action.
-    fn stays_in_space(&self, diagnostics: &mut Diagnostics) {
+    fn stays_in_space(&self, diagnostics: &Diagnostics) {
         for (leaf, &moved) in self.configurations.iter().zip(self.value) {
             let verdict = match leaf.space {
                 LeafSpace::Vectors => Verdict::Inside,
-                LeafSpace::Unit if identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]) => {
-                    Verdict::Inside
+                LeafSpace::Unit => {
+                    let is_unit = identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]);
+                    if is_unit { Verdict::Inside } else { Verdict::Outside }
                 }
-                LeafSpace::Unit => Verdict::Outside,
                 LeafSpace::Group(group) => lies_on(moved, group),
             };
             if verdict != Verdict::Inside {
@@ -114,7 +109,7 @@ impl<'g> Action<'_, 'g> {
     }
 
     /// The sides on which a factor's composition law holds.
-    fn sides(&self, index: usize, diagnostics: &mut Diagnostics) -> Option<Sides> {
+    fn sides(&self, index: usize, diagnostics: &Diagnostics) -> Option<Sides> {
         let Factor { group, symbol, .. } = &self.factors[index];
         let points = self.points();
         if identity::equal(&self.at(&[(index, *symbol)], &points), &points) {
@@ -130,31 +125,27 @@ impl<'g> Action<'_, 'g> {
             (true, false) => Some(Sides::Left),
             (false, true) => Some(Sides::Right),
             (false, false) => {
-                let error =
-                    self.no_action(Some(index)).note(self.composition(index, &composed)).help(self.example(index));
-                diagnostics.push(error);
-                None
+                let error = self.no_action(Some(index)).note(self.composition(index, &composed));
+                diagnostics.refuse(error.help(self.example(index)))
             }
         }
     }
 
     /// Any two factors commute, and all together act as one after the other.
-    fn factors_commute(&self, diagnostics: &mut Diagnostics) {
+    fn factors_commute(&self, diagnostics: &Diagnostics) {
         let count = self.factors.len();
-        let symbol = |index: usize| self.factors[index].symbol;
         let points = self.points();
+        let moved = |index: usize, point: &[Expr<'g>]| self.at(&[(index, self.factors[index].symbol)], point);
         let before = diagnostics.len();
-        for second in 1..count {
-            for first in 0..second {
-                let (a, b) = (symbol(first), symbol(second));
-                let then_second = self.at(&[(second, b)], &self.at(&[(first, a)], &points));
-                let then_first = self.at(&[(first, a)], &self.at(&[(second, b)], &points));
-                if !identity::equal(&then_second, &then_first) {
-                    diagnostics.push(self.do_not_commute(first, second, &then_second, &then_first));
-                }
+        for (second, first) in (1..count).flat_map(|second| (0..second).map(move |first| (second, first))) {
+            let then_second = moved(second, &moved(first, &points));
+            let then_first = moved(first, &moved(second, &points));
+            if !identity::equal(&then_second, &then_first) {
+                let factors = [first, second].map(|index| &self.factors[index]);
+                diagnostics.push(self.do_not_commute(factors, &then_second, &then_first));
             }
         }
-        let one_by_one = (0..count).fold(points.clone(), |point, index| self.at(&[(index, symbol(index))], &point));
+        let one_by_one = (0..count).fold(points.clone(), |point, index| moved(index, &point));
         if diagnostics.len() == before && !identity::equal(&one_by_one, self.value) {
             diagnostics.push(self.no_action(None).note("its factors together act otherwise than one after the other"));
         }

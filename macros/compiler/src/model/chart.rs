@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostics;
 use crate::parse::Dials;
 
 /// The chart that is chosen has to stay in the group.
-pub(super) fn check(graph: &Graph, dials: &Dials, factors: &[Factor], diagnostics: &mut Diagnostics) {
+pub(super) fn check(graph: &Graph, dials: &Dials, factors: &[Factor], diagnostics: &Diagnostics) {
     let Some(chosen) = dials.chart.as_ref().filter(|chosen| chosen.value == ChartChoice::Cayley) else { return };
     if let Some(factor) = without_cayley_map(graph, factors) {
         let beside = Found::somewhere().named(factor.group.name(graph));

@@ -1,18 +1,26 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
-use clebsch_symbolic::{Expr, Graph, Group, Shape};
+use clebsch_symbolic::{Expr, Graph, Shape};
 use syn::{BinOp, Expr as Syntax, Stmt};
 
 use super::arguments::Arguments;
+use super::chart::without_cayley_map;
 use super::elaborate::{Context, Elaborator};
-use super::leaves::{Expected, leaves, new_value_of};
+use super::leaves::{leaves, new_value_of};
 use super::power::Term;
+use super::scope::Scope;
 use super::sites;
-use super::value::{Each, PerSite, Value};
+use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
+use super::value::{Each, Value};
 use super::velocity::Velocity;
 use super::{Configuration, Discretization, Factor, Kinetic, Layout, Spans, Written};
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::{Location, error, refuse, report};
 use crate::parse::{self, Closure, Declaration, spell};
+
+/// What an optional closure gives, if it is there; `None` where it has an error, which was reported.
+pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
+    closure.map_or(Some(None), |closure| read(closure).map(Some))
+}
 
 /// Φ_F(q), leaf by leaf.
 pub(super) fn action<'g>(
@@ -22,26 +30,23 @@ pub(super) fn action<'g>(
     structure: &Layout,
     configurations: Option<&[Configuration<'g>]>,
 ) -> Option<Vec<Expr<'g>>> {
-    let closure = &declaration.action;
-    let scope = arguments.action_scope(&mut context.diagnostics);
-    let value = Elaborator::new(context, "action", scope).elaborate(&closure.body)?;
-    let value = of_site(context, &closure.body, value)?;
-    let expected: Vec<Expected> = configurations?.iter().map(Expected::point).collect();
-    let old = arguments.names.configuration.spell();
-    leaves(context, &closure.body, "action", &value, structure, &expected, &new_value_of(&old))
+    let Closure { key, body, .. } = &declaration.action;
+    let scope = arguments.action_scope(&context.diagnostics);
+    let value = context.value(&declaration.action, scope)?;
+    let value = of_site(context, body, value)?;
+    let is = new_value_of(arguments.names.configuration);
+    leaves((key, body), &value, structure, configurations?, &is, &context.diagnostics)
 }
 
 /// What the action of a power gives for each site; any other value as it is.
-fn of_site<'g>(context: &mut Context<'_, 'g>, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
+fn of_site<'g>(context: &Context<'_, 'g>, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
     let Some(power) = &context.power else { return Some(value) };
-    let (zero, name) = (context.graph.integer(0), power.name.clone());
     match value {
-        Value::Sequence(range, each) if range == (zero, power.count) => Some(*each),
+        Value::Sequence(range, each) if range == (context.graph.integer(0), power.count) => Some(*each),
         other => {
-            let message = format!("the action gives {}, but it has to give a value for each site", other.describe());
-            let error = Diagnostic::new(tail(body).0, message);
-            context.diagnostics.push(error.help(format!("write `(0..{name}).map(|i| …)`")));
-            None
+            let is = other.describe();
+            refuse!(context.diagnostics, tail(body).0, "the action gives {is}, but it has to give a value for each site";
+                help "write `(0..{}).map(|i| …)`", power.name)
         }
     }
 }
@@ -57,11 +62,11 @@ pub(super) fn kinetic<'g>(
     match &declaration.kinetic {
         parse::Kinetic::Cost(closure) => cost(context, closure, arguments, factors),
         parse::Kinetic::Lagrangian(closure) => {
-            let discretization = declaration.dials.discretization.as_ref();
+            let chosen = declaration.dials.discretization.as_ref();
             let discretization =
-                discretization.map_or_else(|| default_discretization(context.graph, factors), |chosen| chosen.value);
-            lagrangian(context, closure, arguments, structure, factors)
-                .map(|(energy, velocities, name)| Kinetic::Lagrangian { energy, velocities, name, discretization })
+                chosen.map_or_else(|| default_discretization(context.graph, factors), |chosen| chosen.value);
+            let (energy, velocities, name) = lagrangian(context, closure, arguments, structure, factors)?;
+            Some(Kinetic::Lagrangian { energy, velocities, name, discretization })
         }
         // what inputs move is read with them
         parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
@@ -70,10 +75,10 @@ pub(super) fn kinetic<'g>(
 
 /// The Cayley map where it stays in every factor: projected, it grows beyond use. The exponential elsewhere.
 pub(super) fn default_discretization(graph: &Graph, factors: Option<&[Factor<'_>]>) -> Discretization {
-    let leaves = |factor: &&Factor<'_>| !factor.group.is_translation() && !factor.group.has_cayley_chart(graph);
-    match factors.is_some_and(|factors| factors.iter().any(|factor| leaves(&factor))) {
-        true => Discretization::Exponential,
-        false => Discretization::Cayley,
+    if factors.is_some_and(|factors| without_cayley_map(graph, factors).is_some()) {
+        Discretization::Exponential
+    } else {
+        Discretization::Cayley
     }
 }
 
@@ -83,28 +88,20 @@ fn cost<'g>(
     arguments: &Arguments<'_, 'g>,
     factors: Option<&[Factor<'g>]>,
 ) -> Option<Kinetic<'g>> {
-    let scope = arguments.cost_scope(closure, &mut context.diagnostics);
-    let cost = scalar(context, closure, Elaborated { scope, needs: "a discrete Lagrangian is a scalar" })?;
-    for factor in factors? {
-        if !cost.depends_on(factor.symbol) {
-            let message = format!("the cost does not depend on `{}`", factor.name);
-            let error = Diagnostic::new(tail(&closure.body).0, message)
-                .help(format!("add the kinetic energy of `{}`, as in `{}`", factor.name, example_cost(factor)))
-                .note(format!(
-                    "the momentum of `{}` is the derivative of the cost, and cannot be inverted where that is 0",
-                    factor.name
-                ));
-            context.diagnostics.push(error);
-        }
+    let matched = arguments.matched(closure, COST, &context.diagnostics);
+    let scope = arguments.scope(&matched, &[], &context.diagnostics);
+    let cost = scalar(context, closure, scope, "a discrete Lagrangian is a scalar")?;
+    for Factor { name, group, .. } in factors?.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
+        let example = if group.is_translation() {
+            format!("self.mass * {name}.norm_squared() / (2 * h)")
+        } else {
+            format!("self.mass * ({name} - I).norm_squared() / (4 * h)")
+        };
+        report!(context.diagnostics, tail(&closure.body).0, "the cost does not depend on `{name}`";
+            help "add the kinetic energy of `{name}`, as in `{example}`";
+            note "the momentum of `{name}` is the derivative of the cost, and cannot be inverted where that is 0");
     }
     Some(Kinetic::Cost(cost))
-}
-
-fn example_cost(factor: &Factor) -> String {
-    match factor.group {
-        Group::Translation(_) => format!("self.mass * {}.norm_squared() / (2 * h)", factor.name),
-        _ => format!("self.mass * ({} - I).norm_squared() / (4 * h)", factor.name),
-    }
 }
 
 /// The Lagrangian with the symbols of its velocity and the user's name for it.
@@ -115,32 +112,27 @@ fn lagrangian<'g>(
     structure: &Layout,
     factors: Option<&[Factor<'g>]>,
 ) -> Option<(Expr<'g>, Vec<Expr<'g>>, String)> {
-    let (taken, pattern) = arguments.velocity(closure, &mut context.diagnostics);
-    let velocity = factors.zip(pattern).and_then(|(factors, pattern)| {
-        let graph = context.graph;
-        Velocity { graph, factors }.of(pattern, structure, &mut context.diagnostics)
-    });
-    let value = velocity.as_ref().map(|(value, _)| value.clone());
-    let value = match context.power.is_some() {
-        true => value.map(|own| Value::PerSite(PerSite { of: Each::Motion, own: Box::new(own) })),
-        false => value,
-    };
-    let velocities = velocity.map(|(_, velocities)| velocities);
-    let mut scope = arguments.lagrangian_scope(closure, &taken, value, &mut context.diagnostics);
+    let graph = context.graph;
+    let matched = arguments.matched(closure, LAGRANGIAN, &context.diagnostics);
+    let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
+    let velocity = factors
+        .zip(pattern)
+        .and_then(|(factors, pattern)| Velocity { graph, factors }.of(pattern, structure, &context.diagnostics));
+    let (value, velocities) = velocity.unzip();
+    let is_power = context.power.is_some();
+    let value = value.map(|own| if is_power { Value::PerSite(Each::Motion, Box::new(own)) } else { own });
+    let mut scope = arguments.scope(&matched, &[(Slot::Velocity, value)], &context.diagnostics);
     if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
-        scope.set_velocities(velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).collect());
+        scope.set_velocities(velocities, factors);
     }
-    let energy = scalar(context, closure, Elaborated { scope, needs: "a Lagrangian is a scalar" })?;
+    let energy = scalar(context, closure, scope, "a Lagrangian is a scalar")?;
     let (velocities, factors, pattern) = (velocities?, factors?, pattern?);
     let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
     if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
         let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
-        let message = format!("the lagrangian does not depend on the velocity `{velocity}`{of}");
-        let example = format!("{velocity}.dot(&(self.inertia * {velocity})) / 2");
-        context.diagnostics.push(
-            Diagnostic::new(tail(&closure.body).0, message).help(format!("add the kinetic energy, as in `{example}`")),
-        );
-        return None;
+        let place = tail(&closure.body).0;
+        refuse!(context.diagnostics, place, "the lagrangian does not depend on the velocity `{velocity}`{of}";
+            help "add the kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`");
     }
     Some((energy, velocities, pattern.spell()))
 }
@@ -154,8 +146,9 @@ pub(super) fn potential<'g>(
 ) -> Option<Expr<'g>> {
     match declaration.potential.as_ref()? {
         parse::Potential::Closure(closure) => {
-            let scope = arguments.potential_scope(closure, &mut context.diagnostics);
-            scalar(context, closure, Elaborated { scope, needs: "an energy is a scalar" })
+            let matched = arguments.matched(closure, POTENTIAL, &context.diagnostics);
+            let scope = arguments.scope(&matched, &[], &context.diagnostics);
+            scalar(context, closure, scope, "an energy is a scalar")
         }
         parse::Potential::Opaque(opaque) => {
             let time = opaque.takes_time.then_some(arguments.time);
@@ -172,70 +165,49 @@ pub(super) fn potential_of_power<'g>(
     context: &mut Context<'_, 'g>,
     declaration: &Declaration,
     arguments: &Arguments<'_, 'g>,
-) -> Vec<Term<'g>> {
+) -> Option<Vec<Term<'g>>> {
     // by construction: an opaque potential has been refused
-    let Some(parse::Potential::Closure(closure)) = &declaration.potential else { return Vec::new() };
-    let scope = arguments.potential_scope(closure, &mut context.diagnostics);
-    let Some(value) = Elaborator::new(context, "potential", scope).elaborate(&closure.body) else { return Vec::new() };
-    match value {
-        Value::Sum(terms) => terms,
-        Value::Matrix(value) if value.shape().is_scalar() => vec![Term { ranges: Vec::new(), value }],
-        other => {
-            let message = format!("the potential is {}, but an energy is a scalar", other.describe());
-            let error = Diagnostic::new(tail(&closure.body).0, message);
-            context.diagnostics.push(error.help("add what sites have, as in `(0..N).map(|i| …).sum()`"));
-            Vec::new()
-        }
+    let closure = declaration.potential.as_ref()?.closure()?;
+    let matched = arguments.matched(closure, POTENTIAL, &context.diagnostics);
+    let scope = arguments.scope(&matched, &[], &context.diagnostics);
+    let value = context.value(closure, scope)?;
+    if value.terms().is_none() {
+        let (place, is) = (tail(&closure.body).0, value.describe());
+        report!(context.diagnostics, place, "the potential is {is}, but an energy is a scalar";
+            help "add what sites have, as in `(0..N).map(|i| …).sum()`");
     }
-}
-
-/// What a scalar closure is elaborated with.
-pub(super) struct Elaborated<'g> {
-    pub scope: super::scope::Scope<'g>,
-    pub needs: &'static str,
+    value.terms()
 }
 
 /// The value of a closure that has to give a scalar.
-pub(super) fn scalar<'g>(context: &mut Context<'_, 'g>, closure: &Closure, given: Elaborated<'g>) -> Option<Expr<'g>> {
+pub(super) fn scalar<'g>(
+    context: &mut Context<'_, 'g>,
+    closure: &Closure,
+    scope: Scope<'g>,
+    needs: &str,
+) -> Option<Expr<'g>> {
     let key = closure.key.to_string();
-    let mut elaborator = Elaborator::new(context, &key, given.scope);
+    let mut elaborator = Elaborator::new(context, &key, scope);
     let value = elaborator.elaborate(&closure.body)?;
-    if let Some(count) = elaborator.context.power.as_ref().map(|power| power.count) {
-        let terms = match &value {
-            Value::Sum(terms) => Some(terms.clone()),
-            other => other
-                .matrix()
-                .filter(|value| value.shape().is_scalar())
-                .map(|value| vec![Term { ranges: Vec::new(), value }]),
-        };
-        if let Some(terms) = terms {
-            return match sites::of_one_site(&terms, count, context.graph) {
-                Ok(sum) => Some(sum),
-                Err(reason) => {
-                    let message = format!("the {key} of a power is a sum over its sites, and {reason}");
-                    let error = Diagnostic::new(tail(&closure.body).0, message)
-                        .help(format!("write `(0..{count}).map(|i| …).sum()` with what site `i` has alone"));
-                    context.diagnostics.push(error.note(
-                        "the equation of a step is solved site by site; what ties sites to each other belongs to the potential",
-                    ));
-                    None
-                }
-            };
+    let (place, tail) = tail(&closure.body);
+    if let Some(count) = elaborator.context.power.as_ref().map(|power| power.count)
+        && let Some(terms) = value.terms()
+    {
+        match sites::of_one_site(&terms, count, context.graph) {
+            Ok(sum) => return Some(sum),
+            Err(reason) => {
+                refuse!(context.diagnostics, place, "the {key} of a power is a sum over its sites, and {reason}";
+                help "write `(0..{count}).map(|i| …).sum()` with what site `i` has alone";
+                note "the equation of a step is solved site by site; what ties sites to each other belongs to the potential")
+            }
         }
     }
     if let Some(expr) = value.matrix().filter(|expr| expr.shape().is_scalar()) {
         return Some(expr);
     }
-    let (place, tail) = tail(&closure.body);
-    let error = Diagnostic::new(place, format!("the {key} is {}, but {}", value.describe(), given.needs));
-    let help = to_scalar(tail, &value);
     let reason = elaborator.quietly(|elaborator| because(elaborator, tail, &value));
-    let error = error.maybe_help(help);
-    context.diagnostics.push(match reason {
-        Some(reason) => error.note(reason),
-        None => error,
-    });
-    None
+    let error = error!(place, "the {key} is {}, but {needs}", value.describe()).maybe_help(to_scalar(tail, &value));
+    context.diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
 }
 
 /// How a scalar is made from a value.
@@ -244,15 +216,15 @@ fn to_scalar(tail: &Syntax, value: &Value) -> Option<String> {
         Syntax::Binary(_) | Syntax::Unary(_) => format!("({})", spell(tail)),
         _ => spell(tail),
     };
-    match value {
-        Value::Matrix(expr) if expr.shape() == Shape::vector(3) => Some(format!("take a component, as in `{text}.z`")),
-        Value::Matrix(expr) if expr.shape().is_column() => Some(format!("take a component, as in `{text}[0]`")),
-        Value::Matrix(expr) if expr.shape().is_square() => Some(format!("take the trace, as in `{text}.trace()`")),
-        Value::Matrix(_) => Some(format!("take an entry, as in `{text}[(0, 0)]`")),
-        Value::Quaternion(_) => Some(format!("take its scalar part, as in `{text}.scalar()`")),
-        Value::Array(_) => Some(format!("add its entries, as in `{text}.sum()`")),
-        _ => None,
-    }
+    Some(match value {
+        Value::Matrix(expr) if expr.shape() == Shape::vector(3) => format!("take a component, as in `{text}.z`"),
+        Value::Matrix(expr) if expr.shape().is_column() => format!("take a component, as in `{text}[0]`"),
+        Value::Matrix(expr) if expr.shape().is_square() => format!("take the trace, as in `{text}.trace()`"),
+        Value::Matrix(_) => format!("take an entry, as in `{text}[(0, 0)]`"),
+        Value::Quaternion(_) => format!("take its scalar part, as in `{text}.scalar()`"),
+        Value::Array(_) => format!("add its entries, as in `{text}.sum()`"),
+        _ => return None,
+    })
 }
 
 /// Why a product has its shape. `let`s of a block are out of scope here, and then there is no reason.
@@ -261,18 +233,11 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
     if !matches!(product.op, BinOp::Mul(_)) {
         return None;
     }
-    let left = elaborator.elaborate(&product.left)?;
-    let right = elaborator.elaborate(&product.right)?;
-    left.shape()?;
-    right.shape()?;
-    let (a, b) = (spell(&product.left), spell(&product.right));
-    Some(format!(
-        "`{}` is {} because `{a}` is {} and `{b}` is {}",
-        spell(tail),
-        value.describe(),
-        left.describe(),
-        right.describe()
-    ))
+    let left = elaborator.elaborate(&product.left)?.matrix()?;
+    let right = elaborator.elaborate(&product.right)?.matrix()?;
+    let [left, right] = [left, right].map(|factor| Value::Matrix(factor).describe());
+    let (a, b, text) = (spell(&product.left), spell(&product.right), spell(tail));
+    Some(format!("`{text}` is {} because `{a}` is {left} and `{b}` is {right}", value.describe()))
 }
 
 /// The expression that gives a body its value, and where it is.
@@ -280,11 +245,11 @@ pub(super) fn tail(body: &Syntax) -> (Location, &Syntax) {
     match body {
         Syntax::Block(block) => match block.block.stmts.last() {
             Some(Stmt::Expr(value, None)) => tail(value),
-            _ => (Location::of(body), body),
+            _ => (body.into(), body),
         },
         Syntax::Paren(inner) => tail(&inner.expr),
         Syntax::Group(inner) => tail(&inner.expr),
-        _ => (Location::of(body), body),
+        _ => (body.into(), body),
     }
 }
 

@@ -5,10 +5,12 @@
 mod feature;
 mod markdown;
 mod rows;
+#[cfg(test)]
+mod tests;
 
 use proc_macro2::Span;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 pub(crate) use feature::Feature;
 pub use markdown::features_as_markdown;
 use rows::ROWS;
@@ -65,11 +67,7 @@ impl Found {
 
 /// An error for each combination of found features that the table refuses, in the order of the table.
 pub(crate) fn refusals(found: impl Fn(Feature) -> Option<Found>) -> Vec<Diagnostic> {
-    let error = |(row, refused, beside): (&Row, Feature, Feature)| {
-        let (refused, beside) = ((refused, found(refused)?), (beside, found(beside)?));
-        Some(row.diagnostic(refused, beside))
-    };
-    combinations().filter_map(error).collect()
+    combinations().filter_map(|combination| error(combination, &found)).collect()
 }
 
 /// The same for one feature: what else is found that it does not go with.
@@ -77,15 +75,14 @@ pub(crate) fn refusals_of(
     (feature, itself): (Feature, Found),
     found: impl Fn(Feature) -> Option<Found>,
 ) -> impl Iterator<Item = Diagnostic> {
-    combinations().filter_map(move |(row, refused, beside)| {
-        if refused == feature {
-            Some(row.diagnostic((refused, itself.clone()), (beside, found(beside)?)))
-        } else if beside == feature {
-            Some(row.diagnostic((refused, found(refused)?), (beside, itself.clone())))
-        } else {
-            None
-        }
-    })
+    let is_of_it = move |(_, refused, beside): &Combination| [*refused, *beside].contains(&feature);
+    let found = move |other| if other == feature { Some(itself.clone()) } else { found(other) };
+    combinations().filter(is_of_it).filter_map(move |combination| error(combination, &found))
+}
+
+fn error((row, refused, beside): Combination, found: &impl Fn(Feature) -> Option<Found>) -> Option<Diagnostic> {
+    let (refused, beside) = ((refused, found(refused)?), (beside, found(beside)?));
+    Some(row.diagnostic(refused, beside))
 }
 
 /// Whether a feature goes with what else is found.
@@ -98,19 +95,19 @@ pub(crate) fn check(itself: (Feature, Found), found: impl Fn(Feature) -> Option<
 
 /// The error for two features that the table refuses.
 pub(crate) fn refusal(refused: (Feature, Found), beside: (Feature, Found)) -> Diagnostic {
-    let is_pair = |(_, one, other): &(&Row, Feature, Feature)| (*one, *other) == (refused.0, beside.0);
+    let is_pair = |(_, one, other): &Combination| (*one, *other) == (refused.0, beside.0);
     match combinations().find(is_pair) {
         Some((row, ..)) => row.diagnostic(refused, beside),
         // by construction: a stage refuses what is in the table
-        None => {
-            let message = format!("{} does not go with {}", refused.0.words(), beside.0.words());
-            Diagnostic::new(refused.1.place(), message)
-        }
+        None => error!(refused.1.place(), "{} does not go with {}", refused.0.words(), beside.0.words()),
     }
 }
 
-/// Every row for each of its pairs: what is refused, and beside what.
-fn combinations() -> impl Iterator<Item = (&'static Row, Feature, Feature)> {
+/// A row with one of its pairs: what is refused, and beside what.
+type Combination = (&'static Row, Feature, Feature);
+
+/// Every row for each of its pairs.
+fn combinations() -> impl Iterator<Item = Combination> {
     let of_row = |row: &'static Row| {
         row.beside.iter().flat_map(move |beside| row.refused.iter().map(move |refused| (row, *refused, *beside)))
     };

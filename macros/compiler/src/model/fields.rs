@@ -10,11 +10,11 @@ use syn::{Generics, Type};
 
 use super::power;
 use super::scalar::Agreement;
-use super::sizes::{ENTRIES, size, type_parameter};
-use super::value::{Each, PerSite, Value};
-use super::vectors::{hint, last_segment, vectors};
+use super::sizes::{ENTRIES, GROWS, size, type_parameter};
+use super::value::{Each, Value};
+use super::vectors::{hint, last_name, last_segment, vectors};
 use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, error};
 use crate::parse::{Declaration, Field, spell_type};
 
 /// What closures can read.
@@ -66,7 +66,7 @@ pub(super) fn read<'g>(
     declaration: &Declaration,
     spaces: &[Option<&Type>],
     sites: Option<&syn::Ident>,
-    diagnostics: &mut Diagnostics,
+    diagnostics: &Diagnostics,
 ) -> Fields<'g> {
     let used = first_uses(declaration);
     let mut scalar = Agreement::new(declaration, diagnostics);
@@ -83,26 +83,20 @@ pub(super) fn read<'g>(
         let entry = power::array(&field.ty, &declaration.generics)
             .filter(|(length, _)| Some(*length) == sites)
             .map(|(_, entry)| entry);
-        let parameter = match field_type(entry.unwrap_or(&field.ty), &declaration.generics) {
-            Ok(ty) => {
-                if let Some(written) = ty.scalar {
-                    scalar.meet(written, &format!("`{name}`"), diagnostics);
-                }
-                let ty = FieldType { per_site: entry.is_some(), ..ty };
-                parameter(graph, field, ty, first_use, leaf_count).map_err(|error| diagnostics.push(error)).ok()
-            }
-            Err(error) => {
-                diagnostics.push(explain(field, error));
-                None
-            }
-        };
+        let ty = field_type(entry.unwrap_or(&field.ty), &declaration.generics);
+        let ty = diagnostics.take(ty.map_err(|error| error.unwrap_or_else(|| explain(field))));
+        if let Some(written) = ty.as_ref().and_then(|ty| ty.scalar) {
+            scalar.meet(written, &format!("`{name}`"), diagnostics);
+        }
+        let parameter = ty.and_then(|ty| {
+            let ty = FieldType { per_site: entry.is_some(), ..ty };
+            diagnostics.take(parameter(graph, field, ty, first_use, leaf_count))
+        });
         let value = parameter.as_ref().map(|parameter| {
             let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
             let value = Value::nested(&parameter.structure, &leaves);
-            match parameter.per_site {
-                true => Value::PerSite(PerSite { of: Each::Field(parameters.len()), own: Box::new(value) }),
-                false => value,
-            }
+            let of = Each::Field(parameters.len());
+            if parameter.per_site { Value::PerSite(of, Box::new(value)) } else { value }
         });
         leaf_count += parameter.as_ref().map_or(0, |parameter| parameter.leaves.len());
         parameters.extend(parameter);
@@ -111,18 +105,16 @@ pub(super) fn read<'g>(
     Fields { known, parameters, scalar: scalar.settle() }
 }
 
-/// The shape of a field's type.
+/// The shape of a field's type; an error without a message for a type that no closure can read.
 fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Option<Diagnostic>> {
     match ty {
         Type::Array(array) => {
             let element = field_type(&array.elem, generics)?;
             let length = size(&array.len, generics).map_err(Some)?;
             let leaves = length * element.leaves;
-            if leaves * element.shape.len() > ENTRIES {
-                let message =
-                    format!("`{}` has {} numbers, more than {ENTRIES}", spell_type(ty), leaves * element.shape.len());
-                let note = "the code of a step is written out at compile time and grows with the size";
-                return Err(Some(Diagnostic::new(Location::of(ty), message).note(note)));
+            let numbers = leaves * element.shape.len();
+            if numbers > ENTRIES {
+                bail!(ty, "`{}` has {numbers} numbers, more than {ENTRIES}", spell_type(ty); note "{GROWS}");
             }
             let parts = (0..length).map(|i| element.structure.shifted(i * element.leaves)).collect();
             Ok(FieldType { structure: Layout::Array(parts), leaves, ..element })
@@ -130,21 +122,14 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
         Type::Group(group) => field_type(&group.elem, generics),
         Type::Paren(paren) => field_type(&paren.elem, generics),
         _ => {
-            let leaf = |shape, is_scalar, scalar| FieldType {
-                structure: Layout::Leaf(0),
-                leaves: 1,
-                shape,
-                is_scalar,
-                scalar,
-                per_site: false,
+            let is_scalar = is_float(ty) || type_parameter(ty, generics).is_some();
+            let (shape, scalar) = if is_scalar {
+                (Shape::scalar(), Some(ty))
+            } else {
+                let found = vectors(ty, generics).ok_or(None)?.map_err(Some)?;
+                (found.shape, found.scalar)
             };
-            if is_float(ty) || type_parameter(ty, generics).is_some() {
-                return Ok(leaf(Shape::scalar(), true, Some(ty)));
-            }
-            match vectors(ty, generics) {
-                Some(found) => found.map(|found| leaf(found.shape, false, found.scalar)).map_err(Some),
-                None => Err(None),
-            }
+            Ok(FieldType { structure: Layout::Leaf(0), leaves: 1, shape, is_scalar, scalar, per_site: false })
         }
     }
 }
@@ -155,32 +140,20 @@ fn is_float(ty: &Type) -> bool {
 }
 
 /// The error for a type that no closure can read.
-fn explain(field: &Field, error: Option<Diagnostic>) -> Diagnostic {
-    if let Some(error) = error {
-        return error;
-    }
-    let text = spell_type(&field.ty);
-    let name = last_segment(&field.ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
-    let help = match name.as_str() {
-        "usize" | "u8" | "u16" | "u32" | "u64" | "i8" | "i16" | "i32" | "i64" | "isize" => {
-            Some("write `f64`".to_string())
-        }
-        "Unit" => Some("write `#[clebsch(unit)]` before the field, and the vector itself as its type".to_string()),
-        "Quaternion" | "UnitQuaternion" => {
-            let field = field.name();
-            Some(format!(
-                "write `Vector4<f64>`, and `Quaternion::new(self.{field}.w, self.{field}.x, self.{field}.y, self.{field}.z)` in the closure"
-            ))
-        }
-        _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".to_string()),
-        _ => hint(&name),
+fn explain(field: &Field) -> Diagnostic {
+    let (text, ty, name) = (spell_type(&field.ty), last_name(&field.ty), field.name());
+    let help = match ty.as_str() {
+        "usize" | "u8" | "u16" | "u32" | "u64" | "i8" | "i16" | "i32" | "i64" | "isize" => Some("write `f64`".into()),
+        "Unit" => Some("write `#[clebsch(unit)]` before the field, and the vector itself as its type".into()),
+        "Quaternion" | "UnitQuaternion" => Some(format!(
+            "write `Vector4<f64>`, and `Quaternion::new(self.{name}.w, self.{name}.x, self.{name}.y, self.{name}.z)` in the closure"
+        )),
+        _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".into()),
+        _ => hint(&ty),
     };
-    Diagnostic::new(
-        Location::of(&field.ty),
-        format!("a closure reads `self.{}`, and its type `{text}` has no meaning there", field.name()),
-    )
-    .maybe_help(help)
-    .note("a field that a closure reads is a scalar, a vector, a matrix, or an array of these")
+    error!(&field.ty, "a closure reads `self.{name}`, and its type `{text}` has no meaning there")
+        .maybe_help(help)
+        .note("a field that a closure reads is a scalar, a vector, a matrix, or an array of these")
 }
 
 /// The symbols of a field.
@@ -205,12 +178,8 @@ fn parameter<'g>(
         Some(Promise::Unit) => Property::Unit,
     };
     let leaf = |(position, accessor): (usize, Access)| {
-        let symbol = graph.symbol(
-            &format!("{symbol_name}{accessor}"),
-            ty.shape,
-            Role::Parameter(first_leaf + position),
-            property,
-        );
+        let role = Role::Parameter(first_leaf + position);
+        let symbol = graph.symbol(&format!("{symbol_name}{accessor}"), ty.shape, role, property);
         Leaf { symbol, accessor, shape: ty.shape, is_scalar: ty.is_scalar }
     };
     let leaves = ty.structure.accessors().into_iter().enumerate().map(leaf).collect();
@@ -228,16 +197,14 @@ fn parameter<'g>(
 /// A promise must make sense for the field's shape.
 fn check_promise(promise: Promise, span: Span, shape: Shape, field: &Field) -> Result<(), Diagnostic> {
     let (fits, needs) = match promise {
-        Promise::Symmetric => (shape.is_square() && !shape.is_scalar(), "only a square matrix can be symmetric"),
-        Promise::Diagonal => (shape.is_square() && !shape.is_scalar(), "only a square matrix can be diagonal"),
-        Promise::Unit => (shape.is_column() && !shape.is_scalar(), "only a vector can be a unit vector"),
+        Promise::Symmetric => (shape.is_square(), "only a square matrix can be symmetric"),
+        Promise::Diagonal => (shape.is_square(), "only a square matrix can be diagonal"),
+        Promise::Unit => (shape.is_column(), "only a vector can be a unit vector"),
     };
-    match fits {
-        true => Ok(()),
-        false => {
-            Err(Diagnostic::new(span, format!("`{}` is {shape}: {needs}", field.name())).help("remove the promise"))
-        }
+    if !fits || shape.is_scalar() {
+        bail!(span, "`{}` is {shape}: {needs}", field.name(); help "remove the promise");
     }
+    Ok(())
 }
 
 /// Where each field is first read: `self.name` anywhere in a closure, macros included.

@@ -5,11 +5,11 @@ use syn::{GenericArgument, Generics, PathSegment, Type};
 
 use super::declared::DeclaredGroups;
 use super::features::{self, Feature, Found};
-use super::sizes::{LARGEST, size_argument};
-use super::vectors::{arguments, last_segment, named_shape};
+use super::sizes::{GROWS, LARGEST, size_argument};
+use super::vectors::{arguments, last_name, last_segment, named_shape};
 use super::{Configuration, Factor, LeafSpace};
-use crate::diagnostic::{Diagnostic, Location, nearest};
-use crate::parse::{Declaration, spell_type};
+use crate::diagnostic::{Diagnostic, Location, bail, error, nearest};
+use crate::parse::{Declaration, listed, spell_type};
 
 /// What the names in types refer to.
 #[derive(Copy, Clone)]
@@ -19,31 +19,37 @@ pub(super) struct GroupNames<'d> {
 }
 
 /// How a group is made from its sizes.
-#[derive(Copy, Clone)]
-enum Maker {
-    /// From one n, at least the first number.
-    One(usize, fn(usize) -> Group),
-    /// From one n, or from p and q.
-    OneOrTwo(usize, fn(usize) -> Group, fn(usize, usize) -> Group),
-    /// From an even n.
-    Even(fn(usize) -> Group),
+struct Maker {
+    name: &'static str,
+    /// The smallest n.
+    least: usize,
+    /// From one n.
+    make: fn(usize) -> Group,
+    /// From p and q, where it takes two sizes as well.
+    of_two: Option<fn(usize, usize) -> Group>,
+    /// Whether n is even.
+    even: bool,
 }
 
 /// All groups that are built in.
 #[rustfmt::skip]
-const GROUPS: [(&str, Maker); 11] = [
-    ("SO",          Maker::OneOrTwo(2, Group::SpecialOrthogonal, Group::PseudoOrthogonal)),
-    ("SE",          Maker::One(2, Group::SpecialEuclidean)),
-    ("Translation", Maker::One(1, Group::Translation)),
-    ("GL",          Maker::One(1, Group::GeneralLinear)),
-    ("SL",          Maker::One(2, Group::SpecialLinear)),
-    ("Sp",          Maker::Even(Group::Symplectic)),
-    ("U",           Maker::One(1, Group::Unitary)),
-    ("SU",          Maker::One(2, special_unitary)),
-    ("Heisenberg",  Maker::One(1, Group::Heisenberg)),
-    ("Aff",         Maker::One(1, Group::Affine)),
-    ("Sim",         Maker::One(2, Group::Similarity)),
+const GROUPS: [Maker; 11] = [
+    Maker { of_two: Some(Group::PseudoOrthogonal), ..maker("SO", 2, Group::SpecialOrthogonal) },
+    maker("SE",          2, Group::SpecialEuclidean),
+    maker("Translation", 1, Group::Translation),
+    maker("GL",          1, Group::GeneralLinear),
+    maker("SL",          2, Group::SpecialLinear),
+    Maker { even: true, ..maker("Sp", 2, Group::Symplectic) },
+    maker("U",           1, Group::Unitary),
+    maker("SU",          2, special_unitary),
+    maker("Heisenberg",  1, Group::Heisenberg),
+    maker("Aff",         1, Group::Affine),
+    maker("Sim",         2, Group::Similarity),
 ];
+
+const fn maker(name: &'static str, least: usize, make: fn(usize) -> Group) -> Maker {
+    Maker { name, least, make, of_two: None, even: false }
+}
 
 /// The largest dimension of a group whose elements are found by an equation: formulas are looked at in all of its directions.
 const DIMENSION: usize = 128;
@@ -64,7 +70,7 @@ fn special_unitary(n: usize) -> Group {
 
 /// Whether a name is that of a group that is built in.
 pub(super) fn is_built_in(name: &str) -> bool {
-    GROUPS.iter().any(|(group, _)| *group == name)
+    GROUPS.iter().any(|maker| maker.name == name)
 }
 
 /// Reads a group by its name; `None` if the type has another name.
@@ -73,61 +79,48 @@ pub(super) fn group(ty: &Type, names: GroupNames) -> Option<Result<Group, Diagno
     if let Some(group) = names.declared.find(&segment.ident) {
         return Some(declared(ty, segment, group));
     }
-    let &(name, maker) = GROUPS.iter().find(|(name, _)| segment.ident == name)?;
-    Some(built_in(ty, name, maker, &arguments(segment), names).and_then(|group| check_dimension(ty, group)))
+    let maker = GROUPS.iter().find(|maker| segment.ident == maker.name)?;
+    Some(built_in(ty, maker, &arguments(segment), names).and_then(|group| check_dimension(ty, group)))
 }
 
 /// A declared group is a name without sizes.
-fn declared(ty: &Type, segment: &PathSegment, group: Group) -> Result<Group, Diagnostic> {
-    match segment.arguments.is_none() {
-        true => Ok(group),
-        false => Err(Diagnostic::new(Location::of(ty), format!("`{}` has no size to choose", segment.ident))
-            .help(format!("write `{}`", segment.ident))
-            .note("a group that is declared here is one group")),
+fn declared(ty: &Type, PathSegment { ident, arguments }: &PathSegment, group: Group) -> Result<Group, Diagnostic> {
+    if !arguments.is_none() {
+        bail!(ty, "`{ident}` has no size to choose";
+            help "write `{ident}`"; note "a group that is declared here is one group");
     }
+    Ok(group)
 }
 
-fn built_in(
-    ty: &Type,
-    name: &str,
-    maker: Maker,
-    sizes: &[&GenericArgument],
-    names: GroupNames,
-) -> Result<Group, Diagnostic> {
-    let size = |position: usize| size_argument(sizes[position], names.generics);
-    let place = Location::of(ty);
-    match (maker, sizes.len()) {
-        (Maker::One(least, make) | Maker::OneOrTwo(least, make, _), 1) => match size(0)? {
-            n if n >= least => Ok(make(n)),
-            _ => Err(Diagnostic::new(place, format!("`{}` has only one element", spell_type(ty)))
-                .help(format!("`{name}<n>` needs n ≥ {least}"))),
-        },
-        (Maker::OneOrTwo(_, _, make), 2) => Ok(make(size(0)?, size(1)?)),
-        (Maker::Even(make), 1) => match size(0)? {
-            n if n % 2 == 0 => Ok(make(n)),
-            n => Err(Diagnostic::new(place, format!("`{}` needs an even size", spell_type(ty)))
-                .help(format!("write `{name}<{}>`", n + 1))
-                .note("its matrices act on as many momenta as coordinates")),
-        },
-        (Maker::OneOrTwo(..), _) => Err(Diagnostic::new(place, format!("`{}` needs one size or two", spell_type(ty)))
-            .help(format!("write `{name}<3>` for rotations, `{name}<1, 3>` for Lorentz transformations"))),
-        _ => Err(Diagnostic::new(place, format!("`{}` needs one size", spell_type(ty)))
-            .help(format!("write `{name}<{}>`", if matches!(maker, Maker::Even(_)) { 4 } else { 3 }))),
+fn built_in(ty: &Type, maker: &Maker, sizes: &[&GenericArgument], names: GroupNames) -> Result<Group, Diagnostic> {
+    let Maker { name, least, make, of_two, even } = maker;
+    let text = spell_type(ty);
+    let size = |argument: &GenericArgument| size_argument(argument, names.generics);
+    let n = match (sizes, of_two) {
+        ([n], _) => size(n)?,
+        ([p, q], Some(make)) => return Ok(make(size(p)?, size(q)?)),
+        (_, Some(_)) => bail!(ty, "`{text}` needs one size or two";
+            help "write `{name}<3>` for rotations, `{name}<1, 3>` for Lorentz transformations"),
+        _ => bail!(ty, "`{text}` needs one size"; help "write `{name}<{}>`", if *even { 4 } else { 3 }),
+    };
+    if *even && n % 2 == 1 {
+        bail!(ty, "`{text}` needs an even size";
+            help "write `{name}<{}>`", n + 1; note "its matrices act on as many momenta as coordinates");
     }
+    if n < *least {
+        bail!(ty, "`{text}` has only one element"; help "`{name}<n>` needs n ≥ {least}");
+    }
+    Ok(make(n))
 }
 
 fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
-    let text = spell_type(ty);
-    let note = "the code of a step is written out at compile time and grows with the size";
-    let rows = group.element_shape().rows;
+    let (text, rows, dimension) = (spell_type(ty), group.element_shape().rows, group.dimension());
     if rows > LARGEST {
-        let message = format!("the matrices of `{text}` have {rows} rows, more than {LARGEST}");
-        return Err(Diagnostic::new(Location::of(ty), message).note(note));
+        bail!(ty, "the matrices of `{text}` have {rows} rows, more than {LARGEST}"; note "{GROWS}");
     }
     // spheres need no equation, and it is only known later whether rotations move one
-    if group.dimension() > DIMENSION && !matches!(group, Group::SpecialOrthogonal(_)) {
-        let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", group.dimension());
-        return Err(Diagnostic::new(Location::of(ty), message).note(note));
+    if dimension > DIMENSION && !matches!(group, Group::SpecialOrthogonal(_)) {
+        bail!(ty, "`{text}` has {dimension} dimensions, more than {DIMENSION}"; note "{GROWS}");
     }
     Ok(group)
 }
@@ -144,10 +137,9 @@ pub(super) fn check_large(
     let Some(factor) = factors.iter().find(must_be_looked_at) else { return Ok(()) };
     let text = factor.group.name(factor.symbol.graph());
     if !is_large(factor.group, configurations) {
-        let message = format!("`{text}` has {} dimensions, more than {DIMENSION}", factor.group.dimension());
-        return Err(Diagnostic::new(factor.span, message).help("use a smaller group, or a product of several").note(
-            "only rotations of a unit vector may have more: the others are found by an equation in all of them",
-        ));
+        bail!(factor.span, "`{text}` has {} dimensions, more than {DIMENSION}", factor.group.dimension();
+            help "use a smaller group, or a product of several";
+            note "only rotations of a unit vector may have more: the others are found by an equation in all of them");
     }
     let Some(symmetry) = declaration.symmetries.first() else { return Ok(()) };
     let offered = Found::at(Location::of(&symmetry.body)).named(text);
@@ -156,26 +148,22 @@ pub(super) fn check_large(
 
 /// The error for a type that is no group, where a group is expected.
 pub(super) fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
-    let text = spell_type(ty);
-    let place = Location::of(ty);
-    let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let (text, name) = (spell_type(ty), last_name(ty));
     if let Some(shape) = named_shape(&name) {
-        let message = format!("`{text}` is a space, but the first argument of the action is a group element");
-        let n = shape.rows;
-        return Diagnostic::new(place, message).help(match shape.is_column() {
-            true => format!("write `Translation<{n}>` to shift by a vector"),
-            false => format!("write `SO<{n}>` for rotations, `GL<{n}>` for all invertible matrices"),
+        let (n, error) =
+            (shape.rows, error!(ty, "`{text}` is a space, but the first argument of the action is a group element"));
+        return error.help(if shape.is_column() {
+            format!("write `Translation<{n}>` to shift by a vector")
+        } else {
+            format!("write `SO<{n}>` for rotations, `GL<{n}>` for all invertible matrices")
         });
     }
-    let error = Diagnostic::new(place, format!("unknown group `{text}`"));
+    let error = error!(ty, "unknown group `{text}`");
     match suggestion(&name, names) {
         Some(suggestion) => error.help(format!("write `{suggestion}`")),
-        None => {
-            let list: Vec<String> = GROUPS.iter().map(|(group, _)| format!("`{group}`")).collect();
-            error
-                .help(format!("declare it, `group {name} = |F: Matrix3| F.transpose() * F == I`"))
-                .note(format!("the groups that are built in are {}", list.join(", ")))
-        }
+        None => error
+            .help(format!("declare it, `group {name} = |F: Matrix3| F.transpose() * F == I`"))
+            .note(format!("the groups that are built in are {}", listed(GROUPS.iter().map(|maker| maker.name)))),
     }
 }
 
@@ -200,8 +188,8 @@ pub(super) fn suggestion(name: &str, names: GroupNames) -> Option<String> {
         "Translate" | "Shift" => Some("Translation"),
         _ => None,
     };
-    let known =
-        synonym.or_else(|| GROUPS.iter().map(|&(group, _)| group).find(|group| group.eq_ignore_ascii_case(base)));
-    let similar = known.or_else(|| nearest(base, GROUPS.iter().map(|&(group, _)| group)).filter(|_| base.len() > 2));
+    let mut known = GROUPS.iter().map(|maker| maker.name);
+    let synonym = synonym.or_else(|| known.clone().find(|group| group.eq_ignore_ascii_case(base)));
+    let similar = synonym.or_else(|| nearest(base, known.by_ref()).filter(|_| base.len() > 2));
     similar.map(|group| format!("{group}<{size}>"))
 }

@@ -22,6 +22,15 @@ impl Layout {
         }
     }
 
+    /// What it is, for messages.
+    pub(super) fn describe(&self) -> String {
+        match self {
+            Layout::Leaf(_) => "no tuple".to_string(),
+            Layout::Tuple(parts) => format!("a tuple of {}", parts.len()),
+            Layout::Array(parts) => format!("an array of {}", parts.len()),
+        }
+    }
+
     /// How each leaf is reached, in order: `.0`, `[1]`, `.0[1]`.
     pub fn accessors(&self) -> Vec<Access> {
         let mut accessors = Vec::new();

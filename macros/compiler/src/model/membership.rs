@@ -27,12 +27,12 @@ pub(super) fn lies_on(expr: Expr<'_>, group: Group) -> Verdict {
         let increment = expr - graph.identity(expr.shape().rows);
         equations.push(increment - group.wedge(group.projected_coordinates(increment)));
     }
-    match equations.into_iter().all(identity::vanishes) {
-        false => Verdict::Outside,
-        // the equations of SU(n) are those of U(n)
-        true if matches!(group, Group::SpecialUnitary(_)) || (by_basis && !affine) => Verdict::Open,
-        true => Verdict::Inside,
+    if !equations.into_iter().all(identity::vanishes) {
+        return Verdict::Outside;
     }
+    // the equations of SU(n) are those of U(n)
+    let is_open = matches!(group, Group::SpecialUnitary(_)) || (by_basis && !affine);
+    if is_open { Verdict::Open } else { Verdict::Inside }
 }
 
 /// Whether an expression is made of elements of a group by products and inverses.
@@ -43,9 +43,8 @@ fn is_product(expr: Expr<'_>, group: Group) -> bool {
         View::Of(Operation::Transpose, inner) => group.is_orthogonal() && is_product(inner, group),
         View::Sum(terms) => match terms.as_slice() {
             [term] => {
-                term.coefficient.is_one()
-                    && term.scalars.is_empty()
-                    && term.word.iter().all(|letter| is_product(*letter, group))
+                let letters = term.word.iter().all(|letter| is_product(*letter, group));
+                letters && term.coefficient.is_one() && term.scalars.is_empty()
             }
             _ => false,
         },

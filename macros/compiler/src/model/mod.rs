@@ -36,9 +36,8 @@ mod value;
 mod vectors;
 mod velocity;
 
-pub use crate::parse::{
-    ChartChoice, CodeForm, Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Solver, Summation,
-};
+pub use crate::parse::dials::*;
+pub use crate::parse::{Located, Opaque};
 pub use access::{Access, Part};
 pub use features::features_as_markdown;
 pub use groups::is_large;
@@ -53,46 +52,39 @@ use std::rc::Rc;
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 use self::action_laws::{Action, Law};
-use self::arguments::{Arguments, TypedArguments};
+use self::arguments::Arguments;
+use self::closures::optional;
 use self::declared::DeclaredGroups;
 use self::elaborate::Context;
 use self::forces::Forces;
 use self::groups::GroupNames;
 use self::sites::Sites;
-use self::symmetries::OfferedSystem;
-use self::typed::Typed;
+use self::typed::{ActedSystem, Typed};
 use crate::diagnostic::Diagnostics;
-use crate::parse::{Declaration, Pattern, Potential};
+use crate::parse::{Declaration, Potential};
 
 /// The model of a declaration.
 pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
-    let mut diagnostics = Diagnostics::new();
-    let declared = DeclaredGroups::read(graph, &declaration.groups, &mut diagnostics);
+    let diagnostics = Diagnostics::new();
+    let declared = DeclaredGroups::read(graph, &declaration.groups, &diagnostics);
     // a type cannot name a group that has an error
     diagnostics.propagate(())?;
     let names = GroupNames { generics: &declaration.generics, declared: &declared };
-    let mut diagnostics = Diagnostics::new();
-    let types = arguments::of_action(&declaration.action, &mut diagnostics);
-    let sites = types.map(|types| power::site_types((types.group, types.space), &declaration.generics));
-    let (types, sites) = match sites {
-        Some(Ok(Some(sites))) => {
-            sites::check(declaration, &mut diagnostics);
-            let site = types.map(|types| TypedArguments { group: sites.group, space: sites.space, ..types });
-            (site, Some(sites.length))
-        }
-        Some(Err(error)) => {
-            diagnostics.push(error);
-            (None, None)
-        }
-        _ => (types, None),
-    };
-    let groups = types.and_then(|types| spaces::read_groups(types.group, names, &mut diagnostics));
-    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names, &mut diagnostics));
+    let diagnostics = Diagnostics::new();
+    let types = arguments::of_action(&declaration.action, &diagnostics);
+    let site = types.and_then(|types| diagnostics.take(power::of_site(types, &declaration.generics)));
+    let (types, sites) = site.unzip();
+    let sites = sites.flatten();
+    if sites.is_some() {
+        sites::check(declaration, &diagnostics);
+    }
+    let groups = types.and_then(|types| spaces::read_groups(types.group, names, &diagnostics));
+    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names, &diagnostics));
     let scalars: Vec<Option<&syn::Type>> =
         spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
-    let fields = fields::read(graph, declaration, &scalars, sites, &mut diagnostics);
+    let fields = fields::read(graph, declaration, &scalars, sites, &diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
-    let typed = Typed::new(graph, types, groups, spaces, &mut diagnostics);
+    let typed = Typed::new(graph, types, groups, spaces, &diagnostics);
     // before the laws of the action are looked at in all directions
     if let Some((factors, configurations)) = typed.factors.as_deref().zip(typed.configurations.as_deref())
         && let Err(error) = groups::check_large(declaration, factors, configurations)
@@ -102,7 +94,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     }
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
-    let mut arguments = typed.arguments(types, input(declaration), (step_size, time));
+    let mut arguments = typed.arguments(types, declaration.input(), (step_size, time));
     let power = sites.zip(typed.configurations.clone()).map(|(length, leaves)| {
         arguments.of_each_site();
         let (structure, leaf_count) = (typed.configuration.clone(), fields.leaf_count());
@@ -110,9 +102,9 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     });
     let mut context = Context { graph, fields: &fields, constants: Vec::new(), power, diagnostics };
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
-    let Context { constants, power, mut diagnostics, .. } = context;
-    declared.check_used(&mut diagnostics);
-    chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &mut diagnostics);
+    let Context { constants, power, diagnostics, .. } = context;
+    declared.check_used(&diagnostics);
+    chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
     // by construction: what is missing has an error, and there were none
     let (Some(formulas), Some(mut factors), Some(configurations)) = (formulas, typed.factors, typed.configurations)
@@ -135,8 +127,8 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         configurations,
         configuration: typed.configuration,
         action: formulas.action,
-        inputs: formulas.forces.inputs,
-        input: formulas.forces.input,
+        inputs: formulas.forces.input.leaves,
+        input: formulas.forces.input.structure,
         control: formulas.control,
         endpoint: formulas.endpoint,
         emit: dials.emit,
@@ -201,38 +193,31 @@ impl<'g> ClosureValues<'g> {
         let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
         let action = closures::action(context, declaration, arguments, &typed.configuration, configurations);
         let kinetic = closures::kinetic(context, declaration, arguments, &typed.element, factors);
-        let (potential, terms) = match context.power.is_some() {
-            true => (None, closures::potential_of_power(context, declaration, arguments)),
-            false => (closures::potential(context, declaration, arguments, configurations), Vec::new()),
+        let (potential, terms) = if context.power.is_some() {
+            (None, closures::potential_of_power(context, declaration, arguments).unwrap_or_default())
+        } else {
+            (closures::potential(context, declaration, arguments, configurations), Vec::new())
         };
         let (action, factors, configurations) = (action?, factors?, configurations?);
         let (graph, closure) = (context.graph, &declaration.action);
-        let laws = action_laws::check(
-            &Action { graph, closure, factors, configurations, value: &action },
-            &mut context.diagnostics,
-        );
+        let acting = Action { graph, closure, factors, configurations, value: &action };
+        let laws = action_laws::check(&acting, &context.diagnostics);
         let (element, configuration) = (&typed.element, &typed.configuration);
-        let system =
-            OfferedSystem { arguments, names, element, factors, configuration, configurations, action: &action };
+        let system = ActedSystem { arguments, names, element, factors, configuration, configurations, action: &action };
         let symmetries = symmetries::read(context, &system, &declaration.symmetries);
-        forces::check_dials(declaration, &mut context.diagnostics);
-        let forced = forces::ForcedSystem { arguments, names, element, factors, configuration, configurations };
-        let endpoint = declaration.endpoint.as_ref().map(|closure| control::endpoint(context, arguments, closure));
-        let endpoint = endpoint.map_or(Some(None), |endpoint| endpoint.map(Some));
-        let mut forces = forces::read(context, &forced, declaration);
-        let mover = match control::motion(context, &forced, declaration) {
-            Some((motion, (input, inputs))) => {
-                forces = Some(Forces { force: None, inputs, input });
-                Some(Mover::Inputs(motion))
-            }
+        forces::check_dials(declaration, &context.diagnostics);
+        let endpoint =
+            optional(declaration.endpoint.as_ref(), |closure| control::endpoint(context, arguments, closure));
+        let forces = forces::read(context, &system, declaration);
+        let (mover, forces) = match control::motion(context, &system, declaration) {
+            Some((motion, input)) => (Some(Mover::Inputs(motion)), Some(Forces { force: None, input })),
             // what moves has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
-            None => kinetic.map(Mover::Momenta),
+            None => (kinetic.map(Mover::Momenta), forces),
         };
         let forces = forces?;
-        let input = (forces.input.clone(), forces.inputs.clone());
-        let control = declaration.control.as_ref().map(|control| control::read(context, arguments, control, &input));
-        let control = control.map_or(Some(None), |control| control.map(Some))?;
+        let choose = |control| control::read(context, arguments, control, &forces.input);
+        let control = optional(declaration.control.as_ref(), choose)?;
         Some(ClosureValues {
             action,
             laws: laws?,
@@ -245,15 +230,6 @@ impl<'g> ClosureValues<'g> {
             endpoint: endpoint?,
         })
     }
-}
-
-/// What the closure that introduces the input calls it.
-fn input(declaration: &Declaration) -> Option<&Pattern> {
-    let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
-    let mut closures = steered.chain(&declaration.force).chain(&declaration.force_on);
-    closures
-        .find_map(|closure| closure.arguments.last().filter(|argument| argument.ty.is_some()))
-        .map(|argument| &argument.pattern)
 }
 
 /// The user's struct, as generated code has to name it.

@@ -15,11 +15,11 @@ pub(super) fn alone<'g>(
     energy: Expr<'g>,
     force: Option<&Force<'g>>,
 ) -> Result<System<'g>, Diagnostics> {
-    let mut diagnostics = Diagnostics::new();
-    check(&system, &[energy], &system.spans.kinetic, &mut diagnostics);
+    let diagnostics = Diagnostics::new();
+    check(&system, &[energy], &system.spans.kinetic, &diagnostics);
     if let Some(force) = force {
         let parts = force.of_group.as_deref().unwrap_or_default();
-        force.written.iter().for_each(|written| check(&system, parts, written, &mut diagnostics));
+        force.written.iter().for_each(|written| check(&system, parts, written, &diagnostics));
     }
     diagnostics.propagate(System {
         configurations: Vec::new(),
@@ -29,7 +29,7 @@ pub(super) fn alone<'g>(
     })
 }
 
-fn check<'g>(system: &System<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &mut Diagnostics) {
+fn check<'g>(system: &System<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &Diagnostics) {
     let read = |part: &Expr<'g>| system.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
     let Some(leaf) = parts.iter().find_map(read) else { return };
     let dependent = Found::at(written.place).named(&leaf.name);

@@ -3,7 +3,6 @@
 use clebsch_symbolic::{Graph, Group, Shape};
 use quote::ToTokens;
 
-use super::arguments::TypedArguments;
 use super::declared::DeclaredGroups;
 use super::groups::GroupNames;
 use super::{Layout, ScalarType, arguments, power, spaces};
@@ -36,26 +35,20 @@ pub struct Outline {
 
 /// The outline of a declaration whose action has readable types.
 pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
-    let mut ignored = Diagnostics::new();
-    let declared = DeclaredGroups::read(graph, &declaration.groups, &mut ignored);
+    let ignored = Diagnostics::new();
+    let declared = DeclaredGroups::read(graph, &declaration.groups, &ignored);
     let names = GroupNames { generics: &declaration.generics, declared: &declared };
-    let types = arguments::of_action(&declaration.action, &mut ignored)?;
-    let sites = power::site_types((types.group, types.space), &declaration.generics).ok()?;
-    let types = match &sites {
-        Some(sites) => TypedArguments { group: sites.group, space: sites.space, ..types },
-        None => types,
-    };
-    let groups = spaces::read_groups(types.group, names, &mut ignored)?;
-    let mut spaces = spaces::read_spaces(types.space, names, &mut ignored)?;
-    let steered = [declaration.kinetic.closure()].into_iter().filter(|_| declaration.kinetic.is_steered());
-    let forces = steered.chain(&declaration.force).chain(&declaration.force_on);
-    let input = forces.filter_map(|closure| closure.arguments.last()?.ty.as_ref()).next();
-    let input = input.and_then(|ty| spaces::read_spaces(ty, names, &mut ignored));
+    let types = arguments::of_action(&declaration.action, &ignored)?;
+    let (types, sites) = power::of_site(types, &declaration.generics).ok()?;
+    let groups = spaces::read_groups(types.group, names, &ignored)?;
+    let mut spaces = spaces::read_spaces(types.space, names, &ignored)?;
+    let input = declaration.input().and_then(|argument| argument.ty.as_ref());
+    let input = input.and_then(|ty| spaces::read_spaces(ty, names, &ignored));
     if declaration.dials.emit.momentum {
         (spaces.structure, spaces.leaves) = (Layout::Tuple(Vec::new()), Vec::new());
     }
     Some(Outline {
-        sites: sites.map(|sites| sites.length.clone()),
+        sites: sites.cloned(),
         inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
         input: input.map_or(Layout::Tuple(Vec::new()), |input| input.structure),
         element: groups.structure,

@@ -5,14 +5,17 @@
 //! `q[(i + 1) % N]`, and is differentiated once.
 
 pub(super) mod bounds;
+#[cfg(test)]
+mod tests;
 
 use clebsch_symbolic::Expr;
 use proc_macro2::Ident;
 use syn::{Generics, Type};
 
+use super::arguments::TypedArguments;
 use super::sizes::const_generic;
 use super::{Item, Parameter};
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::{Diagnostic, error};
 pub use bounds::Linear;
 
 /// What makes a power of the model of a site.
@@ -84,37 +87,30 @@ impl<'g> SiteIndex<'g> {
     }
 }
 
-/// The types of a site: what stands inside `[…; N]` of both arguments of the action.
-pub(super) struct SiteTypes<'d> {
-    pub length: &'d Ident,
-    pub group: &'d Type,
-    pub space: &'d Type,
-}
-
-/// The types of a site, where the action is one of a power; `None` where neither type has a const generic for its length.
+/// The arguments of the action of a site with the const generic N, where the action is one of a power: what stands inside `[…; N]` of both
+/// types. The arguments themselves where neither type has a const generic for its length.
 ///
 /// # Errors
 /// Where only one of them has, or another one.
-pub(super) fn site_types<'d>(
-    (group, space): (&'d Type, &'d Type),
+pub(super) fn of_site<'d>(
+    types: TypedArguments<'d>,
     generics: &'d Generics,
-) -> Result<Option<SiteTypes<'d>>, Diagnostic> {
-    let (of_group, of_space) = (array(group, generics), array(space, generics));
-    match (of_group, of_space) {
-        (None, None) => Ok(None),
+) -> Result<(TypedArguments<'d>, Option<&'d Ident>), Diagnostic> {
+    match (array(types.group, generics), array(types.space, generics)) {
+        (None, None) => Ok((types, None)),
         (Some((length, group)), Some((other, space))) if length == other => {
-            Ok(Some(SiteTypes { length, group, space }))
+            Ok((TypedArguments { group, space, ..types }, Some(length)))
         }
-        (Some((length, inner)), _) => Err(unequal(space, inner, length)),
-        (None, Some((length, inner))) => Err(unequal(group, inner, length)),
+        (Some((length, inner)), _) => Err(unequal(types.space, inner, length)),
+        (None, Some((length, inner))) => Err(unequal(types.group, inner, length)),
     }
 }
 
 fn unequal(ty: &Type, inner: &Type, length: &Ident) -> Diagnostic {
     let (text, inner) = (crate::parse::spell_type(ty), crate::parse::spell_type(inner));
-    Diagnostic::new(Location::of(ty), format!("`{text}` is no power with {length} sites"))
-        .help(format!("write `[…; {length}]` for both, the group and the space that it moves"))
-        .note(format!("the other argument has {length} times `{inner}`, and each site is moved by its own element"))
+    error!(ty, "`{text}` is no power with {length} sites";
+        help "write `[…; {length}]` for both, the group and the space that it moves";
+        note "the other argument has {length} times `{inner}`, and each site is moved by its own element")
 }
 
 /// N and `T` of `[T; N]` with a const generic N.

@@ -95,7 +95,7 @@ impl System<'_> {
     }
 
     fn print_dials(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.dials.given().into_iter().try_for_each(|(name, value)| writeln!(f, "  {name:<10} {value}"))
+        self.dials.given().into_iter().try_for_each(|(name, value)| writeln!(f, "  {name:<10} {}", value.value))
     }
 }
 

@@ -8,8 +8,8 @@ pub(super) const COORDINATES: usize = 4;
 /// The position of the scalar part.
 const SCALAR: usize = 3;
 
-/// The coordinates of a quaternion by name.
-pub(super) const NAMES: [(&str, usize); COORDINATES] = [("i", 0), ("j", 1), ("k", 2), ("w", SCALAR)];
+/// The names of the coordinates.
+pub(super) const NAMES: [&str; COORDINATES] = ["i", "j", "k", "w"];
 
 /// The vector part.
 pub(super) fn imaginary(q: Expr<'_>) -> Expr<'_> {

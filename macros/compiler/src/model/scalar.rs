@@ -1,57 +1,44 @@
 //! The scalar of a system: all fields that are read, and all spaces that name one, have to agree.
 
-use syn::{Generics, Type};
+use syn::{Generics, Ident, Type};
 
 use super::ScalarType;
-use super::vectors::last_segment;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use super::vectors::last_name;
+use crate::diagnostic::{Diagnostics, refuse, report};
 use crate::parse::{Declaration, spell_type};
 
 /// The scalar that all types agree on.
 pub(super) struct Agreement<'d> {
     generics: &'d Generics,
-    given: Option<ScalarType>,
     found: Option<(ScalarType, String)>,
 }
 
 impl<'d> Agreement<'d> {
     /// Begins with the dial `scalar`.
-    pub fn new(declaration: &'d Declaration, diagnostics: &mut Diagnostics) -> Agreement<'d> {
+    pub fn new(declaration: &'d Declaration, diagnostics: &Diagnostics) -> Agreement<'d> {
         let generics = &declaration.generics;
-        let given = declaration.dials.scalar.as_ref().and_then(|ident| {
-            let scalar = named_scalar(&ident.to_string(), generics);
-            if scalar.is_none() {
-                let error = Diagnostic::new(ident.span(), format!("`{ident}` is no scalar"));
-                diagnostics.push(error.help("write `f64`, `f32` or a type parameter of the struct"));
-            }
-            scalar
-        });
-        Agreement { generics, found: given.clone().map(|scalar| (scalar, "`scalar`".to_string())), given }
+        let named = |ident: &Ident| match named_scalar(&ident.to_string(), generics) {
+            Some(scalar) => Some((scalar, "`scalar`".to_string())),
+            None => refuse!(diagnostics, ident, "`{ident}` is no scalar";
+                help "write `f64`, `f32` or a type parameter of the struct"),
+        };
+        Agreement { generics, found: declaration.dials.scalar.as_ref().and_then(named) }
     }
 
     /// Compares one more scalar with those before.
-    pub fn meet(&mut self, ty: &Type, whose: &str, diagnostics: &mut Diagnostics) {
+    pub fn meet(&mut self, ty: &Type, whose: &str, diagnostics: &Diagnostics) {
         let text = spell_type(ty);
-        let name = last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default();
-        let Some(scalar) = named_scalar(&name, self.generics) else {
-            diagnostics.push(
-                Diagnostic::new(
-                    Location::of(ty),
-                    format!("the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter"),
-                )
-                .help("write `f64`")
-                .note("a macro cannot see what an alias stands for"),
-            );
+        let Some(scalar) = named_scalar(&last_name(ty), self.generics) else {
+            report!(diagnostics, ty, "the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter";
+                help "write `f64`"; note "a macro cannot see what an alias stands for");
             return;
         };
         match &self.found {
             None => self.found = Some((scalar, whose.to_string())),
             Some((other, first)) if *other != scalar => {
-                let message =
-                    format!("the scalar of {whose} is `{text}`, that of {first} is `{}`", spell_scalar(other));
-                let error = Diagnostic::new(Location::of(ty), message);
-                diagnostics
-                    .push(error.help(format!("write `{}`", spell_scalar(other))).note("a system has one scalar type"));
+                let other = spell_scalar(other);
+                report!(diagnostics, ty, "the scalar of {whose} is `{text}`, that of {first} is `{other}`";
+                    help "write `{other}`"; note "a system has one scalar type");
             }
             Some(_) => {}
         }
@@ -59,7 +46,7 @@ impl<'d> Agreement<'d> {
 
     /// What all agreed on; `f64` if nobody named a scalar.
     pub fn settle(self) -> ScalarType {
-        self.found.map(|(scalar, _)| scalar).or(self.given).unwrap_or(ScalarType::F64)
+        self.found.map_or(ScalarType::F64, |(scalar, _)| scalar)
     }
 }
 

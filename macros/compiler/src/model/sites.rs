@@ -130,7 +130,7 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
 }
 
 /// Reports what a power cannot have yet.
-pub(super) fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let dials = &declaration.dials;
     let key = |closure: &Option<Closure>| closure.as_ref().map(|closure| Found::at(closure.key.span()));
     let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
@@ -147,20 +147,19 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         Feature::Endpoint => key(&declaration.endpoint),
         Feature::Symmetry => declaration.symmetries.first().map(|closure| Found::at(closure.key.span())),
         Feature::Controls | Feature::Dynamics => {
-            let motion = declaration.kinetic.closure();
-            (format!("`{}`", motion.key) == feature.words()).then(|| Found::at(motion.key.span()))
+            let key = &declaration.kinetic.closure().key;
+            feature.is_key(&key.to_string()).then(|| Found::at(key.span()))
         }
         Feature::Effort if !declaration.kinetic.is_steered() => {
             declaration.control.as_ref().map(|control| Found::at(control.price.key.span()))
         }
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
-        Feature::Summation => dials.summation.as_ref().map(|summation| Found::at(summation.span)),
         Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
         Feature::Tangent => emitted(dials.emit.tangent),
         Feature::Boundary => emitted(dials.emit.boundary),
         Feature::Momentum => emitted(dials.emit.momentum),
-        _ => None,
+        dial => dials.given().find(|(name, _)| dial.is_key(name)).map(|(_, value)| Found::at(value.span)),
     };
     let refused = features::refusals_of((Feature::Power, Found::somewhere()), found);
     refused.for_each(|error| diagnostics.push(error));

@@ -3,8 +3,8 @@
 use syn::ext::IdentExt;
 
 use super::scope::check_reserved;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
-use crate::parse::{Argument, Closure, Pattern, spell_type};
+use crate::diagnostic::{Diagnostic, Diagnostics, error, report};
+use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
 
 /// What an argument stands for.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -77,42 +77,6 @@ impl<'d> SharedNames<'d> {
         }
     }
 
-    /// The slot that each argument takes; `None` if there is an error, which is reported.
-    pub(super) fn match_slots(
-        &self,
-        closure: &Closure,
-        slots: &[Slot],
-        diagnostics: &mut Diagnostics,
-    ) -> Vec<Option<Slot>> {
-        let mut taken: Vec<Option<Slot>> =
-            closure.arguments.iter().map(|argument| self.find(&argument.pattern, slots)).collect();
-        let mut untyped = closure.arguments.len();
-        if slots.contains(&Slot::Input) && closure.arguments.last().is_some_and(|argument| argument.ty.is_some()) {
-            untyped -= 1;
-            taken[untyped] = Some(Slot::Input);
-        }
-        if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity))
-            && taken[last].is_none()
-            && !self.is_foreign(&closure.arguments[last].pattern)
-        {
-            taken[last] = Some(Slot::Velocity);
-        }
-        let introduces = |argument: &Argument| argument.ty.is_some() || closure.arguments.len() == slots.len();
-        if slots.contains(&Slot::Offered) && closure.arguments.first().is_some_and(introduces) {
-            taken[0] = Some(Slot::Offered);
-        }
-        for (position, argument) in closure.arguments.iter().enumerate() {
-            self.check_argument(closure, argument, position, &taken, slots, diagnostics);
-        }
-        self.check_order(closure, &taken, slots, diagnostics);
-        if slots == LAGRANGIAN && !taken.contains(&Some(Slot::Velocity)) && !taken.contains(&None) {
-            let error = Diagnostic::new(closure.head, "the lagrangian has no velocity");
-            diagnostics
-                .push(error.help(format!("write `{} …`", self.head(&taken, slots, Some(Slot::Velocity), closure))));
-        }
-        taken
-    }
-
     fn find(&self, pattern: &Pattern, slots: &[Slot]) -> Option<Slot> {
         slots.iter().copied().find(|&slot| match (slot, pattern) {
             (Slot::Time, Pattern::Name(ident)) => ident == "t",
@@ -121,128 +85,212 @@ impl<'d> SharedNames<'d> {
         })
     }
 
-    /// Whether a pattern has a meaning that this closure has no slot for.
-    fn is_foreign(&self, pattern: &Pattern) -> bool {
+    /// Whether a pattern has a meaning in some closure.
+    fn is_known(&self, pattern: &Pattern) -> bool {
         self.find(pattern, COST).or_else(|| self.find(pattern, BOUNDS)).is_some()
     }
+}
 
-    fn check_argument(
-        &self,
-        closure: &Closure,
-        argument: &Argument,
-        position: usize,
-        taken: &[Option<Slot>],
-        slots: &[Slot],
-        diagnostics: &mut Diagnostics,
-    ) {
-        let (name, place) = (argument.pattern.spell(), argument.pattern.place());
-        if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(taken[position], Some(Slot::Offered | Slot::Input)))
-        {
-            diagnostics.push(
-                Diagnostic::new(Location::of(ty), format!("`{name}` has a type again"))
-                    .help(format!("write `{name}` without `: {}`", spell_type(ty)))
-                    .note("types stand in the action, which introduces the spaces"),
-            );
+/// The arguments of a closure, with the slot that each takes.
+pub(super) struct Matched<'d> {
+    pub closure: &'d Closure,
+    names: SharedNames<'d>,
+    slots: &'static [Slot],
+    /// `None` for an argument with an error, which was reported.
+    taken: Vec<Option<Slot>>,
+}
+
+impl<'d> Matched<'d> {
+    /// Finds the slot that each argument takes, and reports what is wrong with them.
+    pub fn new(
+        names: SharedNames<'d>,
+        closure: &'d Closure,
+        slots: &'static [Slot],
+        diagnostics: &Diagnostics,
+    ) -> Matched<'d> {
+        let arguments = &closure.arguments;
+        let mut taken: Vec<Option<Slot>> =
+            arguments.iter().map(|argument| names.find(&argument.pattern, slots)).collect();
+        let mut untyped = arguments.len();
+        if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
+            untyped -= 1;
+            taken[untyped] = Some(Slot::Input);
         }
-        match taken[position] {
-            Some(slot) if taken[..position].contains(&Some(slot)) => {
-                diagnostics
-                    .push(Diagnostic::new(place, format!("`{name}` is given twice")).help("remove one of the two"));
+        if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity))
+            && taken[last].is_none()
+            && !names.is_known(&arguments[last].pattern)
+        {
+            taken[last] = Some(Slot::Velocity);
+        }
+        let introduces = |argument: &Argument| argument.ty.is_some() || arguments.len() == slots.len();
+        if slots.contains(&Slot::Offered) && arguments.first().is_some_and(introduces) {
+            taken[0] = Some(Slot::Offered);
+        }
+        let matched = Matched { closure, names, slots, taken };
+        (0..arguments.len()).for_each(|position| matched.check_argument(position, diagnostics));
+        matched.check_order(diagnostics);
+        if slots == LAGRANGIAN && !matched.has(Slot::Velocity) && !matched.has_error() {
+            report!(diagnostics, closure.head, "the lagrangian has no velocity";
+                help "write `{} …`", matched.head(Some(Slot::Velocity)));
+        }
+        matched
+    }
+
+    /// Whether an argument has an error, which was reported.
+    pub fn has_error(&self) -> bool {
+        self.taken.contains(&None)
+    }
+
+    fn has(&self, slot: Slot) -> bool {
+        self.taken.contains(&Some(slot))
+    }
+
+    /// The first slot that no argument takes.
+    pub fn first_free(&self) -> Option<Slot> {
+        self.slots.iter().copied().find(|slot| !self.has(*slot))
+    }
+
+    /// The argument that takes a slot.
+    pub fn argument(&self, slot: Slot) -> Option<&'d Argument> {
+        let position = self.taken.iter().position(|taken| *taken == Some(slot))?;
+        Some(&self.closure.arguments[position])
+    }
+
+    /// All arguments.
+    pub fn arguments(&self) -> impl Iterator<Item = (&'d Argument, Option<Slot>)> {
+        self.closure.arguments.iter().zip(self.taken.iter().copied())
+    }
+
+    fn check_argument(&self, position: usize, diagnostics: &Diagnostics) {
+        let argument = &self.closure.arguments[position];
+        let slot = self.taken[position];
+        let (name, place) = (argument.pattern.spell(), argument.pattern.place());
+        if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(slot, Some(Slot::Offered | Slot::Input))) {
+            report!(diagnostics, ty, "`{name}` has a type again";
+                help "write `{name}` without `: {}`", spell_type(ty);
+                note "types stand in the action, which introduces the spaces");
+        }
+        match slot {
+            Some(slot) if self.taken[..position].contains(&Some(slot)) => {
+                report!(diagnostics, place, "`{name}` is given twice"; help "remove one of the two");
             }
             Some(Slot::Velocity) => self.check_new(argument, "the velocity", diagnostics),
             Some(Slot::Offered) => self.check_new(argument, "the symmetry", diagnostics),
             Some(Slot::Input) => self.check_new(argument, "the input", diagnostics),
             Some(_) => {}
-            None => diagnostics.push(self.unknown(closure, argument, position, taken, slots)),
+            None => diagnostics.push(self.unknown(position)),
         }
     }
 
     /// A name that a closure introduces is no name of the action.
-    fn check_new(&self, argument: &Argument, what: &str, diagnostics: &mut Diagnostics) {
-        let of_action = || self.element.names().into_iter().chain(self.configuration.names());
+    fn check_new(&self, argument: &Argument, what: &str, diagnostics: &Diagnostics) {
+        let of_action = || self.names.element.names().into_iter().chain(self.names.configuration.names());
         for ident in argument.pattern.names() {
             let free = check_reserved(ident, what, diagnostics);
             if free && of_action().any(|known| known.unraw() == ident.unraw()) {
-                let message = format!("`{ident}` is an argument of the action and cannot be the name of {what}");
-                diagnostics.push(Diagnostic::new(ident.span(), message).help("choose another name"));
+                report!(diagnostics, ident, "`{ident}` is an argument of the action and cannot be the name of {what}";
+                    help "choose another name");
             }
         }
     }
 
     /// The error for an argument that the action does not know.
-    fn unknown(
-        &self,
-        closure: &Closure,
-        argument: &Argument,
-        position: usize,
-        taken: &[Option<Slot>],
-        slots: &[Slot],
-    ) -> Diagnostic {
-        let (name, place, key) = (argument.pattern.spell(), argument.pattern.place(), &closure.key);
-        let error = if self.is_foreign(&argument.pattern) {
-            Diagnostic::new(place, format!("the {key} cannot depend on `{name}`"))
+    fn unknown(&self, position: usize) -> Diagnostic {
+        let Argument { pattern, .. } = &self.closure.arguments[position];
+        let (name, key) = (pattern.spell(), &self.closure.key);
+        let error = if self.names.is_known(pattern) {
+            error!(pattern.place(), "the {key} cannot depend on `{name}`")
         } else {
-            Diagnostic::new(place, format!("cannot find `{name}` in the {key}"))
+            error!(pattern.place(), "cannot find `{name}` in the {key}")
         };
-        let meant = self.meant(position, taken, slots);
-        let head = self.head(taken, slots, meant, closure);
-        let error = match meant.map(|slot| self.names(slot)) {
-            Some((_, meaning)) if meant == Some(Slot::Velocity) => {
-                error.help(format!("give {meaning}: write `{head}`"))
-            }
-            Some((known, meaning)) => error.help(format!("the action calls {meaning} `{known}`: write `{head}`")),
-            None => error.help(format!("write `{head}`")),
-        };
-        let describe = |slot: &Slot| match (slot, self.names(*slot)) {
+        let meant = self.meant(position);
+        let head = self.head(meant);
+        let error = error.help(match meant.map(|slot| (slot, self.names.names(slot))) {
+            Some((Slot::Velocity, (_, meaning))) => format!("give {meaning}: write `{head}`"),
+            Some((_, (known, meaning))) => format!("the action calls {meaning} `{known}`: write `{head}`"),
+            None => format!("write `{head}`"),
+        });
+        let describe = |slot: &Slot| match (slot, self.names.names(*slot)) {
             (Slot::Time | Slot::Step, (name, _)) => format!("`{name}`"),
             (Slot::Velocity, _) => "a new name (velocity)".to_string(),
             (Slot::Input, _) => "a new name with its type (input)".to_string(),
             (Slot::Offered, _) => "a new name with its group (symmetry)".to_string(),
             (_, (name, meaning)) => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
         };
-        let listed: Vec<String> = slots.iter().map(describe).collect();
-        let order = if listed.len() > 1 { ", in this order" } else { "" };
-        error.note(format!("arguments go by name: {}{order}", listed.join(", ")))
+        let order = if self.slots.len() > 1 { ", in this order" } else { "" };
+        error.note(format!("arguments go by name: {}{order}", joined(self.slots.iter().map(describe))))
     }
 
     /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
-    fn meant(&self, position: usize, taken: &[Option<Slot>], slots: &[Slot]) -> Option<Slot> {
-        let index = |slot: Slot| slots.iter().position(|&other| other == slot);
-        let unknown_behind = taken[position + 1..].iter().filter(|slot| slot.is_none()).count();
-        let limit = taken[position + 1..].iter().flatten().filter_map(|&slot| index(slot)).min().unwrap_or(slots.len());
-        let free =
-            |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Input) && !taken.contains(&Some(**slot));
-        slots[..limit].iter().rev().filter(free).nth(unknown_behind).copied()
+    fn meant(&self, position: usize) -> Option<Slot> {
+        let behind = &self.taken[position + 1..];
+        let unknown_behind = behind.iter().filter(|slot| slot.is_none()).count();
+        let limit = behind.iter().flatten().filter_map(|slot| self.index(*slot)).min().unwrap_or(self.slots.len());
+        let free = |slot: &Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Input) && !self.has(*slot);
+        self.slots[..limit].iter().rev().copied().filter(free).nth(unknown_behind)
+    }
+
+    fn index(&self, slot: Slot) -> Option<usize> {
+        self.slots.iter().position(|other| *other == slot)
     }
 
     /// The arguments as they should be.
-    pub(super) fn head(
-        &self,
-        taken: &[Option<Slot>],
-        slots: &[Slot],
-        meant: Option<Slot>,
-        closure: &Closure,
-    ) -> String {
-        let wanted = slots.iter().filter(|slot| taken.contains(&Some(**slot)) || Some(**slot) == meant);
-        let names: Vec<String> = wanted
-            .map(|&slot| match taken.iter().position(|other| *other == Some(slot)) {
-                Some(position) => match slot {
-                    Slot::Offered | Slot::Input => closure.arguments[position].spell(),
-                    _ => closure.arguments[position].pattern.spell(),
-                },
-                None => self.names(slot).0,
-            })
-            .collect();
-        format!("|{}|", names.join(", "))
+    pub fn head(&self, meant: Option<Slot>) -> String {
+        let wanted = self.slots.iter().copied().filter(|slot| self.has(*slot) || Some(*slot) == meant);
+        let name = |slot: Slot| match (self.argument(slot), slot) {
+            (Some(argument), Slot::Offered | Slot::Input) => argument.spell(),
+            (Some(argument), _) => argument.pattern.spell(),
+            (None, _) => self.names.names(slot).0,
+        };
+        format!("|{}|", joined(wanted.map(name)))
     }
 
-    fn check_order(&self, closure: &Closure, taken: &[Option<Slot>], slots: &[Slot], diagnostics: &mut Diagnostics) {
-        let index = |slot: &Slot| slots.iter().position(|other| other == slot);
-        let order: Vec<usize> = taken.iter().flatten().filter_map(index).collect();
-        if !taken.contains(&None) && order.windows(2).any(|pair| pair[0] > pair[1]) {
-            let error =
-                Diagnostic::new(closure.head, format!("the arguments of the {} are in another order", closure.key));
-            diagnostics.push(error.help(format!("write `{}`", self.head(taken, slots, None, closure))));
+    fn check_order(&self, diagnostics: &Diagnostics) {
+        let order: Vec<usize> = self.taken.iter().flatten().filter_map(|slot| self.index(*slot)).collect();
+        if !self.has_error() && !order.is_sorted() {
+            report!(diagnostics, self.closure.head, "the arguments of the {} are in another order", self.closure.key;
+                help "write `{}`", self.head(None));
+        }
+    }
+
+    /// The names of the declaration that are no arguments here, and what to do about each.
+    pub fn missing(&self) -> Vec<(String, String)> {
+        let named = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Element, Slot::Chosen];
+        let named = named.into_iter().filter(|slot| *slot != Slot::Chosen || !self.slots.contains(&Slot::Input));
+        let missing = named.filter(|slot| !self.has(*slot)).flat_map(|slot| {
+            let help = if self.slots.contains(&slot) {
+                format!("take it as an argument: write `{}`", self.head(Some(slot)))
+            } else {
+                self.dependence()
+            };
+            let names = match (self.names.pattern(slot), slot) {
+                (Some(pattern), _) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
+                (None, Slot::Chosen) => Vec::new(),
+                (None, _) => vec![self.names.names(slot).0],
+            };
+            names.into_iter().map(move |name| (name, help.clone()))
+        });
+        missing.collect()
+    }
+
+    /// What the closure may depend on.
+    fn dependence(&self) -> String {
+        let (key, q) = (&self.closure.key, self.names.configuration.spell());
+        let [step, velocity, input, chosen, offered] =
+            [Slot::Step, Slot::Velocity, Slot::Input, Slot::Chosen, Slot::Offered]
+                .map(|slot| self.slots.contains(&slot));
+        if chosen || (input && !velocity) {
+            let step = if step { "the step `h`, " } else { "" };
+            format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone")
+        } else if offered {
+            let f = self.names.element.spell();
+            format!("the {key} depends on its own element, on `{q}` and on `{f}` alone")
+        } else if input {
+            format!("the {key} depends on the time `t`, the configuration `{q}`, the velocity and an input alone")
+        } else if velocity {
+            format!("the {key} depends on the time `t`, the configuration `{q}` and the velocity alone")
+        } else {
+            format!("the {key} depends on the time `t` and the configuration `{q}` alone")
         }
     }
 }

@@ -1,15 +1,17 @@
 //! The factors of the group and the leaves of the configuration: their symbols, and what they are in closures.
 
 use clebsch_symbolic::{Expr, Graph, Group, Role};
+use proc_macro2::Span;
 
 use super::arguments::{Arguments, TypedArguments};
+use super::groups::GroupNames;
 use super::leaves::leaf_names;
 use super::slots::SharedNames;
 use super::spaces::{Product, SpaceType, span_of};
 use super::value::Value;
-use super::{Configuration, Factor, Layout, LeafSpace, Side};
+use super::{Access, Configuration, Factor, Layout, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
-use crate::parse::Pattern;
+use crate::parse::{Argument, Pattern};
 
 /// What the two arguments of the action stand for. A part with an error, which was reported, is `None`.
 pub(super) struct Typed<'g> {
@@ -19,6 +21,19 @@ pub(super) struct Typed<'g> {
     pub configurations: Option<Vec<Configuration<'g>>>,
 }
 
+/// A system whose action has been read: what symmetries, forces and inputs are read for.
+#[derive(Copy, Clone)]
+pub(super) struct ActedSystem<'a, 'g> {
+    pub arguments: &'a Arguments<'a, 'g>,
+    pub names: GroupNames<'a>,
+    pub element: &'a Layout,
+    pub factors: &'a [Factor<'g>],
+    pub configuration: &'a Layout,
+    pub configurations: &'a [Configuration<'g>],
+    /// Φ_F(q), leaf by leaf.
+    pub action: &'a [Expr<'g>],
+}
+
 impl<'g> Typed<'g> {
     /// The symbols of all factors and leaves.
     pub fn new(
@@ -26,10 +41,10 @@ impl<'g> Typed<'g> {
         arguments: TypedArguments,
         groups: Product<Group>,
         spaces: Product<SpaceType>,
-        diagnostics: &mut Diagnostics,
+        diagnostics: &Diagnostics,
     ) -> Typed<'g> {
         let factors = factors(graph, arguments.element, &groups, diagnostics);
-        let configurations = configurations(graph, arguments.configuration, &spaces, diagnostics);
+        let configurations = leaves(graph, arguments.configuration, &spaces, Role::Configuration, diagnostics);
         Typed { element: groups.structure, factors, configuration: spaces.structure, configurations }
     }
 
@@ -37,35 +52,51 @@ impl<'g> Typed<'g> {
     pub fn arguments<'d>(
         &self,
         typed: TypedArguments<'d>,
-        input: Option<&'d Pattern>,
+        input: Option<&'d Argument>,
         (step_size, time): (Expr<'g>, Expr<'g>),
     ) -> Arguments<'d, 'g> {
-        let factor = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
-        let point = |leaf: &Configuration<'g>| Value::leaf(leaf.symbol, leaf.is_quaternion);
-        let nested = |structure: &Layout, leaves: Vec<Value<'g>>| Value::nested(structure, &leaves);
+        let (factors, configurations) = (self.factors.as_deref(), self.configurations.as_deref());
+        let element = |all: &[Factor<'g>]| {
+            let leaf = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
+            Value::nested(&self.element, &all.iter().map(leaf).collect::<Vec<_>>())
+        };
+        let of_group = |factor: &Factor<'g>| (!factor.group.is_translation()).then_some((factor.symbol, factor.group));
+        let on_group = |leaf: &Configuration<'g>| match leaf.space {
+            LeafSpace::Group(group) => Some((leaf.symbol, group)),
+            LeafSpace::Vectors | LeafSpace::Unit => None,
+        };
+        let members = factors.into_iter().flatten().filter_map(of_group);
+        let input = input.map(|argument| &argument.pattern);
         Arguments {
             names: SharedNames { element: typed.element, configuration: typed.configuration, input },
-            element_value: self.factors.as_deref().map(|all| nested(&self.element, all.iter().map(factor).collect())),
-            configuration_value: (self.configurations.as_deref())
-                .map(|all| nested(&self.configuration, all.iter().map(point).collect())),
-            members: members(self.factors.as_deref(), self.configurations.as_deref()),
+            element_value: factors.map(element),
+            configuration_value: configurations.map(|all| value_of(&self.configuration, all)),
+            members: members.chain(configurations.into_iter().flatten().filter_map(on_group)).collect(),
             step_size,
             time,
         }
     }
 }
 
-/// The symbols that lie on a group.
-fn members<'g>(factors: Option<&[Factor<'g>]>, configurations: Option<&[Configuration<'g>]>) -> Vec<(Expr<'g>, Group)> {
-    let of_leaf = |leaf: &Configuration<'g>| match leaf.space {
-        LeafSpace::Group(group) => Some((leaf.symbol, group)),
-        LeafSpace::Vectors | LeafSpace::Unit => None,
-    };
-    let factors = factors.into_iter().flatten().filter(|factor| !factor.group.is_translation());
-    factors
-        .map(|factor| (factor.symbol, factor.group))
-        .chain(configurations.into_iter().flatten().filter_map(of_leaf))
-        .collect()
+impl<'g> Factor<'g> {
+    /// A factor with its symbol, the side still open.
+    pub(super) fn new(
+        graph: &'g Graph,
+        group: Group,
+        name: String,
+        role: Role,
+        accessor: Access,
+        span: Span,
+    ) -> Factor<'g> {
+        let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
+        Factor { group, symbol, name, side: Side::Left, moves: true, accessor, span }
+    }
+}
+
+/// What a configuration or an input is in a closure.
+pub(super) fn value_of<'g>(structure: &Layout, leaves: &[Configuration<'g>]) -> Value<'g> {
+    let values: Vec<_> = leaves.iter().map(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion)).collect();
+    Value::nested(structure, &values)
 }
 
 /// The factors of the group, the side of each still open.
@@ -73,34 +104,28 @@ fn factors<'g>(
     graph: &'g Graph,
     pattern: &Pattern,
     groups: &Product<Group>,
-    diagnostics: &mut Diagnostics,
+    diagnostics: &Diagnostics,
 ) -> Option<Vec<Factor<'g>>> {
-    let names = leaf_names(pattern, &groups.structure, diagnostics)?;
-    let mut factors = Vec::new();
-    for (&(group, ty), (name, accessor)) in
-        groups.leaves.iter().zip(names.into_iter().zip(groups.structure.accessors()))
-    {
-        let role = Role::Element(factors.len());
-        let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
-        let span = span_of(ty);
-        factors.push(Factor { group, symbol, name, side: Side::Left, moves: true, accessor, span });
-    }
-    Some(factors)
+    let names = leaf_names(pattern, &groups.structure, diagnostics)?.into_iter().zip(groups.structure.accessors());
+    let factors = names.zip(&groups.leaves).enumerate().map(|(k, ((name, accessor), (group, ty)))| {
+        Factor::new(graph, *group, name, Role::Element(k), accessor, span_of(ty))
+    });
+    Some(factors.collect())
 }
 
-fn configurations<'g>(
+/// The leaves of the configuration or of an input, by their role.
+pub(super) fn leaves<'g>(
     graph: &'g Graph,
     pattern: &Pattern,
     spaces: &Product<SpaceType>,
-    diagnostics: &mut Diagnostics,
+    role: fn(usize) -> Role,
+    diagnostics: &Diagnostics,
 ) -> Option<Vec<Configuration<'g>>> {
-    let names = leaf_names(pattern, &spaces.structure, diagnostics)?;
-    let mut configurations = Vec::new();
-    for ((leaf, _), (name, accessor)) in spaces.leaves.iter().zip(names.into_iter().zip(spaces.structure.accessors())) {
-        let role = Role::Configuration(configurations.len());
-        let symbol = graph.symbol(&name, leaf.shape, role, leaf.property());
+    let names = leaf_names(pattern, &spaces.structure, diagnostics)?.into_iter().zip(spaces.structure.accessors());
+    let leaves = names.zip(&spaces.leaves).enumerate().map(|(i, ((name, accessor), (leaf, _)))| {
+        let symbol = graph.symbol(&name, leaf.shape, role(i), leaf.property());
         let SpaceType { space, shape, is_quaternion, .. } = *leaf;
-        configurations.push(Configuration { symbol, name, space, shape, is_quaternion, accessor });
-    }
-    Some(configurations)
+        Configuration { symbol, name, space, shape, is_quaternion, accessor }
+    });
+    Some(leaves.collect())
 }

@@ -16,8 +16,8 @@ pub(super) enum Value<'g> {
     Quaternion(Expr<'g>),
     Tuple(Vec<Value<'g>>),
     Array(Vec<Value<'g>>),
-    /// One value for each site of a power, `q`.
-    PerSite(PerSite<'g>),
+    /// One value for each site of a power, `q`: what it is, and that of the site itself.
+    PerSite(Each, Box<Value<'g>>),
     /// The indices from the first up to and without the second, `0..N`.
     Range(Expr<'g>, Expr<'g>),
     /// An index modulo N, `(i + 1) % N`.
@@ -44,10 +44,44 @@ impl<'g> Value<'g> {
         }
     }
 
+    /// Takes a value apart as a structure nests; or says what was found and what was expected, as leaves do.
+    pub fn leaves(
+        &self,
+        structure: &Layout,
+        leaf: &impl Fn(&Value<'g>, usize) -> Result<Expr<'g>, String>,
+    ) -> Result<Vec<Expr<'g>>, (String, String)> {
+        match (self, structure) {
+            (value, Layout::Leaf(k)) => {
+                leaf(value, *k).map(|expr| vec![expr]).map_err(|needed| (value.describe(), needed))
+            }
+            (Value::Tuple(values), Layout::Tuple(parts)) | (Value::Array(values), Layout::Array(parts))
+                if values.len() == parts.len() =>
+            {
+                let leaves = values.iter().zip(parts).map(|(value, part)| value.leaves(part, leaf));
+                Ok(leaves.collect::<Result<Vec<_>, _>>()?.concat())
+            }
+            (value, structure) => Err((value.describe(), structure.describe())),
+        }
+    }
+
     /// The matrix, if it is one.
     pub fn matrix(&self) -> Option<Expr<'g>> {
         match self {
             Value::Matrix(expr) => Some(*expr),
+            _ => None,
+        }
+    }
+
+    /// Whether operators are of such values.
+    pub fn is_operand(&self) -> bool {
+        matches!(self, Value::Matrix(_) | Value::Identity(_) | Value::Quaternion(_) | Value::Sum(_))
+    }
+
+    /// The terms of a sum over sites, or a scalar as its only one.
+    pub fn terms(&self) -> Option<Vec<Term<'g>>> {
+        match self {
+            Value::Sum(terms) => Some(terms.clone()),
+            Value::Matrix(value) if value.shape().is_scalar() => Some(vec![Term { ranges: Vec::new(), value: *value }]),
             _ => None,
         }
     }
@@ -66,22 +100,13 @@ impl<'g> Value<'g> {
             Value::Quaternion(_) => "a quaternion".into(),
             Value::Tuple(parts) => format!("a tuple of {}", parts.len()),
             Value::Array(parts) => format!("an array of {}", parts.len()),
-            Value::PerSite(_) => "a value for each site".into(),
+            Value::PerSite(..) => "a value for each site".into(),
             Value::Range(from, to) => format!("the range {from}..{to}"),
             Value::Wrapped(_) => "an index".into(),
             Value::Sequence((from, to), _) => format!("a value for each of {from}..{to}"),
             Value::Sum(_) => "a sum over sites".into(),
         }
     }
-}
-
-/// A value of which there is one for each site.
-#[derive(Clone, Debug)]
-pub(super) struct PerSite<'g> {
-    /// What it is.
-    pub of: Each,
-    /// That of the site itself.
-    pub own: Box<Value<'g>>,
 }
 
 /// What there is one of for each site.

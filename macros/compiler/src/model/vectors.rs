@@ -4,7 +4,7 @@ use clebsch_symbolic::Shape;
 use syn::{GenericArgument, Generics, PathArguments, PathSegment, Type};
 
 use super::sizes::size_argument;
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::{Diagnostic, bail};
 use crate::parse::spell_type;
 
 /// The largest n for which `VectorN` and `MatrixN` have names.
@@ -17,16 +17,6 @@ pub(super) struct Vectors<'t> {
     pub scalar: Option<&'t Type>,
 }
 
-/// How a name gives a shape.
-enum Alias {
-    /// `Vector3`: the name says it all, the scalar may follow.
-    Named(Shape),
-    /// `SVector`: one size follows.
-    Vector,
-    /// `SMatrix`: two sizes follow.
-    Matrix,
-}
-
 /// The last segment of a type's path.
 pub(super) fn last_segment(ty: &Type) -> Option<&PathSegment> {
     match ty {
@@ -35,6 +25,11 @@ pub(super) fn last_segment(ty: &Type) -> Option<&PathSegment> {
         Type::Paren(paren) => last_segment(&paren.elem),
         _ => None,
     }
+}
+
+/// The name of the last segment of a type's path; empty where there is none.
+pub(super) fn last_name(ty: &Type) -> String {
+    last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default()
 }
 
 /// The generic arguments of a segment.
@@ -65,44 +60,29 @@ pub(super) fn named_shape(name: &str) -> Option<Shape> {
 pub(super) fn vectors<'t>(ty: &'t Type, generics: &Generics) -> Option<Result<Vectors<'t>, Diagnostic>> {
     let segment = last_segment(ty)?;
     let name = segment.ident.to_string();
-    let alias = match name.as_str() {
-        "SVector" => Alias::Vector,
-        "SMatrix" => Alias::Matrix,
-        _ => Alias::Named(named_shape(&name)?),
+    // the shape, or how many sizes follow, and an example
+    let (named, count, example) = match name.as_str() {
+        "SVector" => (None, 1, "SVector<f64, 8>".into()),
+        "SMatrix" => (None, 2, "SMatrix<f64, 2, 3>".into()),
+        _ => (Some(named_shape(&name)?), 0, format!("{name}` or `{name}<f64>")),
     };
-    Some(read(ty, segment, alias, generics))
-}
-
-fn read<'t>(ty: &Type, segment: &'t PathSegment, alias: Alias, generics: &Generics) -> Result<Vectors<'t>, Diagnostic> {
-    let sizes = match alias {
-        Alias::Named(_) => 0,
-        Alias::Vector => 1,
-        Alias::Matrix => 2,
+    let read = || {
+        let (scalar, sizes) = match arguments(segment).as_slice() {
+            [GenericArgument::Type(scalar), sizes @ ..] if sizes.len() == count => (Some(scalar), sizes.to_vec()),
+            sizes if sizes.len() == count => (None, sizes.to_vec()),
+            _ => {
+                bail!(ty, "`{}` has not the arguments of `{name}`", spell_type(ty); help "write `{example}`")
+            }
+        };
+        let size = |position: usize| size_argument(sizes[position], generics);
+        let shape = match named {
+            Some(shape) => shape,
+            None if count == 1 => Shape::vector(size(0)?),
+            None => Shape::new(size(0)?, size(1)?),
+        };
+        Ok(Vectors { shape, scalar })
     };
-    let all = arguments(segment);
-    let (scalar, rest) = match all.as_slice() {
-        [GenericArgument::Type(scalar), rest @ ..] if rest.len() == sizes => (Some(scalar), rest),
-        rest if rest.len() == sizes => (None, rest),
-        _ => return Err(wrong_arguments(ty, segment, alias)),
-    };
-    let size = |position: usize| size_argument(rest[position], generics);
-    let shape = match alias {
-        Alias::Named(shape) => shape,
-        Alias::Vector => Shape::vector(size(0)?),
-        Alias::Matrix => Shape::new(size(0)?, size(1)?),
-    };
-    Ok(Vectors { shape, scalar })
-}
-
-fn wrong_arguments(ty: &Type, segment: &PathSegment, alias: Alias) -> Diagnostic {
-    let name = &segment.ident;
-    let example = match alias {
-        Alias::Named(_) => format!("{name}` or `{name}<f64>"),
-        Alias::Vector => format!("{name}<f64, 8>"),
-        Alias::Matrix => format!("{name}<f64, 2, 3>"),
-    };
-    Diagnostic::new(Location::of(ty), format!("`{}` has not the arguments of `{name}`", spell_type(ty)))
-        .help(format!("write `{example}`"))
+    Some(read())
 }
 
 /// What to write for a name that looks like a vector or a matrix and is none.

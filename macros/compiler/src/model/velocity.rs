@@ -1,6 +1,6 @@
 //! The velocity of a Lagrangian: one symbol for each factor, under the names that the user gives.
 
-use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Block, Expr, Graph, Property, Role, Shape};
 
 use super::leaves::leaf_names;
 use super::value::Value;
@@ -21,23 +21,21 @@ impl<'g> Velocity<'_, 'g> {
         &self,
         pattern: &Pattern,
         structure: &Layout,
-        diagnostics: &mut Diagnostics,
+        diagnostics: &Diagnostics,
     ) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
         match (pattern, structure) {
             (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
-                let found: Option<Vec<_>> =
-                    patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part, diagnostics)).collect();
-                let (values, symbols): (Vec<_>, Vec<_>) = found?.into_iter().unzip();
-                Some((Value::Tuple(values), symbols.into_iter().flatten().collect()))
+                let parts = patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part, diagnostics));
+                let (values, symbols): (Vec<_>, Vec<_>) = parts.collect::<Option<Vec<_>>>()?.into_iter().unzip();
+                Some((Value::Tuple(values), symbols.concat()))
             }
             (Pattern::Tuple(patterns, _), Layout::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
                 let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
                 let symbol = self.symbol(*k, &names.join("_"));
+                let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
                 let blocks = self.graph.blocks(self.factors[*k].group);
-                let part = |block: &clebsch_symbolic::Block| {
-                    Value::Matrix(symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
-                };
-                Some((Value::Tuple(blocks.iter().map(part).collect()), vec![symbol]))
+                let parts = blocks.iter().map(|block| Value::Matrix(part(block)));
+                Some((Value::Tuple(parts.collect()), vec![symbol]))
             }
             _ => {
                 let names = leaf_names(pattern, structure, diagnostics)?;
@@ -49,6 +47,11 @@ impl<'g> Velocity<'_, 'g> {
                 Some((Value::nested(structure, &values), symbols))
             }
         }
+    }
+
+    /// The symbols of a velocity that the closure does not ask for.
+    pub fn unnamed(&self) -> Vec<Expr<'g>> {
+        (0..self.factors.len()).map(|k| self.symbol(k, "velocity")).collect()
     }
 
     /// Whether the algebra of a factor has several blocks, and as many as there are names.

@@ -6,11 +6,12 @@ use syn::parse::ParseStream;
 use syn::{Attribute, DeriveInput, Meta, Token};
 
 use super::keys::{KEYS, Key, Keys};
+use super::spelling::listed;
 use super::{groups, methods, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, nearest, report};
 
 /// Reads all attributes of the struct as one.
-pub(super) fn read(input: &DeriveInput, diagnostics: &mut Diagnostics) -> Keys {
+pub(super) fn read(input: &DeriveInput, diagnostics: &Diagnostics) -> Keys {
     let mut keys = Keys::default();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("clebsch")) {
         read_attribute(attribute, &mut keys, diagnostics);
@@ -18,10 +19,10 @@ pub(super) fn read(input: &DeriveInput, diagnostics: &mut Diagnostics) -> Keys {
     keys
 }
 
-fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &mut Diagnostics) {
+fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &Diagnostics) {
     let Meta::List(list) = &attribute.meta else {
-        let error = Diagnostic::new(Location::of(attribute), "the declaration stands in parentheses");
-        diagnostics.push(error.help("write `#[clebsch(action = …, cost = …, potential = …)]`"));
+        report!(diagnostics, attribute, "the declaration stands in parentheses";
+            help "write `#[clebsch(action = …, cost = …, potential = …)]`");
         return;
     };
     let items = |stream: ParseStream| {
@@ -38,92 +39,76 @@ fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &mut Diag
 }
 
 /// `key = value` and the comma after it; after an error the rest of the item is still to be skipped.
-fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
+fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &Diagnostics) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
-    if key == "group" {
+    if is_named(&key) {
         // there may be several
-        let _ = keys.give(&key);
-        groups::read(&key, stream, keys, diagnostics)?;
+        keys.give(&key);
+        let read = if key == "group" { groups::read } else { methods::read };
+        read(&key, stream, keys, diagnostics)?;
         return end_of_item(&key, stream);
     }
-    if key == "method" {
-        let _ = keys.give(&key);
-        methods::read(&key, stream, keys, diagnostics)?;
-        return end_of_item(&key, stream);
+    let Some(found) = find(&key) else {
+        let known = KEYS.iter().filter(|key| !key.comes_later()).map(|key| key.name);
+        let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).map(|key| format!("write `{key}`"));
+        let help = similar.unwrap_or_else(|| format!("the keys are {}", listed(known)));
+        bail!(&key, "unknown key `{key}`"; help "{help}");
+    };
+    read_value(&key, found, stream, keys, diagnostics)
+}
+
+/// What follows on a key that takes one value, and the comma after it.
+pub(super) fn read_value(
+    key: &Ident,
+    found: &Key,
+    stream: ParseStream,
+    keys: &mut Keys,
+    diagnostics: &Diagnostics,
+) -> Result<(), Diagnostic> {
+    if !keys.give(key) {
+        bail!(key, "`{key}` is given twice"; help "remove one of the two");
     }
-    let found = find(&key).ok_or_else(|| unknown_key(&key))?;
-    give(&key, keys)?;
     if found.comes_later() {
-        return Err(Diagnostic::later(key.span(), format!("the key `{key}`")));
+        return Err(Diagnostic::later(key, format!("the key `{key}`")));
     }
-    equals(&key, found, stream)?;
-    values::read(&key, found, stream, keys, diagnostics)?;
-    end_of_item(&key, stream)
-}
-
-/// Notes that a key is given, which it may be once.
-pub(super) fn give(key: &Ident, keys: &mut Keys) -> Result<(), Diagnostic> {
-    if keys.give(key) {
-        return Ok(());
+    if stream.parse::<Token![=]>().is_err() {
+        bail!(key, "the key `{key}` has no value"; help "write `{key} = {}`", found.example);
     }
-    Err(Diagnostic::new(key.span(), format!("`{key}` is given twice")).help("remove one of the two"))
-}
-
-/// The `=` before the value of a key.
-pub(super) fn equals(key: &Ident, found: &Key, stream: ParseStream) -> Result<(), Diagnostic> {
-    if stream.parse::<Token![=]>().is_ok() {
-        return Ok(());
-    }
-    let error = Diagnostic::new(key.span(), format!("the key `{key}` has no value"));
-    Err(error.help(format!("write `{key} = {}`", found.example)))
+    values::read(key, found, stream, keys, diagnostics)?;
+    end_of_item(key, stream)
 }
 
 /// A comma, or the end of the declaration.
-pub(super) fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
-    if stream.is_empty() || stream.parse::<Token![,]>().is_ok() {
-        return Ok(());
+fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
+    if !stream.is_empty() && stream.parse::<Token![,]>().is_err() {
+        bail!(stream.span(), "expected a comma after the value of `{key}`"; help "separate the keys by commas");
     }
-    let error = Diagnostic::new(stream.span(), format!("expected a comma after the value of `{key}`"));
-    Err(error.help("separate the keys by commas"))
+    Ok(())
 }
 
 fn find(key: &Ident) -> Option<&'static Key> {
     KEYS.iter().find(|known| key == known.name)
 }
 
-fn unknown_key(key: &Ident) -> Diagnostic {
-    let name = key.to_string();
-    let similar = nearest(&name, KEYS.iter().map(|key| key.name));
-    let known: Vec<String> =
-        KEYS.iter().filter(|key| !key.comes_later()).map(|key| format!("`{}`", key.name)).collect();
-    let error = Diagnostic::new(key.span(), format!("unknown key `{name}`"));
-    match similar {
-        Some(similar) => error.help(format!("write `{similar}`")),
-        None => error.help(format!("the keys are {}", known.join(", "))),
-    }
+/// Whether a name follows on a key, of which there may be several.
+pub(super) fn is_named(key: &Ident) -> bool {
+    key == "group" || key == "method"
 }
 
 /// Goes on behind the next comma that is followed by `key =`.
 pub(super) fn skip_to_next_item(stream: ParseStream) {
-    while !stream.is_empty() {
-        let starts_item = |stream: ParseStream| {
-            let key = stream.call(Ident::parse_any);
-            let is_named = key.as_ref().is_ok_and(|key| key == "group" || key == "method");
-            let known = is_named || key.is_ok_and(|key| find(&key).is_some());
-            let assigned = stream.peek(Token![=]) && !stream.peek(Token![==]);
-            known && (assigned || is_named)
-        };
-        // a key whose comma was forgotten starts an item too
-        if starts_item(&stream.fork()) {
-            return;
-        }
+    let is_assigned = |stream: ParseStream| stream.peek(Token![=]) && !stream.peek(Token![==]);
+    let starts_item = |stream: ParseStream| {
+        let key = stream.call(Ident::parse_any);
+        key.is_ok_and(|key| is_named(&key) || (find(&key).is_some() && is_assigned(stream)))
+    };
+    // a key whose comma was forgotten starts an item too
+    while !stream.is_empty() && !starts_item(&stream.fork()) {
         let comma = stream.peek(Token![,]);
         // by construction: the stream is not empty, so there is a token to skip
         let _ = stream.parse::<proc_macro2::TokenTree>();
-        if comma && stream.peek(syn::Ident::peek_any) && {
-            let fork = stream.fork();
-            fork.call(Ident::parse_any).is_ok() && fork.peek(Token![=]) && !fork.peek(Token![==])
-        } {
+        let fork = stream.fork();
+        if comma && fork.call(Ident::parse_any).is_ok() && is_assigned(&fork) {
             return;
         }
     }

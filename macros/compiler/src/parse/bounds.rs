@@ -6,7 +6,7 @@
 
 use proc_macro2::{Spacing, Span, TokenStream, TokenTree};
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostics, bail, error};
 
 /// Levels of brackets and of operators in front of their operands, in the stack that [`LEVEL`] stands for.
 const DEPTH: usize = 41;
@@ -44,9 +44,9 @@ pub fn check(item: &TokenStream) -> Result<(), Diagnostics> {
 }
 
 fn too(what: &str, span: Span, how: String) -> Diagnostics {
-    Diagnostic::new(span, format!("the declaration is too {what} to be read: {how}"))
-        .help("give names to its parts with `let`, or sum over a range with `(0..n).map(|i| …).sum()`")
-        .into()
+    let error = error!(span, "the declaration is too {what} to be read: {how}";
+        help "give names to its parts with `let`, or sum over a range with `(0..n).map(|i| …).sum()`");
+    error.into()
 }
 
 fn is_long_number(token: &TokenTree) -> bool {
@@ -74,12 +74,8 @@ impl Run {
     fn add(&mut self, token: &TokenTree, outside: usize) -> Result<(), Diagnostics> {
         self.length += 1;
         if is_long_number(token) {
-            return Err(Diagnostic::new(
-                token.span(),
-                format!("this number is beyond the range of `f64`: it has more than {DIGITS} digits"),
-            )
-            .help("round it, and write it with an exponent, as in `6.674e-11`")
-            .into());
+            bail!(token, "this number is beyond the range of `f64`: it has more than {DIGITS} digits";
+                help "round it, and write it with an exponent, as in `6.674e-11`");
         }
         if self.length > RUN {
             return Err(too("long", token.span(), format!("more than {RUN} tokens in one expression")));
@@ -93,16 +89,13 @@ impl Run {
             self.groups.push((group.stream(), levels + 1));
         }
         let inside = usize::from(matches!(token, TokenTree::Group(_)));
-        match outside + (levels + inside) * LEVEL + self.length * LINK > DEPTH * LEVEL {
-            true => Err(too(
-                "deep",
-                token.span(),
-                format!(
-                    "brackets and operators nest {DEPTH} levels deep, or fewer with long chains of operators on the way"
-                ),
-            )),
-            false => Ok(()),
+        if outside + (levels + inside) * LEVEL + self.length * LINK <= DEPTH * LEVEL {
+            return Ok(());
         }
+        let how = format!(
+            "brackets and operators nest {DEPTH} levels deep, or fewer with long chains of operators on the way"
+        );
+        Err(too("deep", token.span(), how))
     }
 
     /// Counts the levels of the grammar that a token may start and that no bracket marks.
@@ -112,24 +105,21 @@ impl Run {
             "move", "static", "let", "as", "fn", "impl", "dyn", "mut", "ref", "box",
         ];
         let after_operator = self.last.is_some_and(|last| last != '.');
-        match token {
-            TokenTree::Punct(punct) => {
-                match punct.as_char() {
-                    '<' => self.angles += 1,
-                    '>' if matches!(self.last, Some('-' | '=')) => {}
-                    '>' => self.angles = self.angles.saturating_sub(1),
-                    '|' | '=' | '@' => self.lasting += 1,
-                    '.' => self.lasting += usize::from(punct.spacing() == Spacing::Joint),
-                    _ => self.prefixes += usize::from(after_operator),
-                }
-                self.last = Some(punct.as_char());
-            }
-            other => {
-                self.lasting +=
-                    usize::from(matches!(other, TokenTree::Ident(word) if WORDS.iter().any(|known| word == known)));
-                self.last = None;
-            }
+        let TokenTree::Punct(punct) = token else {
+            let is_word = matches!(token, TokenTree::Ident(word) if WORDS.iter().any(|known| word == known));
+            self.lasting += usize::from(is_word);
+            self.last = None;
+            return;
+        };
+        match punct.as_char() {
+            '<' => self.angles += 1,
+            '>' if matches!(self.last, Some('-' | '=')) => {}
+            '>' => self.angles = self.angles.saturating_sub(1),
+            '|' | '=' | '@' => self.lasting += 1,
+            '.' => self.lasting += usize::from(punct.spacing() == Spacing::Joint),
+            _ => self.prefixes += usize::from(after_operator),
         }
+        self.last = Some(punct.as_char());
     }
 
     /// Hands on what is in brackets, as deep as the whole run makes it, and starts anew.

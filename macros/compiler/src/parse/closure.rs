@@ -6,8 +6,8 @@ use syn::spanned::Spanned;
 use syn::{Expr, ExprClosure, Pat, ReturnType, Type};
 
 use super::spell_type;
-use super::spelling::{spell, spell_pattern};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use super::spelling::{joined, spell, spell_pattern, tokens};
+use crate::diagnostic::{Diagnostics, Location, refuse};
 
 /// A closure of the declaration.
 #[derive(Clone)]
@@ -42,7 +42,7 @@ pub enum Pattern {
 
 impl Closure {
     /// Takes a closure apart; whatever is more than mathematics is an error.
-    pub fn read(key: &Ident, closure: ExprClosure, diagnostics: &mut Diagnostics) -> Option<Closure> {
+    pub fn read(key: &Ident, closure: ExprClosure, diagnostics: &Diagnostics) -> Option<Closure> {
         let head = Location::between(closure.inputs_begin.span, closure.inputs_end.span);
         let plain = closure.attrs.is_empty()
             && closure.lifetimes.is_none()
@@ -51,28 +51,32 @@ impl Closure {
             && closure.capture.is_none()
             && matches!(closure.output, ReturnType::Default);
         if !plain {
-            let bare: Vec<String> = closure.inputs.iter().map(super::spelling::tokens).collect();
-            let message = format!("the {key} is a plain closure, without `move`, `async` or a return type");
-            diagnostics.push(Diagnostic::new(head, message).help(format!("write `|{}| …`", bare.join(", "))));
-            return None;
+            refuse!(diagnostics, head, "the {key} is a plain closure, without `move`, `async` or a return type";
+                help "write `|{}| …`", joined(closure.inputs.iter().map(tokens)));
         }
-        let count = closure.inputs.len();
-        let arguments: Vec<Argument> =
-            closure.inputs.into_iter().filter_map(|input| Argument::read(input, diagnostics)).collect();
-        let complete = arguments.len() == count;
-        complete.then(|| Closure { key: key.clone(), arguments, head, body: *closure.body })
+        let arguments: Vec<_> = closure.inputs.into_iter().map(|input| Argument::read(input, diagnostics)).collect();
+        let arguments = arguments.into_iter().collect::<Option<_>>()?;
+        Some(Closure { key: key.clone(), arguments, head, body: *closure.body })
+    }
+
+    /// The arguments with their bars, `|h, F|`.
+    pub fn spell_head(&self) -> String {
+        format!("|{}|", joined(self.arguments.iter().map(Argument::spell)))
+    }
+
+    /// The whole closure.
+    pub fn spell(&self) -> String {
+        format!("{} {}", self.spell_head(), spell(&self.body))
     }
 }
 
 impl Argument {
-    fn read(input: Pat, diagnostics: &mut Diagnostics) -> Option<Argument> {
-        match input {
-            Pat::Type(typed) => {
-                let pattern = Pattern::read(&typed.pat, diagnostics)?;
-                Some(Argument { pattern, ty: Some(*typed.ty) })
-            }
-            other => Some(Argument { pattern: Pattern::read(&other, diagnostics)?, ty: None }),
-        }
+    fn read(input: Pat, diagnostics: &Diagnostics) -> Option<Argument> {
+        let (pattern, ty) = match input {
+            Pat::Type(typed) => (*typed.pat, Some(*typed.ty)),
+            other => (other, None),
+        };
+        Some(Argument { pattern: Pattern::read(&pattern, diagnostics)?, ty })
     }
 
     /// The text of the argument.
@@ -86,35 +90,23 @@ impl Argument {
 
 impl Pattern {
     /// Reads a pattern of names and tuples.
-    pub(crate) fn read(pattern: &Pat, diagnostics: &mut Diagnostics) -> Option<Pattern> {
+    pub(crate) fn read(pattern: &Pat, diagnostics: &Diagnostics) -> Option<Pattern> {
         match pattern {
             Pat::Ident(name) if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() => {
                 Some(Pattern::Name(name.ident.clone()))
             }
-            Pat::Ident(name) => {
-                let message = format!("`{}` is more than a name", super::spelling::tokens(pattern));
-                diagnostics
-                    .push(Diagnostic::new(Location::of(pattern), message).help(format!("write `{}`", name.ident)));
-                None
-            }
+            Pat::Ident(name) => refuse!(diagnostics, pattern, "`{}` is more than a name", tokens(pattern);
+                help "write `{}`", name.ident),
             Pat::Paren(inner) => Pattern::read(&inner.pat, diagnostics),
             Pat::Tuple(tuple) => {
-                let parts: Vec<Pattern> =
-                    tuple.elems.iter().filter_map(|part| Pattern::read(part, diagnostics)).collect();
-                let complete = parts.len() == tuple.elems.len();
-                complete.then(|| Pattern::Tuple(parts, Location::of(pattern)))
+                let parts: Vec<_> = tuple.elems.iter().map(|part| Pattern::read(part, diagnostics)).collect();
+                Some(Pattern::Tuple(parts.into_iter().collect::<Option<_>>()?, Location::of(pattern)))
             }
             Pat::Reference(reference) => Pattern::read(&reference.pat, diagnostics),
-            Pat::Wild(wild) => {
-                let error = Diagnostic::new(wild.underscore_token.span, "an argument needs a name");
-                diagnostics.push(error.note("the other closures call it by this name"));
-                None
-            }
-            other => {
-                let message = format!("`{}` is neither a name nor a tuple of names", super::spelling::tokens(other));
-                diagnostics.push(Diagnostic::new(other.span(), message).help("write a name, or `(a, b)` for a pair"));
-                None
-            }
+            Pat::Wild(wild) => refuse!(diagnostics, wild.underscore_token.span, "an argument needs a name";
+                note "the other closures call it by this name"),
+            other => refuse!(diagnostics, other.span(), "`{}` is neither a name nor a tuple of names", tokens(other);
+                help "write a name, or `(a, b)` for a pair"),
         }
     }
 
@@ -148,17 +140,5 @@ impl Pattern {
     /// The text of the pattern.
     pub fn spell(&self) -> String {
         spell_pattern(self)
-    }
-}
-
-impl Closure {
-    /// The arguments with their bars, `|h, F|`.
-    pub fn spell_head(&self) -> String {
-        format!("|{}|", self.arguments.iter().map(Argument::spell).collect::<Vec<_>>().join(", "))
-    }
-
-    /// The whole closure.
-    pub fn spell(&self) -> String {
-        format!("{} {}", self.spell_head(), spell(&self.body))
     }
 }

@@ -8,8 +8,8 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 
 /// Reports all combinations of keys that the table of features refuses.
-pub(super) fn check(keys: &Keys, diagnostics: &mut Diagnostics) {
-    let mut refuse = |of_steps: &Keys, of_system: fn(Feature) -> bool| {
+pub(super) fn check(keys: &Keys, diagnostics: &Diagnostics) {
+    let refuse = |of_steps: &Keys, of_system: fn(Feature) -> bool| {
         let place = |feature| if of_system(feature) { None } else { place(keys, of_steps, feature) };
         let found = |feature| place(feature).map(|place| named(of_steps, Found::at(place)));
         features::refusals(found).into_iter().for_each(|error| diagnostics.push(error));
@@ -67,6 +67,5 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
 
 /// The key that a feature is, if it is one.
 fn key(feature: Feature) -> Option<&'static Key> {
-    let word = feature.words().strip_prefix('`')?.strip_suffix('`')?;
-    KEYS.iter().find(|key| key.name == word)
+    KEYS.iter().find(|key| feature.is_key(key.name))
 }

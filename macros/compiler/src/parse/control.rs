@@ -1,13 +1,12 @@
 //! What is steered: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
 
-use proc_macro2::{Ident, Span};
-use quote::format_ident;
+use proc_macro2::{Ident, Literal, Span};
 use syn::ext::IdentExt;
-use syn::{Type, parse_quote, parse_quote_spanned};
+use syn::{Expr, ExprLit, GenericArgument, Lit, PathArguments, Type, parse_quote, parse_quote_spanned};
 
 use super::keys::Keys;
 use super::{Argument, Closure, Kinetic, Pattern};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostics, Location, refuse, report};
 
 /// What a choice of inputs costs, and what it is bound by.
 #[derive(Clone)]
@@ -26,7 +25,7 @@ pub(super) struct Motion {
 }
 
 /// Takes the keys that say what is steered, and with them action and cost where inputs, not momenta, move the configuration.
-pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Motion> {
+pub(super) fn read(keys: &mut Keys, diagnostics: &Diagnostics) -> Option<Motion> {
     let bounds = keys.bounds.take();
     let Some(motion) = keys.controls.take().or_else(|| keys.dynamics.take()) else {
         let control = control_of_forces(keys, bounds, diagnostics);
@@ -34,76 +33,57 @@ pub(super) fn read(keys: &mut Keys, diagnostics: &mut Diagnostics) -> Option<Mot
     };
     let price = keys.cost.take();
     if price.is_none() && !keys.was_given("cost") {
-        diagnostics.push(missing_price(&motion));
+        let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
+        report!(diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
+            help "write `cost = |h, {input}| h * {input}.norm_squared() / 2`");
     }
-    let (action, kinetic) = match motion.key == "controls" {
-        true => (keys.action.take(), Some(Kinetic::Controls(motion))),
-        false => moved(keys, motion, diagnostics)
-            .map_or((None, None), |(action, dynamics)| (Some(action), Some(Kinetic::Dynamics(dynamics)))),
+    let (action, kinetic) = if motion.key == "controls" {
+        (keys.action.take(), Some(Kinetic::Controls(motion)))
+    } else {
+        moved(keys, motion, diagnostics).map(|(action, dynamics)| (action, Kinetic::Dynamics(dynamics))).unzip()
     };
     let control = price.map(|price| Choice { price, bounds });
     Some(Motion { action, kinetic, control })
 }
 
-fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &mut Diagnostics) -> Option<Choice> {
+fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &Diagnostics) -> Option<Choice> {
     let Some(price) = keys.effort.take() else {
-        if let Some(closure) = bounds.filter(|_| !keys.was_given("effort")) {
-            let error = Diagnostic::new(closure.key.span(), format!("`{}` without anything to choose", closure.key));
-            diagnostics.push(error.help(
-                "add `effort = |u| u.norm_squared() / 2` to a force with an input, or `controls`, or `dynamics`",
-            ));
-        }
-        return None;
+        let bounds = bounds.filter(|_| !keys.was_given("effort"))?;
+        refuse!(diagnostics, &bounds.key, "`{}` without anything to choose", bounds.key;
+            help "add `effort = |u| u.norm_squared() / 2` to a force with an input, or `controls`, or `dynamics`");
     };
     if !keys.was_given("force") && !keys.was_given("force_on") {
-        let error = Diagnostic::new(price.key.span(), "there is an effort, but no force that takes an input");
-        diagnostics.push(
-            error
-                .help("write `force = |omega, torque: Vector3| torque`")
-                .note("the effort is the price of the inputs of the force"),
-        );
+        report!(diagnostics, &price.key, "there is an effort, but no force that takes an input";
+            help "write `force = |omega, torque: Vector3| torque`";
+            note "the effort is the price of the inputs of the force");
     }
     Some(Choice { price, bounds })
 }
 
 /// The end has a price where something is chosen that leads there.
-pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>, diagnostics: &mut Diagnostics) {
+pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>, diagnostics: &Diagnostics) {
     let chosen = control.is_some() || keys.dials.emit.boundary || keys.was_given("effort");
     if let Some(endpoint) = keys.endpoint.as_ref().filter(|_| !chosen) {
-        let error = Diagnostic::new(endpoint.key.span(), "`endpoint` without anything to choose");
-        diagnostics.push(error.help(
-            "add `emit = [boundary]` for paths of least action to a free end, or `effort`, `controls` or `dynamics` for inputs",
-        ));
+        report!(diagnostics, &endpoint.key, "`endpoint` without anything to choose";
+            help "add `emit = [boundary]` for paths of least action to a free end, or `effort`, `controls` or `dynamics` for inputs");
     }
 }
 
-fn missing_price(motion: &Closure) -> Diagnostic {
-    let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
-    Diagnostic::new(motion.key.span(), format!("there are `{}`, but no cost to choose them by", motion.key))
-        .help(format!("write `cost = |h, {input}| h * {input}.norm_squared() / 2`"))
-}
-
 /// The translations that `dynamics` are made of: the action x ↦ x + a, and the closure without the type of x.
-fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &mut Diagnostics) -> Option<(Closure, Closure)> {
+fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &Diagnostics) -> Option<(Closure, Closure)> {
     // an action beside it has been refused
     keys.action.take().is_none().then_some(())?;
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).collect();
     let &[state, _] = typed.as_slice() else {
-        let error = Diagnostic::new(
-            dynamics.head,
-            "the dynamics have to introduce a configuration and an input, each with its type",
-        );
-        diagnostics.push(error.help(format!("write `dynamics = {example}`")));
-        return None;
+        refuse!(diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
+            help "write `dynamics = {example}`");
     };
     let ty = dynamics.arguments[state].ty.take()?;
     let pattern = dynamics.arguments[state].pattern.clone();
     let (Some(mut size), Pattern::Name(name)) = (length(&ty), &pattern) else {
-        let error = Diagnostic::new(Location::of(&ty), "dynamics move one vector");
-        diagnostics
-            .push(error.help(format!("write `dynamics = {example}`, with all of the configuration in one vector")));
-        return None;
+        refuse!(diagnostics, &ty, "dynamics move one vector";
+            help "write `dynamics = {example}`, with all of the configuration in one vector");
     };
     // what is wrong with the size is so where it was written
     size.set_span(Location::of(&ty).start());
@@ -114,45 +94,33 @@ fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &mut Diagnostics) 
         Argument { pattern: Pattern::Name(shift.clone()), ty: Some(group) },
         Argument { pattern: pattern.clone(), ty: Some(ty) },
     ];
-    let action = Closure {
-        key: Ident::new("action", dynamics.key.span()),
-        arguments,
-        head: dynamics.head,
-        body: parse_quote!(#name + #shift),
-    };
+    let key = Ident::new("action", dynamics.key.span());
+    let action = Closure { key, arguments, head: dynamics.head, body: parse_quote!(#name + #shift) };
     Some((action, dynamics))
 }
 
 /// A name for the translation that the closure does not use.
 fn shift_beside(dynamics: &Closure, span: Span) -> Ident {
-    let names: Vec<String> = dynamics
-        .arguments
-        .iter()
-        .flat_map(|argument| argument.pattern.names())
-        .map(|name| name.unraw().to_string())
-        .collect();
+    let names: Vec<&Ident> = dynamics.arguments.iter().flat_map(|argument| argument.pattern.names()).collect();
     let mut shift = String::from("shift");
-    while names.contains(&shift) {
+    while names.iter().any(|name| name.unraw() == shift) {
         shift.push('_');
     }
-    Ident::new(&format_ident!("{shift}").to_string(), span)
+    Ident::new(&shift, span)
 }
 
 /// n of `VectorN`, `SVector<n>` and `SVector<f64, n>`.
-fn length(ty: &Type) -> Option<proc_macro2::Literal> {
+fn length(ty: &Type) -> Option<Literal> {
     let Type::Path(path) = ty else { return None };
     let segment = path.path.segments.last()?;
     let name = segment.ident.to_string();
     if let Some(digits) = name.strip_prefix("Vector") {
-        return digits.parse().ok().map(proc_macro2::Literal::usize_unsuffixed);
+        return digits.parse().ok().map(Literal::usize_unsuffixed);
     }
-    let syn::PathArguments::AngleBracketed(arguments) = &segment.arguments else { return None };
+    let PathArguments::AngleBracketed(arguments) = &segment.arguments else { return None };
     let size = arguments.args.iter().find_map(|argument| match argument {
-        syn::GenericArgument::Const(syn::Expr::Lit(literal)) => match &literal.lit {
-            syn::Lit::Int(size) => size.base10_parse().ok(),
-            _ => None,
-        },
+        GenericArgument::Const(Expr::Lit(ExprLit { lit: Lit::Int(size), .. })) => size.base10_parse().ok(),
         _ => None,
     });
-    size.filter(|_| name == "SVector").map(proc_macro2::Literal::usize_unsuffixed)
+    size.filter(|_| name == "SVector").map(Literal::usize_unsuffixed)
 }

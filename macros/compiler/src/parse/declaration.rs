@@ -5,8 +5,8 @@ use syn::{DeriveInput, Generics, Visibility};
 
 use super::dials::Dials;
 use super::keys::Keys;
-use super::{Choice, Closure, DeclaredGroup, DeclaredMethod, Field, Opaque, combinations, control, methods};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use super::{Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Field, Opaque, combinations, control, methods};
+use crate::diagnostic::{Diagnostic, Diagnostics, error};
 
 /// What the user declared: the struct, the closures and the dials, as written.
 #[derive(Clone)]
@@ -84,6 +84,13 @@ pub enum Kinetic {
 }
 
 impl Declaration {
+    /// The argument that introduces the input, with its type.
+    pub fn input(&self) -> Option<&Argument> {
+        let steered = Some(self.kinetic.closure()).filter(|_| self.kinetic.is_steered());
+        let mut closures = steered.into_iter().chain(&self.force).chain(&self.force_on);
+        closures.find_map(|closure| closure.arguments.last().filter(|argument| argument.ty.is_some()))
+    }
+
     /// All closures over the arguments of the action, the action first.
     pub fn closures(&self) -> impl Iterator<Item = &Closure> {
         let potential = self.potential.as_ref().and_then(Potential::closure);
@@ -116,10 +123,10 @@ pub(super) fn assemble(
     input: &DeriveInput,
     mut keys: Keys,
     fields: Vec<Field>,
-    mut diagnostics: Diagnostics,
+    diagnostics: Diagnostics,
 ) -> Result<Declaration, Diagnostics> {
-    combinations::check(&keys, &mut diagnostics);
-    let steered = control::read(&mut keys, &mut diagnostics);
+    combinations::check(&keys, &diagnostics);
+    let steered = control::read(&mut keys, &diagnostics);
     // a closure that was given and could not be read has its own error
     let given = |name: &str| keys.was_given(name);
     let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
@@ -129,55 +136,51 @@ pub(super) fn assemble(
     } else if !nothing_readable && !moved_by_inputs && !given("cost") && !given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
-    let kinetic = match (keys.cost.take(), keys.lagrangian.take()) {
-        (Some(cost), _) => Some(Kinetic::Cost(cost)),
-        (None, lagrangian) => lagrangian.map(Kinetic::Lagrangian),
-    };
+    let lagrangian = keys.lagrangian.take().map(Kinetic::Lagrangian);
+    let kinetic = keys.cost.take().map(Kinetic::Cost).or(lagrangian);
     let (action, kinetic, control) = match steered {
         Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
         None => (keys.action.take(), kinetic, None),
     };
-    control::check_endpoint(&keys, control.as_ref(), &mut diagnostics);
+    control::check_endpoint(&keys, control.as_ref(), &diagnostics);
     let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, methods, .. } = keys;
-    let methods = methods::checked(&input.ident, methods, &mut diagnostics);
-    match (diagnostics.is_empty(), action, kinetic) {
-        (true, Some(action), Some(kinetic)) => Ok(Declaration {
-            ident: input.ident.clone(),
-            vis: input.vis.clone(),
-            generics: input.generics.clone(),
-            fields,
-            groups,
-            action,
-            kinetic,
-            potential,
-            force,
-            force_on,
-            control,
-            endpoint,
-            symmetries,
-            dials,
-            methods,
-        }),
-        _ => Err(diagnostics),
-    }
+    let methods = methods::checked(&input.ident, methods, &diagnostics);
+    diagnostics.propagate(())?;
+    // by construction: what is missing has an error
+    let (Some(action), Some(kinetic)) = (action, kinetic) else { return Err(Diagnostics::new()) };
+    Ok(Declaration {
+        ident: input.ident.clone(),
+        vis: input.vis.clone(),
+        generics: input.generics.clone(),
+        fields,
+        groups,
+        action,
+        kinetic,
+        potential,
+        force,
+        force_on,
+        control,
+        endpoint,
+        symmetries,
+        dials,
+        methods,
+    })
 }
 
 fn missing_action(ident: &Ident, nothing_given: bool) -> Diagnostic {
-    let message = match nothing_given {
-        true => format!("`{ident}` has no `#[clebsch(…)]` that declares its motion"),
-        false => format!("`{ident}` has no action"),
+    let (what, example) = if nothing_given {
+        let example = "#[clebsch(action = |F: SO<3>, R: SO<3>| R * F, lagrangian = |omega| …)]";
+        ("no `#[clebsch(…)]` that declares its motion", example)
+    } else {
+        ("no action", "action = |F: SO<3>, R: SO<3>| R * F")
     };
-    let example = match nothing_given {
-        true => "#[clebsch(action = |F: SO<3>, R: SO<3>| R * F, lagrangian = |omega| …)]",
-        false => "action = |F: SO<3>, R: SO<3>| R * F",
-    };
-    Diagnostic::new(ident.span(), message)
-        .help(format!("write `{example}` for a rigid body"))
-        .note("the action declares the group and the configurations by its two typed arguments")
+    error!(ident, "`{ident}` has {what}";
+        help "write `{example}` for a rigid body";
+        note "the action declares the group and the configurations by its two typed arguments")
 }
 
 fn missing_kinetic(ident: &Ident) -> Diagnostic {
-    Diagnostic::new(ident.span(), format!("`{ident}` has neither a cost nor a lagrangian"))
-        .help("write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`")
-        .note("without kinetic energy nothing says how a momentum moves the configuration")
+    error!(ident, "`{ident}` has neither a cost nor a lagrangian";
+        help "write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`";
+        note "without kinetic energy nothing says how a momentum moves the configuration")
 }

@@ -3,8 +3,12 @@
 use std::fmt;
 
 use proc_macro2::Ident;
+use syn::{Lit, LitInt};
 
 use super::keys::Located;
+use super::spelling::joined;
+use super::values::Reader;
+use crate::diagnostic::{Diagnostic, error};
 
 /// The keys that are no closures; each has a default.
 #[derive(Clone, Default)]
@@ -35,6 +39,13 @@ pub struct Dials {
     pub krate: Option<syn::Path>,
 }
 
+impl Dials {
+    /// The most iterations of a solve, where they are limited.
+    pub fn limit(&self) -> Option<u32> {
+        self.iterations.as_ref().map(|most| most.value)
+    }
+}
+
 /// A value that a word chooses.
 pub(super) trait Word: Copy + PartialEq + 'static {
     /// The words with their values.
@@ -47,9 +58,15 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     }
 }
 
-/// The words of a dial's values, by which these are read and printed.
+/// Values of a dial, each with the word by which it is read and printed.
 macro_rules! words {
-    ($dial:ident: $($word:literal $value:ident),+) => {
+    ($(#[$about:meta])* $dial:ident { $($(#[$meaning:meta])* $value:ident $word:literal,)+ }) => {
+        $(#[$about])*
+        #[derive(Copy, Clone, PartialEq, Eq, Debug)]
+        pub enum $dial {
+            $($(#[$meaning])* $value,)+
+        }
+
         impl Word for $dial {
             const WORDS: &'static [(&'static str, $dial)] = &[$(($word, $dial::$value)),+];
         }
@@ -62,26 +79,71 @@ macro_rules! words {
     };
 }
 
-words!(Discretization: "cayley" Cayley, "exponential" Exponential, "projection" Projection, "moser_veselov" MoserVeselov, "exact" Exact);
-words!(ChartChoice: "cayley" Cayley, "exponential" Exponential);
-words!(Solver: "newton" Newton, "fixed_point" FixedPoint);
-words!(Summation: "plain" Plain, "compensated" Compensated);
-words!(CodeForm: "unrolled" Unrolled, "matrices" Matrices);
-words!(Isotropy: "fixed" Fixed, "free" Free);
+words! {
+    /// How the velocity of a step is made from its group element.
+    Discretization {
+        /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the algebra where it leaves it.
+        Cayley "cayley",
+        /// ξ = log(F)/h.
+        Exponential "exponential",
+        /// ξ = P(F − I)/h with the orthogonal projection P to the algebra.
+        Projection "projection",
+        /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
+        MoserVeselov "moser_veselov",
+        /// The discrete Lagrangian is the action of the free motion, which a step without a potential makes exactly.
+        Exact "exact",
+    }
+}
 
-/// What may be emitted beside the integrator; `None` for what comes later.
-pub(super) const EMITTED: [(&str, Option<Emit>); 6] = [
-    ("generated", Some(Emit { generated: true, ..Emit::NOTHING })),
-    ("latex", Some(Emit { latex: true, ..Emit::NOTHING })),
-    ("tangent", Some(Emit { tangent: true, ..Emit::NOTHING })),
-    ("boundary", Some(Emit { boundary: true, ..Emit::NOTHING })),
-    ("momentum", Some(Emit { momentum: true, ..Emit::NOTHING })),
-    ("connection", None),
-];
+words! {
+    /// The coordinates in which the group element of a step is looked for, where the user chooses them.
+    ChartChoice {
+        /// F = (I − Z)⁻¹(I + Z).
+        Cayley "cayley",
+        /// F = exp ξ.
+        Exponential "exponential",
+    }
+}
 
-/// Orders by number.
-pub(super) const ORDERS: [Order; 6] =
-    [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
+words! {
+    /// How an implicit momentum equation is solved first.
+    Solver {
+        /// By Newton's method.
+        Newton "newton",
+        /// By x ← x − s·h·Σ⁻¹ρ(x), and by Newton's method where that does not contract.
+        FixedPoint "fixed_point",
+    }
+}
+
+words! {
+    /// How a step adds to q and N.
+    Summation {
+        /// As numbers are added.
+        Plain "plain",
+        /// What rounding takes off is kept, and added in the next step.
+        Compensated "compensated",
+    }
+}
+
+words! {
+    /// How a step is written as code.
+    CodeForm {
+        /// Entry by entry, in straight lines.
+        Unrolled "unrolled",
+        /// With whole matrices, in loops.
+        Matrices "matrices",
+    }
+}
+
+words! {
+    /// What becomes of motions of the group that move no configuration.
+    Isotropy {
+        /// They are no motions: a momentum has to annihilate them.
+        Fixed "fixed",
+        /// They are motions too: any momentum is one.
+        Free "free",
+    }
+}
 
 /// A promise about the values of a field, which the stepper checks and simplification uses.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -94,95 +156,30 @@ pub enum Promise {
     Unit,
 }
 
-/// How the velocity of a step is made from its group element.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Discretization {
-    /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the algebra where it leaves it.
-    Cayley,
-    /// ξ = log(F)/h.
-    Exponential,
-    /// ξ = P(F − I)/h with the orthogonal projection P to the algebra.
-    Projection,
-    /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
-    MoserVeselov,
-    /// The discrete Lagrangian is the action of the free motion, which a step without a potential makes exactly.
-    Exact,
-}
-
-/// The coordinates in which the group element of a step is looked for, where the user chooses them.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum ChartChoice {
-    /// F = (I − Z)⁻¹(I + Z).
-    Cayley,
-    /// F = exp ξ.
-    Exponential,
-}
-
-/// How an implicit momentum equation is solved first.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Solver {
-    /// By Newton's method.
-    Newton,
-    /// By x ← x − s·h·Σ⁻¹ρ(x), and by Newton's method where that does not contract.
-    FixedPoint,
-}
-
-/// How a step adds to q and N.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Summation {
-    /// As numbers are added.
-    Plain,
-    /// What rounding takes off is kept, and added in the next step.
-    Compensated,
-}
-
-/// How a step is written as code.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum CodeForm {
-    /// Entry by entry, in straight lines.
-    Unrolled,
-    /// With whole matrices, in loops.
-    Matrices,
-}
-
-/// What becomes of motions of the group that move no configuration.
-#[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
-pub enum Isotropy {
-    /// They are no motions: a momentum has to annihilate them.
-    #[default]
-    Fixed,
-    /// They are motions too: any momentum is one.
-    Free,
-}
-
 /// The order of accuracy: where the potential is placed in a step, and of how many steps it is composed; or collocation.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Order {
     /// −h V(Φ_F q).
-    First,
+    First = 1,
     /// −h/2 (V(q) + V(Φ_F q)).
-    Second,
+    Second = 2,
     /// Five steps of second order.
-    Fourth,
+    Fourth = 4,
     /// Nine steps of second order.
-    Sixth,
+    Sixth = 6,
     /// Seventeen steps of second order.
-    Eighth,
+    Eighth = 8,
     /// Collocation at eight nodes.
-    Sixteenth,
+    Sixteenth = 16,
 }
+
+/// All orders.
+const ORDERS: [Order; 6] = [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
 
 impl Order {
     /// The exponent of h in the error at a fixed time.
     pub fn number(self) -> u32 {
-        match self {
-            Order::First => 1,
-            Order::Second => 2,
-            Order::Fourth => 4,
-            Order::Sixth => 6,
-            Order::Eighth => 8,
-            Order::Sixteenth => 16,
-        }
+        self as u32
     }
 
     /// Of how many steps of second order a step is composed, where it is.
@@ -211,36 +208,79 @@ pub struct Emit {
     pub momentum: bool,
 }
 
+/// What may be emitted beside the integrator, and where it is asked for; `None` for what comes later.
+pub(super) const EMITTED: [(&str, Option<EmittedPart>); 6] = [
+    ("generated", Some(|emit| &mut emit.generated)),
+    ("latex", Some(|emit| &mut emit.latex)),
+    ("tangent", Some(|emit| &mut emit.tangent)),
+    ("boundary", Some(|emit| &mut emit.boundary)),
+    ("momentum", Some(|emit| &mut emit.momentum)),
+    ("connection", None),
+];
+
+/// Whether something is emitted.
+pub(super) type EmittedPart = fn(&mut Emit) -> &mut bool;
+
 impl Emit {
-    /// Nothing beside the integrator.
-    pub(super) const NOTHING: Emit =
-        Emit { generated: false, latex: false, tangent: false, boundary: false, momentum: false };
-
     /// The list of words that asks for it; `None` for nothing.
-    pub(super) fn text(self) -> Option<String> {
-        let asked = EMITTED.iter().filter(|(_, emit)| emit.is_some_and(|emit| self.and(emit) == self));
-        let words: Vec<&str> = asked.map(|(word, _)| *word).collect();
-        (!words.is_empty()).then(|| format!("[{}]", words.join(", ")))
-    }
-
-    /// What either of two asks for.
-    pub(super) fn and(self, other: Emit) -> Emit {
-        Emit {
-            generated: self.generated || other.generated,
-            latex: self.latex || other.latex,
-            tangent: self.tangent || other.tangent,
-            boundary: self.boundary || other.boundary,
-            momentum: self.momentum || other.momentum,
-        }
+    pub(super) fn text(mut self) -> Option<String> {
+        let asked = EMITTED.iter().filter(|(_, part)| part.is_some_and(|part| *part(&mut self)));
+        let words = joined(asked.map(|(word, _)| word));
+        (!words.is_empty()).then(|| format!("[{words}]"))
     }
 
     /// What is emitted of a method beside the integrator: what says which system is stepped.
     pub(super) fn of_method(self) -> Emit {
-        Emit { momentum: self.momentum, ..Emit::NOTHING }
+        Emit { momentum: self.momentum, ..Emit::default() }
     }
 
     /// Whether discrete Lagrangians are differentiated twice.
     pub fn variations(self) -> bool {
         self.tangent || self.boundary
+    }
+}
+
+/// The numbers of dials.
+impl Reader<'_, '_> {
+    /// An order.
+    pub fn order(self, dial: &mut Option<Located<Order>>) -> Result<(), Diagnostic> {
+        let value = |literal: &LitInt| {
+            let number: u32 = literal.base10_parse().ok()?;
+            ORDERS.iter().find(|order| order.number() == number).copied()
+        };
+        self.number(dial, value, |place, written| {
+            error!(place, "there is no step of order {written}";
+                help "write `order = 2`; 4, 6, 8 or 16 for more digits, or 1 for the papers' step, drift then kick")
+        })
+    }
+
+    /// A number between 0 and 1.
+    pub fn part(self, dial: &mut Option<Located<f64>>) -> Result<(), Diagnostic> {
+        let value = |literal: &Lit| match literal {
+            Lit::Float(number) if number.suffix().is_empty() => {
+                number.base10_parse().ok().filter(|part: &f64| 0.0 < *part && *part < 1.0)
+            }
+            _ => None,
+        };
+        self.number(dial, value, |place, written| {
+            error!(place, "`{written}` is no tolerance";
+                help "write a number between 0 and 1, as in `tolerance = 1e-8`, or leave the key out for round-off";
+                note "it is the part of a step by which its momentum equation may be missed")
+        })
+    }
+
+    /// A whole number above zero.
+    pub fn count(self, dial: &mut Option<Located<u32>>) -> Result<(), Diagnostic> {
+        let value = |literal: &Lit| match literal {
+            Lit::Int(number) if number.suffix().is_empty() => {
+                number.base10_parse().ok().filter(|count: &u32| *count > 0)
+            }
+            _ => None,
+        };
+        self.number(dial, value, |place, written| {
+            error!(place, "`{written}` is no number of iterations";
+                help "write a whole number above zero, as in `iterations = 4`, or leave the key out";
+                note "it is the most iterations that a step makes for each of its momentum equations; a step that needs more is an error")
+        })
     }
 }

@@ -7,7 +7,7 @@ use syn::{Expr, ExprClosure, Token};
 
 use super::keys::Keys;
 use super::{Closure, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail};
 
 /// A group of the user's own.
 #[derive(Clone)]
@@ -32,52 +32,36 @@ pub(super) fn read(
     word: &Ident,
     stream: ParseStream,
     keys: &mut Keys,
-    diagnostics: &mut Diagnostics,
+    diagnostics: &Diagnostics,
 ) -> Result<(), Diagnostic> {
-    let name = stream.call(Ident::parse_any).map_err(|_| nameless(word))?;
+    let Ok(name) = stream.call(Ident::parse_any) else {
+        bail!(word, "a group of one's own has a name";
+            help "write `group Lorentz = |F: Matrix4| …`, and `F: Lorentz` in the action");
+    };
     if keys.groups.iter().any(|group| group.name.unraw() == name.unraw()) {
-        let error = Diagnostic::new(name.span(), format!("the group `{name}` is declared twice"));
-        return Err(error.help("choose another name for one of the two"));
+        bail!(&name, "the group `{name}` is declared twice"; help "choose another name for one of the two");
     }
-    if stream.parse::<Token![=]>().is_err() {
-        return Err(no_definition(&name, name.span().into()));
-    }
-    if stream.peek(Token![|]) || stream.peek(Token![||]) || stream.peek(Token![move]) {
+    let is_defined = stream.parse::<Token![=]>().is_ok();
+    if is_defined && values::is_closure(stream) {
         let closure: ExprClosure = stream.parse()?;
         if let Some(closure) = Closure::read(word, closure, diagnostics) {
             keys.groups.push(DeclaredGroup { name, definition: Definition::Equation(Box::new(closure)) });
         }
         return Ok(());
     }
-    let place = Location::from(stream.span());
-    let is_basis = stream.parse::<Ident>().is_ok_and(|word| word == "basis") && stream.peek(syn::token::Paren);
-    if !is_basis {
-        return Err(no_definition(&name, place));
+    let place = if is_defined { stream.span() } else { name.span() };
+    let is_word = is_defined && stream.parse::<Ident>().is_ok_and(|word| word == "basis");
+    if !is_word || !stream.peek(syn::token::Paren) {
+        bail!(place, "the group `{name}` is neither an equation nor a basis";
+            help "write `group {name} = |F: Matrix3| F.transpose() * F == I` or `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`");
     }
-    let definition = read_basis(&name, stream)?;
+    // `([E1, E2])`
+    let (arguments, span) = values::arguments(stream)?;
+    let [Expr::Array(list)] = arguments.as_slice() else {
+        bail!(span.join(), "the basis of `{name}` is a list of matrices";
+            help "write `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`");
+    };
+    let definition = Definition::Basis(list.elems.iter().cloned().collect(), Location::of(list));
     keys.groups.push(DeclaredGroup { name, definition });
     Ok(())
-}
-
-/// `([E1, E2])`.
-fn read_basis(name: &Ident, stream: ParseStream) -> Result<Definition, Diagnostic> {
-    let (arguments, span) = values::arguments(stream)?;
-    match arguments.as_slice() {
-        [Expr::Array(list)] => Ok(Definition::Basis(list.elems.iter().cloned().collect(), Location::of(list))),
-        _ => {
-            let error = Diagnostic::new(span.join(), format!("the basis of `{name}` is a list of matrices"));
-            Err(error.help(format!("write `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`")))
-        }
-    }
-}
-
-fn nameless(word: &Ident) -> Diagnostic {
-    Diagnostic::new(word.span(), "a group of one's own has a name")
-        .help("write `group Lorentz = |F: Matrix4| …`, and `F: Lorentz` in the action")
-}
-
-fn no_definition(name: &Ident, place: Location) -> Diagnostic {
-    Diagnostic::new(place, format!("the group `{name}` is neither an equation nor a basis")).help(format!(
-        "write `group {name} = |F: Matrix3| F.transpose() * F == I` or `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`"
-    ))
 }

@@ -5,7 +5,7 @@ mod markdown;
 pub use markdown::keys_as_markdown;
 use proc_macro2::{Ident, Span};
 
-use super::dials::{Dials, EMITTED, ORDERS};
+use super::dials::{Dials, EMITTED};
 use super::methods::MethodKeys;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
@@ -18,6 +18,13 @@ pub struct Located<T> {
     pub value: T,
     /// Where it was written.
     pub span: Span,
+}
+
+impl<T> Located<T> {
+    /// Another value at the same place.
+    fn to<U>(&self, value: U) -> Located<U> {
+        Located { value, span: self.span }
+    }
 }
 
 /// A key: what can stand on the left of `=`.
@@ -45,8 +52,8 @@ pub(super) enum Kind {
     Potential,
     /// A closure, or a list of them.
     Symmetry,
-    /// Anything else: how it is read, and how it prints where it was given.
-    Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<String>),
+    /// Anything else: how it is read; and how it prints and where it is, if it was given.
+    Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>),
     /// Part of the language, but not of this version.
     Later,
 }
@@ -74,18 +81,18 @@ pub(super) const KEYS: [Key; 27] = [
     closure("effort", |keys| &mut keys.effort, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
     closure("bounds", |keys| &mut keys.bounds, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
     closure("endpoint", |keys| &mut keys.endpoint, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
-    dial("order", Dial(|dials, value| value.order(&ORDERS, &mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
+    dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
     dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
     dial("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
     dial("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver)), "fixed_point", "what takes fewer operations", ITERATED),
     dial("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations)), "4", "until round-off", ITERATED),
-    dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| Some(format!("{:e}", dials.tolerance.as_ref()?.value))), "1e-8", "round-off", ITERATED),
+    dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| dials.tolerance.as_ref().map(|part| part.to(format!("{:e}", part.value)))), "1e-8", "round-off", ITERATED),
     dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
     dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
     key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy)), "free", "`fixed`", MECHANICS),
-    key("emit", Dial(|dials, value| value.words(&EMITTED, &mut dials.emit), |dials| dials.emit.text()), "[generated]", "`[]`", ALL),
-    key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string)), "f64", "`f64`", "structs without fields"),
-    key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens)), "::clebsch", "`::clebsch`", ALL),
+    key("emit", Dial(|dials, value| value.words(&EMITTED, &mut dials.emit), |dials| dials.emit.text().map(somewhere)), "[generated]", "`[]`", ALL),
+    key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string).map(somewhere)), "f64", "`f64`", "structs without fields"),
+    key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere)), "::clebsch", "`::clebsch`", ALL),
     key("constraint", Later, "…", "", ""),
     key("discrete_constraint", Later, "…", "", ""),
     key("space", Later, "…", "", ""),
@@ -111,8 +118,13 @@ const fn closure(
 }
 
 /// A value as it is written, where it was given.
-fn text<T: ToString>(value: &Option<Located<T>>) -> Option<String> {
-    value.as_ref().map(|located| located.value.to_string())
+fn text<T: ToString>(value: &Option<Located<T>>) -> Option<Located<String>> {
+    value.as_ref().map(|located| located.to(located.value.to_string()))
+}
+
+/// A value whose place is not known.
+fn somewhere(value: String) -> Located<String> {
+    Located { value, span: Span::call_site() }
 }
 
 impl Key {
@@ -124,9 +136,9 @@ impl Key {
 
 impl Dials {
     /// The dials that were given, with their values as they are written, in the order of the table.
-    pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, String)> {
+    pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, Located<String>)> {
         KEYS.iter().filter_map(|key| match key.kind {
-            Kind::Dial(_, text) => Some((key.name, text(self)?)),
+            Kind::Dial(_, given) => Some((key.name, given(self)?)),
             _ => None,
         })
     }

@@ -6,9 +6,10 @@ use syn::parse::{ParseBuffer, ParseStream};
 use syn::{Token, parenthesized};
 
 use super::dials::Dials;
-use super::keys::{KEYS, Key, Keys};
-use super::{Declaration, attribute, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, nearest};
+use super::keys::{KEYS, Keys};
+use super::spelling::listed;
+use super::{Declaration, attribute};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, nearest, report};
 
 /// A further way to step the system.
 #[derive(Clone)]
@@ -30,33 +31,31 @@ pub(super) fn read(
     word: &Ident,
     stream: ParseStream,
     keys: &mut Keys,
-    diagnostics: &mut Diagnostics,
+    diagnostics: &Diagnostics,
 ) -> Result<(), Diagnostic> {
-    let name = stream.call(Ident::parse_any).map_err(|_| {
-        let error = Diagnostic::new(word.span(), "a method has a name, that of a unit struct");
-        error.help("write `struct Fine;` beside the system, and `method Fine = (order = 6)`")
-    })?;
+    let Ok(name) = stream.call(Ident::parse_any) else {
+        bail!(word, "a method has a name, that of a unit struct";
+            help "write `struct Fine;` beside the system, and `method Fine = (order = 6)`");
+    };
     if keys.methods.iter().any(|method| method.name.unraw() == name.unraw()) {
-        let error = Diagnostic::new(name.span(), format!("the method `{name}` is declared twice"));
-        return Err(error.help("remove one of the two, or write another unit struct for it"));
+        bail!(&name, "the method `{name}` is declared twice";
+            help "remove one of the two, or write another unit struct for it");
     }
     let is_list = stream.parse::<Token![=]>().is_ok() && stream.peek(syn::token::Paren);
     if !is_list {
-        let error = Diagnostic::new(name.span(), format!("the method `{name}` has no dials"));
-        return Err(error.help(format!("write `method {name} = (order = 6)`")));
+        bail!(&name, "the method `{name}` has no dials"; help "write `method {name} = (order = 6)`");
     }
     let content = parenthesis(stream)?;
-    let is_empty = content.is_empty();
+    if content.is_empty() {
+        report!(diagnostics, &name, "the method `{name}` has no dials";
+            help "write `method {name} = (order = 6)`; a method takes {}", listed(dials()));
+    }
     let mut own = Keys::default();
     while !content.is_empty() {
         if let Err(error) = read_dial(&content, &mut own, diagnostics) {
             diagnostics.push(error);
             attribute::skip_to_next_item(&content);
         }
-    }
-    if is_empty {
-        let error = Diagnostic::new(name.span(), format!("the method `{name}` has no dials"));
-        diagnostics.push(error.help(format!("write `method {name} = (order = 6)`; a method takes {}", dials())));
     }
     keys.methods.push(MethodKeys { name, keys: own });
     Ok(())
@@ -70,44 +69,30 @@ fn parenthesis<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
 }
 
 /// `dial = value` and the comma after it.
-fn read_dial(stream: ParseStream, keys: &mut Keys, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
+fn read_dial(stream: ParseStream, keys: &mut Keys, diagnostics: &Diagnostics) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
-    let found = KEYS.iter().find(|known| key == known.name && known.of_method).ok_or_else(|| {
-        let is_key = key == "group" || key == "method" || KEYS.iter().any(|known| key == known.name);
-        if is_key { no_dial(&key) } else { unknown_dial(&key) }
-    })?;
-    attribute::give(&key, keys)?;
-    attribute::equals(&key, found, stream)?;
-    values::read(&key, found, stream, keys, diagnostics)?;
-    attribute::end_of_item(&key, stream)
-}
-
-fn no_dial(key: &Ident) -> Diagnostic {
-    let error = Diagnostic::new(key.span(), format!("`{key}` is of the system, not of a method"));
-    error.help(format!("write it beside the method, which takes {}", dials()))
-}
-
-fn unknown_dial(key: &Ident) -> Diagnostic {
-    let error = Diagnostic::new(key.span(), format!("unknown dial `{key}`"));
-    let known = KEYS.iter().filter(|key| key.of_method).map(|key| key.name);
-    match nearest(&key.to_string(), known) {
-        Some(similar) => error.help(format!("write `{similar}`")),
-        None => error.help(format!("a method takes {}", dials())),
+    match KEYS.iter().find(|known| key == known.name) {
+        Some(found) if found.of_method => attribute::read_value(&key, found, stream, keys, diagnostics),
+        None if !attribute::is_named(&key) => {
+            let similar = nearest(&key.to_string(), dials()).map(|dial| format!("write `{dial}`"));
+            let help = similar.unwrap_or_else(|| format!("a method takes {}", listed(dials())));
+            bail!(&key, "unknown dial `{key}`"; help "{help}")
+        }
+        _ => bail!(&key, "`{key}` is of the system, not of a method";
+            help "write it beside the method, which takes {}", listed(dials())),
     }
 }
 
 /// The dials that a method takes.
-fn dials() -> String {
-    let names: Vec<String> =
-        KEYS.iter().filter(|key: &&Key| key.of_method).map(|key| format!("`{}`", key.name)).collect();
-    names.join(", ")
+fn dials() -> impl Iterator<Item = &'static str> {
+    KEYS.iter().filter(|key| key.of_method).map(|key| key.name)
 }
 
 /// The methods of a struct, none of which may be the struct itself.
-pub(super) fn checked(system: &Ident, keys: Vec<MethodKeys>, diagnostics: &mut Diagnostics) -> Vec<DeclaredMethod> {
+pub(super) fn checked(system: &Ident, keys: Vec<MethodKeys>, diagnostics: &Diagnostics) -> Vec<DeclaredMethod> {
     for method in keys.iter().filter(|method| method.name.unraw() == system.unraw()) {
-        let error = Diagnostic::new(method.name.span(), format!("the method `{system}` is the system itself"));
-        diagnostics.push(error.help("write a unit struct beside it, as in `struct Fine;` and `method Fine = (…)`"));
+        report!(diagnostics, method.name.span(), "the method `{system}` is the system itself";
+            help "write a unit struct beside it, as in `struct Fine;` and `method Fine = (…)`");
     }
     keys.into_iter().map(|method| DeclaredMethod { name: method.name, dials: method.keys.dials }).collect()
 }

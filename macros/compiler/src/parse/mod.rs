@@ -6,7 +6,7 @@ mod closure;
 mod combinations;
 mod control;
 mod declaration;
-mod dials;
+pub(crate) mod dials;
 mod field;
 mod groups;
 mod keys;
@@ -19,19 +19,19 @@ mod values;
 pub use closure::{Argument, Closure, Pattern};
 pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
-pub use dials::{ChartChoice, CodeForm, Dials, Discretization, Emit, Isotropy, Order, Promise, Solver, Summation};
+pub use dials::*;
 pub use field::Field;
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Located, keys_as_markdown};
 pub use methods::DeclaredMethod;
 pub use opaque::Opaque;
-pub(crate) use spelling::tokens as spell_tokens;
+pub(crate) use spelling::{joined, listed, tokens as spell_tokens};
 pub use spelling::{spell, spell_type};
 
 use proc_macro2::TokenStream;
 use syn::{Data, DeriveInput, Fields};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 
 /// Reads the item that carries `#[derive(Clebsch)]`.
 pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
@@ -42,18 +42,18 @@ pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
         Data::Enum(data) => return Err(no_struct(Location::from(data.enum_token.span), "an enum")),
         Data::Union(data) => return Err(no_struct(Location::from(data.union_token.span), "a union")),
     };
-    let mut diagnostics = Diagnostics::new();
-    let keys = attribute::read(&input, &mut diagnostics);
-    let fields = read_fields(fields, &mut diagnostics);
+    let diagnostics = Diagnostics::new();
+    let keys = attribute::read(&input, &diagnostics);
+    let fields = read_fields(fields, &diagnostics);
     declaration::assemble(&input, keys, fields, diagnostics)
 }
 
 fn no_struct(place: Location, what: &str) -> Diagnostics {
-    Diagnostic::new(place, format!("`Clebsch` can only be derived for a struct, and this is {what}"))
-        .note("the fields of the struct are the parameters of the system")
-        .into()
+    error!(place, "`Clebsch` can only be derived for a struct, and this is {what}";
+        note "the fields of the struct are the parameters of the system")
+    .into()
 }
 
-fn read_fields(fields: &Fields, diagnostics: &mut Diagnostics) -> Vec<Field> {
+fn read_fields(fields: &Fields, diagnostics: &Diagnostics) -> Vec<Field> {
     fields.iter().enumerate().map(|(position, field)| field::read(position, field, diagnostics)).collect()
 }

@@ -1,12 +1,12 @@
 //! Potentials that no expression holds: `opaque(Self::value, Self::gradient)`, two methods of the struct.
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::parse::ParseStream;
-use syn::{Expr, Path};
+use syn::{Expr, ExprPath, Path};
 
 use super::spelling::{spell, tokens};
 use super::values;
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::{Diagnostic, Location, bail, error};
 
 /// A potential whose value and gradient are methods of the struct.
 #[derive(Clone)]
@@ -38,39 +38,34 @@ pub(super) fn comes_next(stream: ParseStream) -> bool {
 pub(super) fn read(stream: ParseStream) -> Result<Opaque, Diagnostic> {
     let word: Ident = stream.parse()?;
     if !stream.peek(syn::token::Paren) {
-        return Err(two_methods(word.span().into()));
+        return Err(two_methods(word.span()));
     }
     let (arguments, span) = values::arguments(stream)?;
     let is_time = |expr: &Expr| matches!(expr, Expr::Path(path) if path.path.is_ident("t"));
     let takes_time = arguments.first().is_some_and(is_time);
-    let [value, gradient] = &arguments[usize::from(takes_time)..] else {
-        return Err(two_methods(span.join().into()));
-    };
+    let [value, gradient] = &arguments[usize::from(takes_time)..] else { return Err(two_methods(span.join())) };
     let (value, gradient) = (method(value)?, method(gradient)?);
     Ok(Opaque { value, gradient, takes_time, place: Location::between(word.span(), span.close()) })
 }
 
 /// `Self::value`.
 fn method(expr: &Expr) -> Result<Path, Diagnostic> {
-    if let Expr::Path(path) = expr
-        && path.qself.is_none()
-        && path.path.segments.len() == 2
-        && path.path.segments[0].ident == "Self"
-    {
-        return Ok(path.path.clone());
-    }
-    let text = spell(expr);
-    let error = Diagnostic::new(Location::of(expr), format!("`{text}` is no method of the struct"));
     let last = match expr {
+        Expr::Path(ExprPath { qself: None, path, .. })
+            if path.segments.len() == 2 && path.segments[0].ident == "Self" =>
+        {
+            return Ok(path.clone());
+        }
         Expr::Path(path) => path.path.segments.last().map(|segment| segment.ident.to_string()),
         Expr::Field(field) => Some(tokens(&field.member)),
         Expr::MethodCall(call) => Some(call.method.to_string()),
         _ => None,
     };
-    Err(error.help(format!("write `Self::{}`", last.unwrap_or_else(|| "value".into()))))
+    bail!(expr, "`{}` is no method of the struct", spell(expr);
+        help "write `Self::{}`", last.unwrap_or_else(|| "value".into()))
 }
 
-fn two_methods(place: Location) -> Diagnostic {
-    Diagnostic::new(place, "an opaque potential is made of two methods, its value and its gradient")
-        .help("write `opaque(Self::value, Self::gradient)`, or `opaque(t, Self::value, Self::gradient)` where both take the time first")
+fn two_methods(place: Span) -> Diagnostic {
+    error!(place, "an opaque potential is made of two methods, its value and its gradient";
+        help "write `opaque(Self::value, Self::gradient)`, or `opaque(t, Self::value, Self::gradient)` where both take the time first")
 }

@@ -2,12 +2,22 @@
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
-use syn::{Block, Expr, Lit, Member, RangeLimits, Stmt, Type};
+use syn::{Block, Expr, RangeLimits, Stmt, Type};
 
 use super::Pattern;
 
 /// Parts within parts that are spelled: messages are read by people, and chains of operators are deeper than a stack.
 const LEVELS: usize = 100;
+
+/// The texts of several things, separated by commas.
+pub(crate) fn joined<T: ToString>(items: impl IntoIterator<Item = T>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// The names of several things in backticks, separated by commas.
+pub(crate) fn listed<T: std::fmt::Display>(items: impl IntoIterator<Item = T>) -> String {
+    joined(items.into_iter().map(|item| format!("`{item}`")))
+}
 
 /// The text of an expression; what is deeper than any message needs is left out.
 pub fn spell(expr: &Expr) -> String {
@@ -26,13 +36,12 @@ fn spell_within(expr: &Expr, levels: usize) -> String {
         Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args, levels)),
         Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),
         Expr::Closure(closure) => {
-            let arguments: Vec<String> = closure.inputs.iter().map(tokens).collect();
-            format!("|{}| {}", arguments.join(", "), spell(&closure.body))
+            format!("|{}| {}", joined(closure.inputs.iter().map(tokens)), spell(&closure.body))
         }
-        Expr::Field(field) => format!("{}.{}", spell(&field.base), spell_member(&field.member)),
+        Expr::Field(field) => format!("{}.{}", spell(&field.base), tokens(&field.member)),
         Expr::Group(group) => spell(&group.expr),
         Expr::Index(index) => format!("{}[{}]", spell(&index.expr), spell(&index.index)),
-        Expr::Lit(literal) => spell_literal(&literal.lit),
+
         Expr::MethodCall(call) => {
             let turbofish = call.turbofish.as_ref().map(tokens).unwrap_or_default();
             format!("{}.{}{turbofish}({})", spell(&call.receiver), call.method, list(&call.args, levels))
@@ -53,22 +62,7 @@ fn spell_within(expr: &Expr, levels: usize) -> String {
 }
 
 fn list<'a>(items: impl IntoIterator<Item = &'a Expr>, levels: usize) -> String {
-    items.into_iter().map(|item| spell_within(item, levels)).collect::<Vec<_>>().join(", ")
-}
-
-fn spell_member(member: &Member) -> String {
-    match member {
-        Member::Named(ident) => ident.to_string(),
-        Member::Unnamed(index) => index.index.to_string(),
-    }
-}
-
-fn spell_literal(literal: &Lit) -> String {
-    match literal {
-        Lit::Int(number) => number.to_string(),
-        Lit::Float(number) => number.to_string(),
-        other => tokens(other),
-    }
+    joined(items.into_iter().map(|item| spell_within(item, levels)))
 }
 
 /// A block on one line.
@@ -93,7 +87,7 @@ fn spell_statement(statement: &Stmt, levels: usize) -> String {
 pub fn spell_type(ty: &Type) -> String {
     match ty {
         Type::Array(array) => format!("[{}; {}]", spell_type(&array.elem), spell(&array.len)),
-        Type::Tuple(tuple) => format!("({})", tuple.elems.iter().map(spell_type).collect::<Vec<_>>().join(", ")),
+        Type::Tuple(tuple) => format!("({})", joined(tuple.elems.iter().map(spell_type))),
         Type::Group(group) => spell_type(&group.elem),
         other => tokens(other),
     }
@@ -103,7 +97,7 @@ pub fn spell_type(ty: &Type) -> String {
 pub(crate) fn spell_pattern(pattern: &Pattern) -> String {
     match pattern {
         Pattern::Name(ident) => ident.to_string(),
-        Pattern::Tuple(parts, _) => format!("({})", parts.iter().map(spell_pattern).collect::<Vec<_>>().join(", ")),
+        Pattern::Tuple(parts, _) => format!("({})", joined(parts.iter().map(spell_pattern))),
     }
 }
 
@@ -163,10 +157,6 @@ fn write(stream: TokenStream, text: &mut String) {
 
 /// Whether there is a space before and after a punctuation mark.
 fn spaces(mark: char) -> (bool, bool) {
-    match mark {
-        ',' | ';' => (false, true),
-        '+' | '*' | '/' | '%' | '=' => (true, true),
-        '.' | ':' | '<' | '>' | '&' | '!' | '#' | '\'' | '?' => (false, false),
-        _ => (false, false),
-    }
+    let is_operator = "+*/%=".contains(mark);
+    (is_operator, is_operator || ",;".contains(mark))
 }

@@ -114,11 +114,8 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
 
 /// How much work a step may be.
 fn iterations(formulas: &MechanicsFormulas<'_>) -> String {
-    let Some(iterations) = &formulas.model.dials.iterations else { return String::new() };
-    format!(
-        "At most {} iterations for each momentum equation, as asked for; a step that needs more is an error.\n",
-        iterations.value
-    )
+    let Some(most) = formulas.model.dials.limit() else { return String::new() };
+    format!("At most {most} iterations for each momentum equation, as asked for; a step that needs more is an error.\n")
 }
 
 /// What an iteration that ends early leaves as it is, and what it does not.
@@ -152,7 +149,7 @@ fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -
     if collocation.is_affine {
         text += "The action moves the origin: J is affine in q.\n";
     }
-    let most = formulas.model.dials.iterations.as_ref().map_or(64, |iterations| iterations.value);
+    let most = formulas.model.dials.limit().unwrap_or(64);
     text += match &formulas.model.dials.tolerance {
         None => format!("Slopes are found by sweeps over all stages, {most} at most, until only rounding changes.\n"),
         Some(tolerance) => format!(

@@ -19,19 +19,3 @@ pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>
     };
     (0..length).filter(|&entry| row_of(entry).is_none()).map(vector).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use clebsch_symbolic::{integer, rational};
-
-    use super::*;
-
-    #[test]
-    fn an_entry_that_those_before_do_not_determine_is_a_coordinate() {
-        // x1 + x2 = 0 and x0 + 2 x3 = 0: x0 and x1 are free, x2 and x3 follow
-        let row = |entries: [i64; 4]| entries.map(integer).to_vec();
-        let found = kernel(&[row([0, 1, 1, 0]), row([1, 0, 0, 2]), row([1, 1, 1, 2])], 4);
-        let first = vec![integer(1), integer(0), integer(0), rational(-1, 2)];
-        assert_eq!(found, [first, row([0, 1, -1, 0])]);
-    }
-}

@@ -1,9 +1,10 @@
 //! Declared groups against the documented bases of those that are built in, and against dimensions that are known otherwise.
 
-use clebsch_symbolic::{Expr, Graph, Group};
+use clebsch_symbolic::{Expr, Graph, Group, integer, rational};
 use proc_macro2::Span;
 
 use super::DeclaredGroups;
+use super::kernel::kernel;
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;
 
@@ -12,8 +13,8 @@ fn declare(graph: &Graph, definition: &str) -> Result<Group, Diagnostics> {
     let source =
         format!("#[clebsch(group Own = {definition}, action = |F: Own, q: Own| F * q, cost = |h, F| h)] struct S;");
     let declaration = parse(source.parse().expect("the table holds Rust"))?;
-    let mut diagnostics = Diagnostics::new();
-    let groups = DeclaredGroups::read(graph, &declaration.groups, &mut diagnostics);
+    let diagnostics = Diagnostics::new();
+    let groups = DeclaredGroups::read(graph, &declaration.groups, &diagnostics);
     diagnostics.propagate(())?;
     Ok(groups.find(&syn::Ident::new("Own", Span::call_site())).expect("a group, since there are no errors"))
 }
@@ -112,4 +113,13 @@ fn solutions_that_are_no_group_are_refused() {
     for (definition, expected) in table {
         assert_eq!(first_line(definition), expected, "{definition}");
     }
+}
+
+#[test]
+fn an_entry_that_those_before_do_not_determine_is_a_coordinate() {
+    // x1 + x2 = 0 and x0 + 2 x3 = 0: x0 and x1 are free, x2 and x3 follow
+    let row = |entries: [i64; 4]| entries.map(integer).to_vec();
+    let found = kernel(&[row([0, 1, 1, 0]), row([1, 0, 0, 2]), row([1, 1, 1, 2])], 4);
+    let first = vec![integer(1), integer(0), integer(0), rational(-1, 2)];
+    assert_eq!(found, [first, row([0, 1, -1, 0])]);
 }

@@ -1,78 +1,67 @@
-//! Blocks: `let`s, then a value.
+//! Blocks: `let`s, then a value; or an equation `a == b`, which stands only where a key asks for one.
 
-use syn::{Block, Local, Stmt};
+use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
 use super::super::scope::Binding;
 use super::super::value::Value;
-use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Location};
+use super::{Elaborator, shortened};
+use crate::diagnostic::{error, refuse, report};
 use crate::parse::{Pattern, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// The value of a block.
     pub(super) fn block(&mut self, block: &Block) -> Option<Value<'g>> {
+        self.with_names(|this| this.statements(block))
+    }
+
+    /// Does something after which the names that it introduces are forgotten.
+    pub(super) fn with_names<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let mark = self.scope.mark();
-        let value = self.statements(block);
+        let value = work(self);
         self.scope.release(mark);
         value
     }
 
     fn statements(&mut self, block: &Block) -> Option<Value<'g>> {
-        let (last, before) = match block.stmts.split_last() {
-            Some(parts) => parts,
-            None => {
-                return self.error(
-                    Diagnostic::new(block.brace_token.span.join(), "this block is empty")
-                        .help("end it with an expression"),
-                );
-            }
+        let Some((last, before)) = block.stmts.split_last() else {
+            refuse!(self, block.brace_token.span.join(), "this block is empty"; help "end it with an expression");
         };
-        for statement in before {
-            self.statement(statement);
-        }
+        before.iter().for_each(|statement| self.statement(statement));
         match last {
             Stmt::Expr(value, None) => self.elaborate(value),
-            Stmt::Macro(written) if written.semi_token.is_none() => self.macro_tokens(&written.mac),
-            Stmt::Expr(value, Some(semicolon)) => {
-                let error = Diagnostic::new(semicolon.span, "the block ends without a value");
-                self.error(error.help(format!("remove the semicolon after `{}`", super::shortened(&spell(value)))))
-            }
+            Stmt::Macro(written) if written.semi_token.is_none() => self.macro_call(&written.mac),
+            Stmt::Expr(value, Some(semicolon)) => refuse!(self, semicolon.span, "the block ends without a value";
+                help "remove the semicolon after `{}`", shortened(&spell(value))),
             other => {
                 self.statement(other);
-                self.error(
-                    Diagnostic::new(Location::of(other), "the block ends without a value")
-                        .help("end it with an expression"),
-                )
+                refuse!(self, other, "the block ends without a value"; help "end it with an expression")
             }
         }
     }
 
-    pub(super) fn statement(&mut self, statement: &Stmt) {
+    fn statement(&mut self, statement: &Stmt) {
         match statement {
             Stmt::Local(local) => self.local(local),
-            other => {
-                let error = Diagnostic::new(Location::of(other), "a block is `let`s and one value at its end");
-                self.context.diagnostics.push(error.help("remove this statement, or give its value a name with `let`"));
-            }
+            other => report!(self.context.diagnostics, other, "a block is `let`s and one value at its end";
+                help "remove this statement, or give its value a name with `let`"),
         }
     }
 
     fn local(&mut self, local: &Local) {
-        let diagnostics = &mut self.context.diagnostics;
+        let diagnostics = &self.context.diagnostics;
         let pattern = match &local.pat {
             syn::Pat::Type(typed) => {
-                let error = Diagnostic::new(Location::of(&typed.ty), "a `let` has no type");
-                diagnostics.push(error.help("remove it: the shape follows from the value"));
+                report!(diagnostics, &typed.ty, "a `let` has no type";
+                    help "remove it: the shape follows from the value");
                 Pattern::read(&typed.pat, diagnostics)
             }
             other => Pattern::read(other, diagnostics),
         };
         let value = match &local.init {
             Some(init) if init.diverge.is_none() => self.elaborate(&init.expr),
-            _ => self.error(
-                Diagnostic::new(Location::of(local), "a `let` has a value and no `else`")
-                    .help("write `let name = value;`"),
-            ),
+            _ => {
+                diagnostics.refuse(error!(local, "a `let` has a value and no `else`"; help "write `let name = value;`"))
+            }
         };
         if let Some(pattern) = pattern {
             self.bind(&pattern, value, "a `let`");
@@ -81,11 +70,34 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// Introduces the names of a pattern; those of a value with an error have an error too.
     pub(super) fn bind(&mut self, pattern: &Pattern, value: Option<Value<'g>>, what: &str) {
-        let diagnostics = &mut self.context.diagnostics;
-        match Binding::of(pattern, value, diagnostics) {
-            Some(bindings) => bindings.into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics)),
-            None => {
-                Binding::unknown(pattern).into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics))
+        let diagnostics = &self.context.diagnostics;
+        let bindings = Binding::of(pattern, value, diagnostics);
+        bindings.into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics));
+    }
+
+    /// Both sides of the equation that a body ends with.
+    pub fn equation(&mut self, syntax: &Syntax) -> Option<(Value<'g>, Value<'g>)> {
+        match syntax {
+            Syntax::Paren(inner) => self.equation(&inner.expr),
+            Syntax::Group(inner) => self.equation(&inner.expr),
+            Syntax::Block(block) if block.label.is_none() => {
+                let Some((Stmt::Expr(last, None), before)) = block.block.stmts.split_last() else {
+                    refuse!(self, block, "the block ends without an equation"; help "end it with `a == b`");
+                };
+                self.with_names(|this| {
+                    before.iter().for_each(|statement| this.statement(statement));
+                    this.equation(last)
+                })
+            }
+            Syntax::Binary(link) if matches!(link.op, BinOp::Eq(_)) => {
+                let left = self.elaborate(&link.left);
+                let right = self.elaborate(&link.right);
+                left.zip(right)
+            }
+            other => {
+                let is_chain = matches!(other, Syntax::Binary(link) if matches!(link.op, BinOp::And(_)));
+                let equation = if is_chain { "several equations as one, `(a, b) == (c, d)`" } else { "`a == b`" };
+                refuse!(self, other, "`{}` is no equation", shortened(&spell(other)); help "write {equation}")
             }
         }
     }

@@ -1,15 +1,18 @@
 //! Vectors and matrices from their entries: `Vector3::new(…)`, `Matrix3::from_diagonal(…)`, `vector![…]`, `matrix![…; …]`.
 
 use clebsch_symbolic::{Expr, Shape};
-use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident};
+use quote::ToTokens;
+use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident, PathSegment};
 
 use super::super::sizes::size_argument;
 use super::super::value::Value;
 use super::super::vectors::{arguments, named_shape};
 use super::access::strip;
+use super::operators::parenthesized;
+use super::tables::METHODS;
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Location, nearest};
-use crate::parse::spell;
+use crate::diagnostic::{error, nearest, refuse};
+use crate::parse::{listed, spell};
 
 /// The constructors of vector and matrix types.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -47,23 +50,22 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `Type::constructor(…)`; other functions cannot be looked into.
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Value<'g>> {
         let Syntax::Path(path) = strip(&call.func) else {
-            let error = Diagnostic::new(Location::of(&call.func), format!("`{}` is no function", spell(&call.func)));
-            return self.error(error.help("write `*` to multiply"));
+            refuse!(self, &call.func, "`{}` is no function", spell(&call.func); help "write `*` to multiply");
         };
-        if let [.., owner, method] = path.path.segments.iter().collect::<Vec<_>>().as_slice()
-            && (owner.ident == "Quaternion" || owner.ident == "UnitQuaternion")
-        {
+        let Some([owner, method]) = path.path.segments.iter().collect::<Vec<_>>().last_chunk().copied() else {
+            return self.unknown_function(call, path);
+        };
+        if owner.ident == "Quaternion" || owner.ident == "UnitQuaternion" {
             return self.quaternion_constructor(call, &method.ident);
         }
-        match self.constructed_shape(path) {
-            Some(shape) => self.construct(call, path, shape?),
+        match self.constructed_shape(owner) {
+            Some(shape) => self.construct(call, &method.ident, shape?),
             None => self.unknown_function(call, path),
         }
     }
 
-    /// The shape of `Matrix3` in `Matrix3::new`; `None` if there is no such type in the path.
-    fn constructed_shape(&mut self, path: &ExprPath) -> Option<Option<Shape>> {
-        let segment = path.path.segments.iter().rev().nth(1)?;
+    /// The shape of `Matrix3` in `Matrix3::new`; `None` if that is no such type.
+    fn constructed_shape(&mut self, segment: &PathSegment) -> Option<Option<Shape>> {
         let name = segment.ident.to_string();
         let sizes = match name.as_str() {
             "SVector" => 1,
@@ -71,43 +73,40 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => return named_shape(&name).map(Some),
         };
         let given = arguments(segment);
-        let written: Vec<&GenericArgument> = given.iter().copied().skip(given.len().saturating_sub(sizes)).collect();
-        let mut known = Vec::new();
-        for argument in &written {
-            match size_argument(argument, &Generics::default()) {
-                Ok(size) => known.push(size),
-                Err(error) => {
-                    self.context.diagnostics.push(error);
-                    return Some(None);
-                }
-            }
-        }
-        match known.as_slice() {
-            [n] if sizes == 1 => Some(Some(Shape::vector(*n))),
-            [rows, columns] => Some(Some(Shape::new(*rows, *columns))),
+        let known = match self.sizes(&given[given.len().saturating_sub(sizes)..]) {
+            Some(known) => known,
+            None => return Some(None),
+        };
+        Some(match known.as_slice() {
+            [n] if sizes == 1 => Some(Shape::vector(*n)),
+            [rows, columns] => Some(Shape::new(*rows, *columns)),
             _ => {
                 let example = if sizes == 1 { "SVector::<f64, 8>" } else { "SMatrix::<f64, 2, 3>" };
-                let error = Diagnostic::new(segment.ident.span(), format!("the size of `{name}` is not known here"));
-                self.context.diagnostics.push(error.help(format!("write `{example}`")));
-                Some(None)
+                let error = error!(&segment.ident, "the size of `{name}` is not known here"; help "write `{example}`");
+                self.refuse(error)
             }
-        }
+        })
     }
 
-    fn construct(&mut self, call: &ExprCall, path: &ExprPath, shape: Shape) -> Option<Value<'g>> {
-        // by construction: a path with a type before its last segment has a last segment
-        let method = &path.path.segments.last()?.ident;
+    /// The sizes that generic arguments stand for.
+    pub(super) fn sizes(&mut self, arguments: &[&GenericArgument]) -> Option<Vec<usize>> {
+        let sizes = arguments.iter().map(|argument| size_argument(argument, &Generics::default()));
+        self.context.diagnostics.take(sizes.collect::<Result<_, _>>())
+    }
+
+    fn construct(&mut self, call: &ExprCall, method: &Ident, shape: Shape) -> Option<Value<'g>> {
         let Some(&(_, arity, constructor)) = CONSTRUCTORS.iter().find(|(name, ..)| method == name) else {
             return self.unknown_constructor(method);
         };
         if constructor == Constructor::New {
-            return self.entries(call, method, shape, call.args.iter().collect());
+            return self.entries(call, method, shape);
         }
         if call.args.len() != arity {
             let plural = if arity == 1 { "" } else { "s" };
-            let message = format!("`{}` has {arity} argument{plural}, not {}", spell(&call.func), call.args.len());
-            let help = format!("write `{}({})`", spell(&call.func), if arity == 0 { "" } else { "…" });
-            return self.error(Diagnostic::new(method.span(), message).help(help));
+            let argument = if arity == 0 { "" } else { "…" };
+            let function = spell(&call.func);
+            refuse!(self, method, "`{function}` has {arity} argument{plural}, not {}", call.args.len();
+                help "write `{function}({argument})`");
         }
         let graph = self.graph();
         match constructor {
@@ -119,42 +118,30 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Constructor::FromDiagonal if shape.is_square() => self.diagonal(call, shape),
             Constructor::FromColumns => self.joined(call, shape, Shape::new(shape.rows, 1), shape.columns),
             Constructor::FromRows => self.joined(call, shape, Shape::new(1, shape.columns), shape.rows),
-            _ => {
-                let error = Diagnostic::new(
-                    method.span(),
-                    format!("`{}` does not exist: the type is {shape}", spell(&call.func)),
-                );
-                self.error(
-                    error.note("`identity` and `from_diagonal` are of square matrices, `x`, `y` and `z` of vectors"),
-                )
-            }
+            _ => refuse!(self, method, "`{}` does not exist: the type is {shape}", spell(&call.func);
+                note "`identity` and `from_diagonal` are of square matrices, `x`, `y` and `z` of vectors"),
         }
     }
 
     fn diagonal(&mut self, call: &ExprCall, shape: Shape) -> Option<Value<'g>> {
-        let diagonal = self.matrix(&call.args[0])?;
-        if diagonal.shape() != Shape::vector(shape.rows) {
-            let message = format!(
-                "`{}` is {}, but the diagonal is {}x1",
-                spell(strip(&call.args[0])),
-                diagonal.shape(),
-                shape.rows
-            );
-            let help = format!("write `{}(&vector![…])` with {} entries", spell(&call.func), shape.rows);
-            return self.error(Diagnostic::new(Location::of(&call.args[0]), message).help(help));
+        let (argument, n) = (&call.args[0], shape.rows);
+        let diagonal = self.matrix(argument)?;
+        if diagonal.shape() != Shape::vector(n) {
+            let (text, is) = (spell(strip(argument)), diagonal.shape());
+            refuse!(self, argument, "`{text}` is {is}, but the diagonal is {n}x1";
+                help "write `{}(&vector![…])` with {n} entries", spell(&call.func));
         }
-        self.build(call, &[diagonal], Growth::Sum, || diagonal.diagonal_matrix()).map(Value::Matrix)
+        self.build(call, &[diagonal], Growth::Sum, || diagonal.diagonal_matrix())
     }
 
     /// A matrix from its columns or rows.
     fn joined(&mut self, call: &ExprCall, shape: Shape, part: Shape, count: usize) -> Option<Value<'g>> {
         let Value::Array(parts) = self.elaborate(&call.args[0])? else {
-            let error = Diagnostic::new(Location::of(&call.args[0]), format!("`{}` takes an array", spell(&call.func)));
-            return self.error(error.help(format!("write `{}(&[a, b])`", spell(&call.func))));
+            let function = spell(&call.func);
+            refuse!(self, &call.args[0], "`{function}` takes an array"; help "write `{function}(&[a, b])`");
         };
-        let matrices: Option<Vec<Expr<'g>>> =
-            parts.iter().map(|value| value.matrix().filter(|matrix| matrix.shape() == part)).collect();
-        match matrices {
+        let fits = |value: &Value<'g>| value.matrix().filter(|matrix| matrix.shape() == part);
+        match parts.iter().map(fits).collect::<Option<Vec<Expr<'g>>>>() {
             Some(matrices) if matrices.len() == count => {
                 let entry = |(i, j): (usize, usize)| {
                     if part.columns == shape.columns { matrices[i].entry(0, j) } else { matrices[j].entry(i, 0) }
@@ -163,59 +150,54 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 self.stack(call, shape, entries)
             }
             _ => {
-                let message = format!("`{}` takes {count} parts, each {part}", spell(&call.func));
-                let help = format!("write `{}(&[…])` with {count} of them", spell(&call.func));
-                self.error(Diagnostic::new(Location::of(&call.args[0]), message).help(help))
+                let function = spell(&call.func);
+                refuse!(self, &call.args[0], "`{function}` takes {count} parts, each {part}";
+                    help "write `{function}(&[…])` with {count} of them")
             }
         }
     }
 
     /// A matrix from its entries, row by row.
-    fn entries(&mut self, at: &ExprCall, method: &Ident, shape: Shape, entries: Vec<&Syntax>) -> Option<Value<'g>> {
-        if entries.len() != shape.len() {
-            let message = format!("`{}` has {} entries, not {}", spell(&at.func), shape.len(), entries.len());
-            return self.error(Diagnostic::new(method.span(), message).note("entries are given row by row"));
+    fn entries(&mut self, call: &ExprCall, method: &Ident, shape: Shape) -> Option<Value<'g>> {
+        if call.args.len() != shape.len() {
+            let function = spell(&call.func);
+            refuse!(self, method, "`{function}` has {} entries, not {}", shape.len(), call.args.len();
+                note "entries are given row by row");
         }
-        let found: Vec<Option<Expr<'g>>> = entries.into_iter().map(|entry| self.scalar(entry)).collect();
-        let found: Vec<Expr<'g>> = found.into_iter().collect::<Option<_>>()?;
-        self.stack(at, shape, found)
+        let entries = self.scalars(&call.args)?;
+        self.stack(call, shape, entries)
+    }
+
+    /// All values as scalars, or all of their errors.
+    pub(super) fn scalars<'s>(&mut self, parts: impl IntoIterator<Item = &'s Syntax>) -> Option<Vec<Expr<'g>>> {
+        let found: Vec<Option<Expr<'g>>> = parts.into_iter().map(|part| self.scalar(part)).collect();
+        found.into_iter().collect()
     }
 
     /// A matrix of these scalars.
-    pub(super) fn stack(
-        &mut self,
-        at: &dyn quote::ToTokens,
-        shape: Shape,
-        entries: Vec<Expr<'g>>,
-    ) -> Option<Value<'g>> {
+    pub(super) fn stack(&mut self, at: &dyn ToTokens, shape: Shape, entries: Vec<Expr<'g>>) -> Option<Value<'g>> {
         let graph = self.graph();
-        self.build(at, &entries.clone(), Growth::Product, || graph.stack(shape, entries)).map(Value::Matrix)
+        self.build(at, &entries.clone(), Growth::Product, || graph.stack(shape, entries))
     }
 
     fn unknown_constructor(&mut self, method: &Ident) -> Option<Value<'g>> {
         let name = method.to_string();
         let names = CONSTRUCTORS.iter().map(|&(name, ..)| name);
         let synonym = SYNONYMS.iter().find(|(other, _)| *other == name).map(|&(_, meant)| meant);
-        let error = Diagnostic::new(method.span(), format!("unknown constructor `{name}`"));
-        let list: Vec<String> = names.clone().map(|name| format!("`{name}`")).collect();
-        self.error(match synonym.or_else(|| nearest(&name, names)) {
+        let error = error!(method, "unknown constructor `{name}`");
+        self.refuse(match synonym.or_else(|| nearest(&name, names.clone())) {
             Some(meant) => error.help(format!("write `{meant}`")),
-            None => error.note(format!("the constructors are {}", list.join(", "))),
+            None => error.note(format!("the constructors are {}", listed(names))),
         })
     }
 
     fn unknown_function(&mut self, call: &ExprCall, path: &ExprPath) -> Option<Value<'g>> {
         let name = path.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-        let error = Diagnostic::new(
-            Location::of(&call.func),
-            format!("the function `{}` is not known in the {}", spell(&call.func), self.key),
-        );
-        let method = super::tables::METHODS.iter().any(|(method, ..)| *method == name);
-        self.error(match call.args.first() {
-            Some(first) if method => {
-                error.help(format!("write `{}.{name}()`", super::operators::parenthesized(strip(first))))
-            }
-            _ => error.help("write its formula here").note("a macro cannot look into functions"),
+        let error = error!(&call.func, "the function `{}` is not known in the {}", spell(&call.func), self.key);
+        let is_method = METHODS.iter().any(|(method, ..)| *method == name);
+        self.refuse(match call.args.first().filter(|_| is_method) {
+            Some(first) => error.help(format!("write `{}.{name}()`", parenthesized(strip(first)))),
+            None => error.help("write its formula here").note("a macro cannot look into functions"),
         })
     }
 }

@@ -5,7 +5,7 @@ use syn::{ExprLit, Lit};
 
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::refuse;
 
 /// Digits of a literal, and the size of its decimal exponent: f64 ends at 1e308.
 const DIGITS: usize = 400;
@@ -16,24 +16,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let (digits, suffix) = match &literal.lit {
             Lit::Int(number) => (number.base10_digits(), number.suffix()),
             Lit::Float(number) => (number.base10_digits(), number.suffix()),
-            other => {
-                let error = Diagnostic::new(Location::of(other), "the only literals are numbers");
-                return self.error(error.help("remove it"));
-            }
+            other => refuse!(self, other, "the only literals are numbers"; help "remove it"),
         };
         if !suffix.is_empty() {
-            let error = Diagnostic::new(Location::of(literal), format!("the suffix `{suffix}` has no meaning here"));
-            let help = format!("write `{}`", digits);
-            return self
-                .error(error.help(help).note("numbers are exact; the scalar of the system is that of its fields"));
+            refuse!(self, literal, "the suffix `{suffix}` has no meaning here";
+                help "write `{digits}`";
+                note "numbers are exact; the scalar of the system is that of its fields");
         }
-        match decimal(digits) {
-            Some(value) => Some(Value::Matrix(self.graph().number(value))),
-            None => {
-                let error = Diagnostic::new(Location::of(literal), "this number is beyond the range of `f64`");
-                self.error(error.help("choose units in which it is smaller"))
-            }
-        }
+        let Some(value) = decimal(digits) else {
+            refuse!(self, literal, "this number is beyond the range of `f64`"; help "choose units in which it is smaller");
+        };
+        Some(Value::Matrix(self.graph().number(value)))
     }
 }
 

@@ -3,7 +3,6 @@
 mod access;
 mod block;
 mod constructors;
-mod equations;
 mod literals;
 mod macros;
 mod methods;
@@ -29,8 +28,8 @@ use super::fields::Fields;
 use super::scope::Scope;
 use super::sites::Sites;
 use super::value::Value;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
-use crate::parse::spell;
+use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
+use crate::parse::{Closure, spell};
 
 /// Operators and methods inside each other.
 const DEPTH: usize = 200;
@@ -49,6 +48,13 @@ pub(super) struct Context<'c, 'g> {
     /// The sites of a power; `None` where the declaration is none.
     pub power: Option<Sites<'g>>,
     pub diagnostics: Diagnostics,
+}
+
+impl<'g> Context<'_, 'g> {
+    /// The value of a closure with these names; `None` if it has an error, which was reported.
+    pub fn value(&mut self, closure: &Closure, scope: Scope<'g>) -> Option<Value<'g>> {
+        Elaborator::new(self, &closure.key.to_string(), scope).elaborate(&closure.body)
+    }
 }
 
 /// Elaborates the body of one closure.
@@ -115,7 +121,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     }
 
     /// Reports an error; the expression then has no value.
-    fn error<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+    fn refuse<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
         self.context.diagnostics.push(diagnostic);
         None
     }
@@ -123,20 +129,16 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     /// The value of an expression; `None` if it has an error, which is then reported.
     pub fn elaborate(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         self.work += 1;
+        if self.work == WORK + 1 {
+            refuse!(self, syntax, "the {} has more than {WORK} operations", self.key;
+                note "ranges are written out at compile time");
+        }
         if self.work > WORK {
             // one message is enough
-            let first = self.work == WORK + 1;
-            let message = format!("the {} has more than {WORK} operations", self.key);
-            return match first {
-                true => self.error(
-                    Diagnostic::new(Location::of(syntax), message).note("ranges are written out at compile time"),
-                ),
-                false => None,
-            };
+            return None;
         }
         if self.depth == DEPTH {
-            let message = format!("more than {DEPTH} operations inside each other");
-            return self.error(Diagnostic::new(Location::of(syntax), message).help("give names to parts with `let`"));
+            refuse!(self, syntax, "more than {DEPTH} operations inside each other"; help "give names to parts with `let`");
         }
         self.depth += 1;
         let value = self.dispatch(syntax);
@@ -154,7 +156,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             Syntax::Group(group) => self.elaborate(&group.expr),
             Syntax::Index(index) => self.index(index),
             Syntax::Lit(literal) => self.literal(literal),
-            Syntax::Macro(written) => self.macro_call(written),
+            Syntax::Macro(written) => self.macro_call(&written.mac),
             Syntax::MethodCall(call) => self.method_call(call),
             Syntax::Paren(inner) => self.elaborate(&inner.expr),
             Syntax::Path(path) => self.path(path),
@@ -176,37 +178,36 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     fn as_matrix(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
         match value {
             Value::Matrix(expr) => Some(expr),
-            Value::Identity(_) => self.error(open_identity(syntax)),
-            Value::Sum(_) => self.error(open_sum(syntax)),
+            Value::Identity(_) => self.refuse(open_identity(syntax)),
+            Value::Sum(_) => self.refuse(open_sum(syntax)),
             other => {
-                let message = format!("`{}` is {}, not a matrix or a scalar", spell(syntax), other.describe());
-                let help = format!("take a part of it, as in `{}{}`", spell(syntax), first_part(&other));
-                self.error(Diagnostic::new(Location::of(syntax), message).help(help))
+                let (text, is) = (spell(syntax), other.describe());
+                refuse!(self, syntax, "`{text}` is {is}, not a matrix or a scalar";
+                    help "take a part of it, as in `{text}{}`", first_part(&other))
             }
         }
     }
 
     /// The value as a matrix of this shape, which an open identity takes.
-    fn shaped(&mut self, syntax: &Syntax, shape: Shape) -> Option<Value<'g>> {
+    fn shaped(&mut self, syntax: &Syntax, shape: Shape) -> Option<Expr<'g>> {
         match self.elaborate(syntax)? {
             Value::Identity(scale) if shape.is_square() => {
                 let identity = self.graph().identity(shape.rows);
-                self.build(syntax, &[scale, identity], Growth::Sum, || scale * identity).map(Value::Matrix)
+                self.grow(syntax, &[scale, identity], Growth::Sum, || scale * identity)
             }
-            value => self.as_matrix(syntax, value).map(Value::Matrix),
+            value => self.as_matrix(syntax, value),
         }
     }
 
     /// The value as a scalar.
     fn scalar(&mut self, syntax: &Syntax) -> Option<Expr<'g>> {
         let expr = self.matrix(syntax)?;
-        if expr.shape().is_scalar() {
-            return Some(expr);
+        if !expr.shape().is_scalar() {
+            let entry = if expr.shape().is_column() { "[0]" } else { "[(0, 0)]" };
+            refuse!(self, syntax, "`{}` is {}, where a scalar is needed", spell(syntax), expr.shape();
+                help "take an entry, as in `{}{entry}`", operators::parenthesized(syntax));
         }
-        let message = format!("`{}` is {}, where a scalar is needed", spell(syntax), expr.shape());
-        let entry = if expr.shape().is_column() { "[0]" } else { "[(0, 0)]" };
-        let help = format!("take an entry, as in `{}{entry}`", operators::parenthesized(syntax));
-        self.error(Diagnostic::new(Location::of(syntax), message).help(help))
+        Some(expr)
     }
 
     fn size(&self, expr: Expr<'g>) -> Size {
@@ -215,8 +216,19 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         self.sizes.get(&expr).copied().unwrap_or_else(|| Size { weight: weight(), nesting: 0 })
     }
 
-    /// Makes an expression, unless it would become too large to work with.
+    /// Makes a matrix, unless it would become too large to work with.
     fn build(
+        &mut self,
+        at: &dyn ToTokens,
+        operands: &[Expr<'g>],
+        growth: Growth,
+        make: impl FnOnce() -> Expr<'g>,
+    ) -> Option<Value<'g>> {
+        self.grow(at, operands, growth, make).map(Value::Matrix)
+    }
+
+    /// Makes an expression, unless it would become too large to work with.
+    fn grow(
         &mut self,
         at: &dyn ToTokens,
         operands: &[Expr<'g>],
@@ -234,8 +246,8 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             Growth::Power(exponent) => Size { weight: sum.saturating_mul(exponent.max(1)), nesting: nesting + 1 },
         };
         if size.weight > WEIGHT || size.nesting > NESTING {
-            let note = "written out, it has more terms, factors or digits than a formula should have";
-            return self.error(Diagnostic::new(Location::of(at), "this expression grows too large").note(note));
+            refuse!(self, at, "this expression grows too large";
+                note "written out, it has more terms, factors or digits than a formula should have");
         }
         let expr = make();
         // a number is as large as its digits, however it was made
@@ -247,30 +259,30 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
 
     /// Tries something without reporting its errors.
     pub fn quietly<T>(&mut self, attempt: impl FnOnce(&mut Self) -> T) -> T {
-        let reported = self.context.diagnostics.clone();
+        let reported = self.context.diagnostics.len();
         let result = attempt(self);
-        self.context.diagnostics = reported;
+        self.context.diagnostics.truncate(reported);
         result
     }
 }
 
 /// The error for an `I` that meets nothing that has a size.
 fn open_identity(syntax: &Syntax) -> Diagnostic {
-    Diagnostic::new(Location::of(syntax), "the size of `I` is not known here")
-        .help("write `Matrix3::identity()`")
-        .note("`I` takes its size from the other side of `+`, `-` or `*`")
+    error!(syntax, "the size of `I` is not known here";
+        help "write `Matrix3::identity()`";
+        note "`I` takes its size from the other side of `+`, `-` or `*`")
 }
 
 /// The error for a sum over sites within another function.
 fn open_sum(syntax: &Syntax) -> Diagnostic {
-    Diagnostic::new(Location::of(syntax), format!("`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax))))
-        .note("each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
+    error!(syntax, "`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax));
+        note "each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
 }
 
 /// How a part of a tuple or an array is reached.
 fn first_part(value: &Value) -> &'static str {
     match value {
-        Value::PerSite(_) => "[i]",
+        Value::PerSite(..) => "[i]",
         Value::Quaternion(_) => ".imag()",
         Value::Tuple(_) => ".0",
         _ => "[0]",
@@ -280,8 +292,8 @@ fn first_part(value: &Value) -> &'static str {
 /// A text that is short enough for the first line of a message.
 pub(super) fn shortened(text: &str) -> String {
     const LIMIT: usize = 80;
-    match text.chars().count() > LIMIT {
-        true => text.chars().take(LIMIT - 1).chain(['…']).collect(),
-        false => text.to_string(),
+    if text.chars().count() <= LIMIT {
+        return text.to_string();
     }
+    text.chars().take(LIMIT - 1).chain(['…']).collect()
 }

@@ -5,20 +5,17 @@ use syn::ext::IdentExt;
 use syn::{ExprPath, Ident, Path};
 
 use super::super::Constant;
-use super::super::scope::Missing;
 use super::super::value::Value;
 use super::Elaborator;
-use crate::diagnostic::{Diagnostic, Location, nearest};
-use crate::parse::spell_tokens;
+use crate::diagnostic::{error, nearest, refuse};
+use crate::parse::{listed, spell_tokens};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
     pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
         if path.qself.is_some() {
-            return self.error(
-                Diagnostic::new(Location::of(path), "a type in angle brackets has no meaning here")
-                    .help("write the path of a constant, or a field"),
-            );
+            refuse!(self, path, "a type in angle brackets has no meaning here";
+                help "write the path of a constant, or a field");
         }
         match path.path.get_ident() {
             Some(ident) => self.name(ident),
@@ -33,16 +30,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
             // a name whose definition has an error has no value, and the error was reported
             return value.clone();
         }
+        if let Some(power) = self.context.power.as_ref().filter(|power| power.name == name) {
+            return Some(Value::Matrix(power.count));
+        }
         match name.as_str() {
             "I" => Some(Value::Identity(self.graph().integer(1))),
             "PI" => Some(Value::Matrix(self.graph().pi())),
-            _ if self.context.power.as_ref().is_some_and(|power| power.name == name) => {
-                self.context.power.as_ref().map(|power| Value::Matrix(power.count))
-            }
-            "self" => {
-                let error = Diagnostic::new(ident.span(), "`self` alone is no quantity");
-                self.error(error.help("read a field, as in `self.mass`"))
-            }
+            "self" => refuse!(self, ident, "`self` alone is no quantity"; help "read a field, as in `self.mass`"),
             _ if is_constant_name(&name) => self.constant(&ident.clone().into()),
             _ => self.unknown_name(ident, &name),
         }
@@ -51,8 +45,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// The symbol of a constant, the same for every use.
     fn constant(&mut self, path: &Path) -> Option<Value<'g>> {
         if path.segments.iter().any(|segment| !segment.arguments.is_empty()) {
-            let error = Diagnostic::new(Location::of(path), "a constant has no generic arguments");
-            return self.error(error.help("write the path of a scalar constant"));
+            refuse!(self, path, "a constant has no generic arguments"; help "write the path of a scalar constant");
         }
         let known =
             self.context.constants.iter().position(|constant| spell_tokens(&constant.path) == spell_tokens(path));
@@ -66,16 +59,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn unknown_name(&mut self, ident: &Ident, name: &str) -> Option<Value<'g>> {
-        let error = Diagnostic::new(ident.span(), format!("cannot find `{name}` in the {}", self.key));
-        let error = match self.scope.missing(name) {
-            Some(Missing::Argument { head }) => error.help(format!("take it as an argument: write `{head}`")),
-            Some(Missing::Foreign { help }) => error.help(help),
-            None => match self.similar(name) {
-                Some(help) => error.help(help),
-                None => error.note(format!("known here are {}", self.scope.list())),
-            },
-        };
-        self.error(error)
+        let error = error!(ident.span(), "cannot find `{name}` in the {}", self.key);
+        let help = self.scope.missing(name).or_else(|| self.similar(name));
+        self.refuse(match help {
+            Some(help) => error.help(help),
+            None => error.note(format!("known here are {}", listed(self.scope.names().chain(["I", "self"])))),
+        })
     }
 
     fn similar(&self, name: &str) -> Option<String> {

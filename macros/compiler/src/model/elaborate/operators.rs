@@ -6,8 +6,8 @@ use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 use super::super::value::Value;
 use super::mismatch::{no_product, point_moved, unequal_shapes};
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Location};
-use crate::parse::spell;
+use crate::diagnostic::{Diagnostic, error, refuse};
+use crate::parse::{spell, spell_tokens};
 
 /// The operators of closures.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -21,25 +21,24 @@ pub(super) enum Operator {
 
 impl Operator {
     fn of(operator: &BinOp) -> Option<Operator> {
-        match operator {
-            BinOp::Add(_) => Some(Operator::Add),
-            BinOp::Sub(_) => Some(Operator::Subtract),
-            BinOp::Mul(_) => Some(Operator::Multiply),
-            BinOp::Div(_) => Some(Operator::Divide),
-            BinOp::Rem(_) => Some(Operator::Remainder),
-            _ => None,
-        }
+        Some(match operator {
+            BinOp::Add(_) => Operator::Add,
+            BinOp::Sub(_) => Operator::Subtract,
+            BinOp::Mul(_) => Operator::Multiply,
+            BinOp::Div(_) => Operator::Divide,
+            BinOp::Rem(_) => Operator::Remainder,
+            _ => return None,
+        })
     }
 
     /// What it does, for messages.
     pub(super) fn verb(self) -> &'static str {
-        match self {
-            Operator::Add => "added",
-            Operator::Subtract => "subtracted",
-            Operator::Multiply => "multiplied",
-            Operator::Divide => "divided",
-            Operator::Remainder => "divided with remainder",
-        }
+        ["added", "subtracted", "multiplied", "divided", "divided with remainder"][self as usize]
+    }
+
+    /// A sum or a difference.
+    pub(super) fn combine<'g>(self, a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
+        if self == Operator::Subtract { a - b } else { a + b }
     }
 }
 
@@ -63,12 +62,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn refused_operator(&mut self, operator: &BinOp) -> Option<Value<'g>> {
-        let text = crate::parse::spell_tokens(operator);
-        let error = Diagnostic::new(
-            Location::of(operator),
-            format!("the operator `{}` has no meaning in the {}", text.trim(), self.key),
-        );
-        self.error(match operator {
+        let text = spell_tokens(operator);
+        let error = error!(operator, "the operator `{}` has no meaning in the {}", text.trim(), self.key);
+        self.refuse(match operator {
             BinOp::Eq(_) | BinOp::Le(_) | BinOp::Ge(_) | BinOp::Lt(_) | BinOp::Gt(_) | BinOp::Ne(_) => {
                 error.note("an equation or an inequality stands only where a key asks for one")
             }
@@ -85,19 +81,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (_, left @ Value::Sum(_), right) | (_, left, right @ Value::Sum(_)) => {
                 self.sums(operator, link, left, right)
             }
-            (_, left @ (Value::PerSite(_) | Value::Range(..) | Value::Wrapped(_) | Value::Sequence(..)), _) => {
-                self.no_matrix(operator, &link.left, &left)
-            }
-            (_, _, right @ (Value::PerSite(_) | Value::Range(..) | Value::Wrapped(_) | Value::Sequence(..))) => {
-                self.no_matrix(operator, &link.right, &right)
-            }
-            (_, left @ (Value::Tuple(_) | Value::Array(_)), _) => self.no_matrix(operator, &link.left, &left),
-            (_, _, right @ (Value::Tuple(_) | Value::Array(_))) => self.no_matrix(operator, &link.right, &right),
+            (_, left, _) if !left.is_operand() => self.no_matrix(operator, &link.left, &left),
+            (_, _, right) if !right.is_operand() => self.no_matrix(operator, &link.right, &right),
             (_, left @ Value::Quaternion(_), right) | (_, left, right @ Value::Quaternion(_)) => {
                 self.quaternions(operator, link, left, right)
             }
-            (Operator::Add, left, right) => self.sum(link, left, right, false),
-            (Operator::Subtract, left, right) => self.sum(link, left, right, true),
+            (Operator::Add | Operator::Subtract, left, right) => self.sum(operator, link, left, right),
             (Operator::Multiply, left, right) => self.product(link, left, right),
             (Operator::Divide, left, right) => self.quotient(link, left, right),
             (Operator::Remainder, left, right) => self.remainder(link, left, right),
@@ -106,28 +95,24 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn no_matrix(&mut self, operator: Operator, syntax: &Syntax, value: &Value<'g>) -> Option<Value<'g>> {
         let text = spell(syntax);
-        let message = format!("`{text}` is {} and cannot be {}", value.describe(), operator.verb());
-        let help = format!("take its parts, as in `{text}{}`", super::first_part(value));
-        self.error(Diagnostic::new(Location::of(syntax), message).help(help))
+        refuse!(self, syntax, "`{text}` is {} and cannot be {}", value.describe(), operator.verb();
+            help "take its parts, as in `{text}{}`", super::first_part(value))
     }
 
-    fn sum(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>, minus: bool) -> Option<Value<'g>> {
-        let at = link;
-        let combine = |a: Expr<'g>, b: Expr<'g>| if minus { a - b } else { a + b };
+    fn sum(&mut self, operator: Operator, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         let (left, right) = match (left, right) {
             (Value::Identity(a), Value::Identity(b)) => {
-                return self.build(at, &[a, b], Growth::Sum, || combine(a, b)).map(Value::Identity);
+                return self.grow(at, &[a, b], Growth::Sum, || operator.combine(a, b)).map(Value::Identity);
             }
-            (Value::Identity(scale), Value::Matrix(matrix)) => (self.fitted(&link.right, scale, matrix)?, matrix),
-            (Value::Matrix(matrix), Value::Identity(scale)) => (matrix, self.fitted(&link.left, scale, matrix)?),
-            (Value::Matrix(left), Value::Matrix(right)) => (left, right),
+            (Value::Identity(scale), Value::Matrix(matrix)) => (self.fitted(&at.right, scale, matrix)?, matrix),
+            (Value::Matrix(matrix), Value::Identity(scale)) => (matrix, self.fitted(&at.left, scale, matrix)?),
             // by construction: quaternions, tuples and arrays have been dealt with
-            _ => return None,
+            (left, right) => (left.matrix()?, right.matrix()?),
         };
         if left.shape() != right.shape() {
-            return self.error(unequal_shapes(link, left, right, minus));
+            return self.refuse(unequal_shapes(at, left, right, operator.verb()));
         }
-        self.build(at, &[left, right], Growth::Sum, || combine(left, right)).map(Value::Matrix)
+        self.build(at, &[left, right], Growth::Sum, || operator.combine(left, right))
     }
 
     /// The identity that fits a matrix, times a scalar.
@@ -141,75 +126,60 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return Some(scale);
         }
         let text = spell(other);
-        let error = match shape.is_scalar() {
-            true => {
-                Diagnostic::new(Location::of(other), format!("`I` is an identity matrix, but `{text}` is a scalar"))
-                    .help("write `1` for the number, or multiply the scalar by `I`")
-            }
-            false => Diagnostic::new(
-                Location::of(other),
-                format!("`I` is square, but `{text}` is {shape}: they cannot be added"),
-            )
-            .help("leave `I` out")
-            .note("the identity of a group of translations is the zero vector"),
-        };
-        self.error(error)
+        if shape.is_scalar() {
+            refuse!(self, other, "`I` is an identity matrix, but `{text}` is a scalar";
+                help "write `1` for the number, or multiply the scalar by `I`");
+        }
+        refuse!(self, other, "`I` is square, but `{text}` is {shape}: they cannot be added";
+            help "leave `I` out";
+            note "the identity of a group of translations is the zero vector")
     }
 
-    fn product(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
-        let at = link;
+    fn product(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         let (left, right) = match (left, right) {
             (Value::Identity(a), Value::Identity(b)) => {
-                return self.build(at, &[a, b], Growth::Sum, || a * b).map(Value::Identity);
+                return self.grow(at, &[a, b], Growth::Sum, || a * b).map(Value::Identity);
             }
             (Value::Identity(scale), Value::Matrix(other)) | (Value::Matrix(other), Value::Identity(scale)) => {
-                let product = self.build(at, &[scale, other], Growth::Sum, || scale * other)?;
+                let product = self.grow(at, &[scale, other], Growth::Sum, || scale * other)?;
                 return Some(if other.shape().is_scalar() { Value::Identity(product) } else { Value::Matrix(product) });
             }
-            (Value::Matrix(left), Value::Matrix(right)) => (left, right),
             // by construction: quaternions, tuples and arrays have been dealt with
-            _ => return None,
+            (left, right) => (left.matrix()?, right.matrix()?),
         };
-        let scales = left.shape().is_scalar() || right.shape().is_scalar();
-        if !scales && left.shape().columns != right.shape().rows {
-            let affine = self.group_of(left).and_then(Group::linear_part);
-            return self.error(match affine == Some(right.shape().rows) && right.shape().is_column() {
-                true => point_moved(link, left, right),
-                false => no_product(link, left, right),
-            });
+        let (l, r) = (left.shape(), right.shape());
+        if !l.is_scalar() && !r.is_scalar() && l.columns != r.rows {
+            let is_point = r.is_column() && self.group_of(left).and_then(Group::linear_part) == Some(r.rows);
+            return self.refuse(if is_point { point_moved(at, left, right) } else { no_product(at, left, right) });
         }
-        let product = self.build(at, &[left, right], Growth::Product, || left * right)?;
+        let product = self.grow(at, &[left, right], Growth::Product, || left * right)?;
         self.note_product(left, right, product);
         Some(Value::Matrix(product))
     }
 
-    fn quotient(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
-        let at = link;
-        let divisor = self.as_matrix(&link.right, right)?;
+    fn quotient(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
+        let syntax = &at.right;
+        let divisor = self.as_matrix(syntax, right)?;
         if !divisor.shape().is_scalar() {
-            let text = spell(&link.right);
-            let message = format!("`{text}` is {}: only scalars divide", divisor.shape());
-            let error = Diagnostic::new(Location::of(&link.right), message);
-            let help =
-                divisor.shape().is_square().then(|| format!("multiply by `{}.inverse()`", parenthesized(&link.right)));
-            return self.error(match help {
-                Some(help) => error.help(help),
-                None => error.note("a quotient is a product with a reciprocal, which only scalars have"),
+            let error = error!(syntax, "`{}` is {}: only scalars divide", spell(syntax), divisor.shape());
+            return self.refuse(if divisor.shape().is_square() {
+                error.help(format!("multiply by `{}.inverse()`", parenthesized(syntax)))
+            } else {
+                error.note("a quotient is a product with a reciprocal, which only scalars have")
             });
         }
         if divisor.is_zero() {
-            let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-            return self.error(Diagnostic::new(Location::of(&link.right), message).note("it simplifies to 0"));
+            return self.refuse(division_by_zero(syntax).note("it simplifies to 0"));
         }
         match left {
             Value::Identity(scale) => {
-                self.build(at, &[scale, divisor], Growth::Sum, || scale / divisor).map(Value::Identity)
-            }
-            Value::Matrix(left) => {
-                self.build(at, &[left, divisor], Growth::Product, || left / divisor).map(Value::Matrix)
+                self.grow(at, &[scale, divisor], Growth::Sum, || scale / divisor).map(Value::Identity)
             }
             // by construction: quaternions, tuples and arrays have been dealt with
-            _ => None,
+            left => {
+                let left = left.matrix()?;
+                self.build(at, &[left, divisor], Growth::Product, || left / divisor)
+            }
         }
     }
 
@@ -221,13 +191,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let floor = (&left / &right).floor();
                 Some(Value::Matrix(self.graph().number(left - floor * right)))
             }
-            _ => {
-                let error = Diagnostic::new(
-                    Location::of(link),
-                    format!("`{}` is no remainder of whole numbers", spell_link(link)),
-                );
-                self.error(error.note("`%` is for indices, as in `q[(i + 1) % 4]`"))
-            }
+            _ => refuse!(self, link, "`{}` is no remainder of whole numbers", spell(&Syntax::Binary(link.clone()));
+                note "`%` is for indices, as in `q[(i + 1) % 4]`"),
         }
     }
 
@@ -236,30 +201,23 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match unary.op {
             UnOp::Neg(_) => match self.elaborate(&unary.expr)? {
                 Value::Identity(scale) => Some(Value::Identity(-scale)),
-                Value::Quaternion(q) => self.build(unary, &[q], Growth::Sum, || -q).map(Value::Quaternion),
+                Value::Quaternion(q) => self.grow(unary, &[q], Growth::Sum, || -q).map(Value::Quaternion),
                 Value::Sum(terms) => Some(Value::Sum(super::sites::scaled(terms, self.graph().integer(-1)))),
                 value => {
                     let matrix = self.as_matrix(&unary.expr, value)?;
-                    self.build(unary, &[matrix], Growth::Sum, || -matrix).map(Value::Matrix)
+                    self.build(unary, &[matrix], Growth::Sum, || -matrix)
                 }
             },
-            UnOp::Deref(_) => {
-                let error = Diagnostic::new(Location::of(&unary.op), "there is nothing to dereference");
-                self.error(error.help(format!("write `{}`", spell(&unary.expr))).note("every value is copied"))
-            }
-            _ => {
-                let error = Diagnostic::new(
-                    Location::of(&unary.op),
-                    format!("this operator has no meaning in the {}", self.key),
-                );
-                self.error(error.note("the only sign is `-`"))
-            }
+            UnOp::Deref(_) => refuse!(self, &unary.op, "there is nothing to dereference";
+                help "write `{}`", spell(&unary.expr); note "every value is copied"),
+            _ => refuse!(self, &unary.op, "this operator has no meaning in the {}", self.key;
+                note "the only sign is `-`"),
         }
     }
 }
 
-fn spell_link(link: &ExprBinary) -> String {
-    spell(&Syntax::Binary(link.clone()))
+pub(super) fn division_by_zero(divisor: &Syntax) -> Diagnostic {
+    error!(divisor, "`{}` is zero: nothing can be divided by it", spell(divisor))
 }
 
 /// The text of an operand, in parentheses where a method needs them.

@@ -1,109 +1,72 @@
 //! Rows, columns and blocks: `row(0)`, `fixed_view::<2, 2>(0, 0)`, `xyz()`.
 
 use clebsch_symbolic::{Expr, Group, Shape};
-use syn::{BinOp, Expr as Syntax, ExprMethodCall, GenericArgument, Generics};
+use syn::{BinOp, Expr as Syntax, ExprMethodCall, GenericArgument};
 
-use super::super::sizes::size_argument;
 use super::super::value::Value;
-use super::tables::Special;
+use super::tables::Part;
 use super::{Elaborator, Growth};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, refuse};
 use crate::parse::spell;
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// Rows, columns, blocks.
-    pub(super) fn part(&mut self, special: Special, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
-        let Shape { rows, columns } = a.shape();
-        let name = call.method.to_string();
-        let sizes = self.turbofish(special, call)?;
-        let size = |position: usize| sizes.get(position).copied().unwrap_or(1);
-        let shape = match special {
-            Special::Row => Shape::new(1, columns),
-            Special::Column => Shape::new(rows, 1),
-            Special::FixedRows => Shape::new(size(0), columns),
-            Special::FixedColumns => Shape::new(rows, size(0)),
-            Special::FixedView => Shape::new(size(0), size(1)),
-            Special::FirstTwo => Shape::vector(2),
-            _ => Shape::vector(3),
-        };
-        if shape.rows > rows
-            || shape.columns > columns
-            || (columns > 1 && matches!(special, Special::FirstTwo | Special::FirstThree))
-        {
-            let message = format!("`{}` is {}: `{name}` is {shape}", spell(&call.receiver), a.shape());
-            return self.error(Diagnostic::new(call.method.span(), message).note("a part lies inside of the whole"));
+    pub(super) fn part(&mut self, part: Part, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
+        let (name, all) = (&call.method, a.shape());
+        let written: Vec<&GenericArgument> = call.turbofish.iter().flat_map(|turbofish| &turbofish.args).collect();
+        if written.len() != part.sizes {
+            let sizes = ["", "::<2>", "::<2, 2>"][part.sizes];
+            refuse!(self, name, "`{name}` needs {} sizes", part.sizes; help "write `{name}{sizes}(…)`");
+        }
+        let shape = (part.shape)(all, &self.sizes(&written)?);
+        // `xy` and `xyz` are of vectors
+        let needs_vector = part.starts == [false; 2];
+        if shape.rows > all.rows || shape.columns > all.columns || (needs_vector && all.columns > 1) {
+            refuse!(self, name, "`{}` is {all}: `{name}` is {shape}", spell(&call.receiver);
+                note "a part lies inside of the whole");
         }
         let of = format!("the starts of `{name}` in `{}`", spell(&call.receiver));
-        let (row, column) = match special {
-            Special::Row | Special::FixedRows => (self.start(&call.args[0], rows - shape.rows, &of)?, 0),
-            Special::Column | Special::FixedColumns => (0, self.start(&call.args[0], columns - shape.columns, &of)?),
-            Special::FixedView => {
-                let row = self.start(&call.args[0], rows - shape.rows, &of);
-                let column = self.start(&call.args[1], columns - shape.columns, &of);
-                row.zip(column)?
-            }
-            _ => (0, 0),
+        let mut start = |syntax: Option<&Syntax>, last: usize| match syntax {
+            Some(syntax) => self.position(syntax, last + 1, &of),
+            None => Some(0),
         };
-        self.build(call, &[a], Growth::Sum, || a.block(row, column, shape)).map(Value::Matrix)
+        let row = start(call.args.first().filter(|_| part.starts[0]), all.rows - shape.rows);
+        let column = start(call.args.last().filter(|_| part.starts[1]), all.columns - shape.columns);
+        let (row, column) = row.zip(column)?;
+        self.build(call, &[a], Growth::Sum, || a.block(row, column, shape))
     }
 
-    /// `rotation()` and `translation()` of an element of SE(n), Aff(n) or Sim(n), an (n+1)×(n+1) matrix (A x; 0 1).
-    pub(super) fn of_affine(&mut self, special: Special, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
-        let group = self.group_of(a);
-        let Some(n) = group.and_then(Group::linear_part) else {
-            let (name, text) = (&call.method, spell(&call.receiver));
-            let message = match group {
-                Some(group) => {
-                    format!("`{text}` is in {}: `{name}` is of SE<n>, Aff<n> and Sim<n>", group.name(self.graph()))
-                }
-                None => format!("`{text}` is {}, but `{name}` is of an element of SE<n>, Aff<n> or Sim<n>", a.shape()),
-            };
-            let error = Diagnostic::new(call.method.span(), message).maybe_help(first_of_difference(call));
-            return self.error(
-                error.note("group elements are the arguments that are typed as one, their products and inverses"),
-            );
-        };
-        let part = match special {
-            Special::Rotation => self.build(call, &[a], Growth::Sum, || a.block(0, 0, Shape::square(n)))?,
-            _ => self.build(call, &[a], Growth::Sum, || a.block(0, n, Shape::vector(n)))?,
-        };
-        match (special, group) {
-            (Special::Rotation, Some(Group::SpecialEuclidean(n))) if n > 1 => {
-                self.members.insert(part, Group::SpecialOrthogonal(n));
-            }
-            (Special::Rotation, Some(Group::Affine(n))) => {
-                self.members.insert(part, Group::GeneralLinear(n));
-            }
+    /// A of an element (A x; 0 1) of SE(n), Aff(n) or Sim(n), an (n+1)×(n+1) matrix.
+    pub(super) fn rotation(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
+        let (group, n) = self.affine_group(call, a)?;
+        let linear = self.grow(call, &[a], Growth::Sum, || a.block(0, 0, Shape::square(n)))?;
+        match group {
+            Group::SpecialEuclidean(n) if n > 1 => self.members.insert(linear, Group::SpecialOrthogonal(n)),
+            Group::Affine(n) => self.members.insert(linear, Group::GeneralLinear(n)),
             _ => {}
         }
-        Some(Value::Matrix(part))
+        Some(Value::Matrix(linear))
     }
 
-    fn start(&mut self, syntax: &Syntax, last: usize, of: &str) -> Option<usize> {
-        self.position(syntax, last + 1, of)
+    /// x of an element (A x; 0 1) of SE(n), Aff(n) or Sim(n).
+    pub(super) fn translation(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
+        let (_, n) = self.affine_group(call, a)?;
+        self.build(call, &[a], Growth::Sum, || a.block(0, n, Shape::vector(n)))
     }
 
-    /// The sizes in `fixed_view::<2, 2>`.
-    fn turbofish(&mut self, special: Special, call: &ExprMethodCall) -> Option<Vec<usize>> {
-        let expected = match special {
-            Special::FixedRows | Special::FixedColumns => 1,
-            Special::FixedView => 2,
-            _ => 0,
+    /// The group of an element with a linear part, and the size of that part.
+    fn affine_group(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<(Group, usize)> {
+        let group = self.group_of(a);
+        if let Some((group, n)) = group.and_then(|group| Some((group, group.linear_part()?))) {
+            return Some((group, n));
+        }
+        let (name, text, shape) = (&call.method, spell(&call.receiver), a.shape());
+        let message = match group.map(|group| group.name(self.graph())) {
+            Some(group) => format!("`{text}` is in {group}: `{name}` is of SE<n>, Aff<n> and Sim<n>"),
+            None => format!("`{text}` is {shape}, but `{name}` is of an element of SE<n>, Aff<n> or Sim<n>"),
         };
-        let given: Vec<&GenericArgument> = call.turbofish.iter().flat_map(|turbofish| turbofish.args.iter()).collect();
-        if given.len() != expected {
-            let sizes = ["", "::<2>", "::<2, 2>"][expected];
-            let error = Diagnostic::new(call.method.span(), format!("`{}` needs {expected} sizes", call.method));
-            return self.error(error.help(format!("write `{}{sizes}(…)`", call.method)));
-        }
-        let mut sizes = Vec::new();
-        for argument in given {
-            match size_argument(argument, &Generics::default()) {
-                Ok(size) => sizes.push(size),
-                Err(error) => return self.error(error),
-            }
-        }
-        Some(sizes)
+        let error = Diagnostic::new(name, message).maybe_help(first_of_difference(call));
+        self.refuse(error.note("group elements are the arguments that are typed as one, their products and inverses"))
     }
 }
 

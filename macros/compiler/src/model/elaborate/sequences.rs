@@ -1,11 +1,12 @@
 //! Arrays, tuples, ranges, and what is done to them: `[a, b]`, `(0..3).map(|i| …).sum()`.
 
+use clebsch_symbolic::Expr;
 use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, ExprTuple, RangeLimits};
 
 use super::super::sizes::TERMS;
 use super::super::value::Value;
 use super::{Elaborator, Growth};
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::refuse;
 use crate::parse::{Pattern, spell};
 
 /// The largest number in a range.
@@ -38,8 +39,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `a..b`, an array of whole numbers.
     pub(super) fn range(&mut self, range: &ExprRange) -> Option<Value<'g>> {
         let (Some(start), Some(end)) = (&range.start, &range.end) else {
-            let error = Diagnostic::new(Location::of(range), "a range has a start and an end");
-            return self.error(error.help("write `0..3`"));
+            refuse!(self, range, "a range has a start and an end"; help "write `0..3`");
         };
         if self.context.power.is_some() {
             return self.range_of_power(range, start, end);
@@ -53,14 +53,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let end = self.position(end, RANGE, "ends of ranges");
         let (start, end) = start.zip(end)?;
         let end = if matches!(range.limits, RangeLimits::Closed(_)) { end.saturating_add(1) } else { end };
-        if end.saturating_sub(start) > TERMS {
-            let message = format!(
-                "the range `{}` has {} terms, more than {TERMS}",
-                spell(&Syntax::Range(range.clone())),
-                end - start
-            );
-            return self
-                .error(Diagnostic::new(Location::of(range), message).note("ranges are written out at compile time"));
+        let count = end.saturating_sub(start);
+        if count > TERMS {
+            let text = spell(&Syntax::Range(range.clone()));
+            refuse!(self, range, "the range `{text}` has {count} terms, more than {TERMS}";
+                note "ranges are written out at compile time");
         }
         let graph = self.graph();
         Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).collect()))
@@ -69,66 +66,50 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `.map(|i| …)`.
     pub(super) fn map(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
         let (pattern, closure) = self.closure_of_map(call)?;
-        let mut values = Vec::with_capacity(parts.len());
-        for part in parts {
-            let mark = self.scope.mark();
-            let errors = self.context.diagnostics.len();
-            self.bind(&pattern, Some(part), "an argument");
-            let value = match self.context.diagnostics.len() == errors {
-                true => self.elaborate(&closure.body),
-                false => None,
-            };
-            self.scope.release(mark);
-            // what is wrong in one term is wrong in all
-            values.push(value?);
-        }
-        Some(Value::Array(values))
+        // what is wrong in one term is wrong in all
+        let values = parts.into_iter().map(|part| self.applied(&pattern, closure, part));
+        values.collect::<Option<_>>().map(Value::Array)
+    }
+
+    /// The value of a closure with one argument.
+    pub(super) fn applied(
+        &mut self,
+        pattern: &Pattern,
+        closure: &ExprClosure,
+        argument: Value<'g>,
+    ) -> Option<Value<'g>> {
+        let errors = self.context.diagnostics.len();
+        self.with_names(|this| {
+            this.bind(pattern, Some(argument), "an argument");
+            let is_bound = this.context.diagnostics.len() == errors;
+            is_bound.then(|| this.elaborate(&closure.body)).flatten()
+        })
     }
 
     /// The closure of `.map(…)`, with its argument.
     pub(super) fn closure_of_map<'s>(&mut self, call: &'s ExprMethodCall) -> Option<(Pattern, &'s ExprClosure)> {
         let Some(Syntax::Closure(closure)) = call.args.first().filter(|_| call.args.len() == 1) else {
-            let error = Diagnostic::new(Location::of(&call.args), "`map` takes a closure");
-            return self.error(error.help("write `.map(|i| …)`"));
+            refuse!(self, &call.args, "`map` takes a closure"; help "write `.map(|i| …)`");
         };
-        Some((self.only_argument(closure)?, closure))
-    }
-
-    fn only_argument(&mut self, closure: &ExprClosure) -> Option<Pattern> {
-        match closure.inputs.len() {
-            1 => Pattern::read(&closure.inputs[0], &mut self.context.diagnostics),
-            _ => {
-                let error = Diagnostic::new(Location::of(closure), "the closure of `map` has one argument");
-                self.error(error.help("write `.map(|i| …)`"))
-            }
+        if closure.inputs.len() != 1 {
+            refuse!(self, closure, "the closure of `map` has one argument"; help "write `.map(|i| …)`");
         }
+        Some((Pattern::read(&closure.inputs[0], &self.context.diagnostics)?, closure))
     }
 
     /// `.sum()`.
     pub(super) fn total(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
         let at = &Syntax::MethodCall(call.clone());
-        let mut terms = Vec::with_capacity(parts.len());
-        for part in parts {
-            terms.push(self.as_matrix(at, part)?);
-        }
-        let Some(&first) = terms.first() else {
+        let terms: Vec<Expr<'g>> = parts.into_iter().map(|part| self.as_matrix(at, part)).collect::<Option<_>>()?;
+        let Some((&first, others)) = terms.split_first() else {
             return Some(Value::Matrix(self.graph().integer(0)));
         };
-        if let Some(other) = terms.iter().find(|term| term.shape() != first.shape()) {
-            let message = format!(
-                "the terms of `{}` are {} and {}: they cannot be added",
-                spell(&call.receiver),
-                first.shape(),
-                other.shape()
-            );
-            return self.error(
-                Diagnostic::new(Location::of(&call.receiver), message).note("only terms of one shape have a sum"),
-            );
+        if let Some(other) = others.iter().find(|term| term.shape() != first.shape()) {
+            let (text, one, other) = (spell(&call.receiver), first.shape(), other.shape());
+            refuse!(self, &call.receiver, "the terms of `{text}` are {one} and {other}: they cannot be added";
+                note "only terms of one shape have a sum");
         }
-        let mut sum = first;
-        for &term in &terms[1..] {
-            sum = self.build(at, &[sum, term], Growth::Sum, || sum + term)?;
-        }
-        Some(Value::Matrix(sum))
+        let sum = others.iter().try_fold(first, |sum, &term| self.grow(at, &[sum, term], Growth::Sum, || sum + term));
+        sum.map(Value::Matrix)
     }
 }

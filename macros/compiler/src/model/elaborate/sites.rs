@@ -4,10 +4,10 @@ use clebsch_symbolic::Expr;
 use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Linear, SiteIndex, Term};
-use super::super::value::{Each, PerSite, Value};
-use super::operators::Operator;
+use super::super::value::{Each, Value};
+use super::operators::{Operator, division_by_zero};
 use super::{Elaborator, shortened};
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::refuse;
 use crate::parse::spell;
 
 /// Sums inside each other.
@@ -27,15 +27,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `a..b` in a power, where the ends may depend on N and on the indices of the sums around.
     pub(super) fn range_of_power(&mut self, range: &ExprRange, start: &Syntax, end: &Syntax) -> Option<Value<'g>> {
         let (from, to) = (self.scalar(start), self.scalar(end));
-        let (from, to) = (from?, to?);
+        let (from, to) = from.zip(to)?;
         if from.as_number().is_some() && to.as_number().is_some() {
             return self.range_of_numbers(range, start, end);
         }
         for (syntax, expr) in [(start, from), (end, to)] {
             if !Linear::is_declarable(expr) {
-                let error = Diagnostic::new(Location::of(syntax), format!("`{}` is no end of a range", spell(syntax)));
-                return self
-                    .error(error.help("write a whole number, `N`, an index, or sums of these, as in `i + 1..N`"));
+                refuse!(self, syntax, "`{}` is no end of a range", spell(syntax);
+                    help "write a whole number, `N`, an index, or sums of these, as in `i + 1..N`");
             }
         }
         let closed = matches!(range.limits, RangeLimits::Closed(_));
@@ -49,19 +48,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let graph = self.graph();
         let power = self.context.power.as_mut()?;
         if power.ranges.len() == SUMS {
-            let error = Diagnostic::new(Location::of(call), format!("more than {SUMS} ranges inside each other"));
-            return self.error(error.note("the terms of such a sum are too many for any N"));
+            refuse!(self, call, "more than {SUMS} ranges inside each other";
+                note "the terms of such a sum are too many for any N");
         }
         let index = power.index(graph);
         power.ranges.push(range);
-        let mark = self.scope.mark();
-        let errors = self.context.diagnostics.len();
-        self.bind(&pattern, Some(Value::Matrix(index)), "an argument");
-        let value = match self.context.diagnostics.len() == errors {
-            true => self.elaborate(&closure.body),
-            false => None,
-        };
-        self.scope.release(mark);
+        let value = self.applied(&pattern, closure, Value::Matrix(index));
         self.context.power.as_mut()?.ranges.pop();
         Some(Value::Sequence(range, Box::new(value?)))
     }
@@ -73,20 +65,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
         range: (Expr<'g>, Expr<'g>),
         body: Value<'g>,
     ) -> Option<Value<'g>> {
-        let terms = match body {
-            Value::Sum(terms) => terms,
-            Value::Matrix(value) if value.shape().is_scalar() => vec![Term { ranges: Vec::new(), value }],
-            other => {
-                let message = format!("the terms of this sum over sites are {}, not scalars", other.describe());
-                let error = Diagnostic::new(Location::of(&call.receiver), message);
-                return self.error(error.help("add scalars, as in `(0..N).map(|i| self.field.dot(&q[i])).sum()`"));
-            }
+        let Some(mut terms) = body.terms() else {
+            refuse!(self, &call.receiver, "the terms of this sum over sites are {}, not scalars", body.describe();
+                help "add scalars, as in `(0..N).map(|i| self.field.dot(&q[i])).sum()`");
         };
-        let within = |mut term: Term<'g>| {
-            term.ranges.insert(0, range);
-            term
-        };
-        Some(Value::Sum(terms.into_iter().map(within).collect()))
+        terms.iter_mut().for_each(|term| term.ranges.insert(0, range));
+        Some(Value::Sum(terms))
     }
 
     /// Sums over sites are added, and multiplied and divided by scalars.
@@ -99,33 +83,25 @@ impl<'g> Elaborator<'_, '_, 'g> {
     ) -> Option<Value<'g>> {
         let graph = self.graph();
         let sign = graph.integer(if operator == Operator::Subtract { -1 } else { 1 });
-        match (operator, left, right) {
+        let (terms, factor) = match (operator, left, right) {
             (Operator::Add | Operator::Subtract, left, right) => {
                 let mut terms = self.terms(&link.left, left)?;
                 terms.extend(scaled(self.terms(&link.right, right)?, sign));
-                Some(Value::Sum(terms))
+                return Some(Value::Sum(terms));
             }
-            (Operator::Multiply, Value::Sum(terms), factor) => {
-                let factor = self.factor(&link.right, factor)?;
-                Some(Value::Sum(scaled(terms, factor)))
-            }
-            (Operator::Multiply, factor, Value::Sum(terms)) => {
-                let factor = self.factor(&link.left, factor)?;
-                Some(Value::Sum(scaled(terms, factor)))
-            }
+            (Operator::Multiply, Value::Sum(terms), factor) => (terms, self.factor(&link.right, factor)?),
+            (Operator::Multiply, factor, Value::Sum(terms)) => (terms, self.factor(&link.left, factor)?),
             (Operator::Divide, Value::Sum(terms), divisor) => {
                 let divisor = self.factor(&link.right, divisor)?;
                 if divisor.is_zero() {
-                    let message = format!("`{}` is zero: nothing can be divided by it", spell(&link.right));
-                    return self.error(Diagnostic::new(Location::of(&link.right), message));
+                    return self.refuse(division_by_zero(&link.right));
                 }
-                Some(Value::Sum(scaled(terms, divisor.powi(-1))))
+                (terms, divisor.powi(-1))
             }
-            (_, left, _) => {
-                let sum = if matches!(left, Value::Sum(_)) { &link.left } else { &link.right };
-                self.error(super::open_sum(sum))
-            }
-        }
+            (_, Value::Sum(_), _) => return self.refuse(super::open_sum(&link.left)),
+            _ => return self.refuse(super::open_sum(&link.right)),
+        };
+        Some(Value::Sum(scaled(terms, factor)))
     }
 
     /// The terms of a sum, or a scalar as its only one.
@@ -138,67 +114,51 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// A scalar beside a sum.
     fn factor(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
-        if matches!(value, Value::Sum(_)) {
-            return self.error(super::open_sum(syntax));
-        }
         let expr = self.as_matrix(syntax, value)?;
-        if expr.shape().is_scalar() {
-            return Some(expr);
+        if !expr.shape().is_scalar() {
+            let text = shortened(&spell(syntax));
+            refuse!(self, syntax, "`{text}` is {}, and a sum over sites is a scalar", expr.shape();
+                note "sums over sites are added, and multiplied by scalars");
         }
-        let message = format!("`{}` is {}, and a sum over sites is a scalar", shortened(&spell(syntax)), expr.shape());
-        self.error(
-            Diagnostic::new(Location::of(syntax), message).note("sums over sites are added, and multiplied by scalars"),
-        )
+        Some(expr)
     }
 
     /// `q[i]`: what a site has.
-    pub(super) fn site(&mut self, index: &ExprIndex, per_site: PerSite<'g>) -> Option<Value<'g>> {
+    pub(super) fn site(&mut self, index: &ExprIndex, of: Each, own: Value<'g>) -> Option<Value<'g>> {
         let place = match self.elaborate(&index.index)? {
             Value::Wrapped(expr) => SiteIndex { index: expr, wraps: true },
             value => SiteIndex { index: self.as_matrix(&index.index, value)?, wraps: false },
         };
         let text = spell(&index.index);
         if !place.index.shape().is_scalar() || !Linear::is_declarable(place.index) {
-            let error = Diagnostic::new(Location::of(&index.index), format!("`{text}` is no index of a site"));
-            return self.error(error.help("write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`"));
+            refuse!(self, &index.index, "`{text}` is no index of a site";
+                help "write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`");
         }
-        let graph = self.graph();
-        let fields = self.context.fields;
+        let (graph, fields) = (self.graph(), self.context.fields);
         let power = self.context.power.as_mut()?;
         let name = power.name.clone();
         if !power.is_inside(&place) {
-            let message = format!("`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone())));
-            let help =
-                format!("write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
-            return self.error(Diagnostic::new(Location::of(&index.index), message).help(help));
+            refuse!(self, &index.index, "`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone()));
+                help "write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
         }
         let is_own = !place.wraps
             && power.ranges.len() == 1
             && place.index.as_symbol().is_some_and(|data| data.role == clebsch_symbolic::Role::Site(0));
-        let of_terms = self.key == "potential";
-        if is_own && !of_terms {
-            return Some(*per_site.own);
-        }
-        match per_site.of {
-            Each::Configuration if of_terms => {
+        match (of, self.key == "potential") {
+            (_, false) if is_own => Some(own),
+            (Each::Configuration, true) => {
                 let number = power.place(place);
                 Some(power.configuration_at(graph, number))
             }
-            Each::Field(field) if of_terms => {
+            (Each::Field(field), true) => {
                 let parameter = &fields.parameters[field];
                 let number = power.place(place);
-                let leaves = power.entry(graph, field, number, parameter);
-                let leaves: Vec<Value<'g>> = leaves.into_iter().map(Value::Matrix).collect();
-                Some(Value::nested(&parameter.structure, &leaves))
+                let leaves = power.entry(graph, field, number, parameter).into_iter().map(Value::Matrix);
+                Some(Value::nested(&parameter.structure, &leaves.collect::<Vec<_>>()))
             }
-            _ => {
-                let key = self.key;
-                let error =
-                    Diagnostic::new(Location::of(index), format!("the {key} of a site depends on that site alone"));
-                self.error(error.help(format!("write `(0..{name}).map(|i| …)` with the index `i` alone")).note(
-                    "the equation of a step is solved site by site; what ties sites to each other belongs to the potential",
-                ))
-            }
+            _ => refuse!(self, index, "the {} of a site depends on that site alone", self.key;
+                help "write `(0..{name}).map(|i| …)` with the index `i` alone";
+                note "the equation of a step is solved site by site; what ties sites to each other belongs to the potential"),
         }
     }
 }

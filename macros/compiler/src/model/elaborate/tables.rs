@@ -1,11 +1,18 @@
 //! The methods of closures as data: name, what they are applied to, and the expression that they make.
 
-use clebsch_symbolic::{Expr, Function};
+use clebsch_symbolic::{Expr, Function, Shape};
+use syn::ExprMethodCall;
+
+use super::{Elaborator, Value};
 
 /// A map of matrices.
 pub(super) type Unary = for<'g> fn(Expr<'g>) -> Expr<'g>;
 /// A map of pairs of matrices.
 pub(super) type Binary = for<'g> fn(Expr<'g>, Expr<'g>) -> Expr<'g>;
+
+/// A method with a function of its own, of a matrix.
+pub(super) type Method =
+    for<'e, 'c, 'g> fn(&mut Elaborator<'e, 'c, 'g>, &ExprMethodCall, Expr<'g>) -> Option<Value<'g>>;
 
 /// What a method is applied to, and how it makes its value.
 #[derive(Copy, Clone)]
@@ -20,34 +27,35 @@ pub(super) enum Rule {
     Three(Unary),
     /// A scalar.
     Scalar(Function),
+    /// A scalar, by a function of its own.
+    OfScalar(Method),
     /// Two matrices of the same shape.
     Pair(Binary),
     /// Two vectors of three components.
     PairOfThree(Binary),
-    /// A method with a function of its own.
-    Special(Special),
+    /// A part of a matrix.
+    Part(Part),
+    /// Any matrix, by a function of its own.
+    Special(Method),
+    /// An array, or a range of sites.
+    Map,
+    /// An array, or values for a range of sites.
+    Sum,
 }
 
-/// Methods that are no plain maps of matrices.
-#[derive(Copy, Clone, PartialEq, Eq)]
-pub(super) enum Special {
-    Sqrt,
-    Powi,
-    Powf,
-    Recip,
-    Norm,
-    Column,
-    Row,
-    FixedRows,
-    FixedColumns,
-    FixedView,
-    FirstTwo,
-    FirstThree,
-    Rotation,
-    Translation,
-    Matrix,
-    Map,
-    Sum,
+/// A part of a matrix.
+#[derive(Copy, Clone)]
+pub(super) struct Part {
+    /// The number of its sizes that are written, `::<2, 2>`.
+    pub sizes: usize,
+    /// Its shape, from that of the matrix and the written sizes.
+    pub shape: fn(Shape, &[usize]) -> Shape,
+    /// Whether an argument says where it starts, along rows and along columns.
+    pub starts: [bool; 2],
+}
+
+const fn part(sizes: usize, starts: [bool; 2], shape: fn(Shape, &[usize]) -> Shape) -> Rule {
+    Rule::Part(Part { sizes, shape, starts })
 }
 
 /// All methods with their number of arguments.
@@ -55,7 +63,7 @@ pub(super) enum Special {
 pub(super) const METHODS: [(&str, usize, Rule); 39] = [
     ("transpose",      0, Rule::Any(|a| a.transpose())),
     ("norm_squared",   0, Rule::Any(|a| a.norm_squared())),
-    ("norm",           0, Rule::Special(Special::Norm)),
+    ("norm",           0, Rule::Special(|this, call, a| this.norm(call, a))),
     ("normalize",      0, Rule::Vector(|a| a.normalize())),
     ("trace",          0, Rule::Square(|a| a.trace())),
     ("determinant",    0, Rule::Square(|a| a.determinant())),
@@ -65,22 +73,22 @@ pub(super) const METHODS: [(&str, usize, Rule); 39] = [
     ("dot",            1, Rule::Pair(|a, b| a.dot(b))),
     ("component_mul",  1, Rule::Pair(|a, b| a.hadamard(b))),
     ("cross",          1, Rule::PairOfThree(|a, b| a.cross(b))),
-    ("column",         1, Rule::Special(Special::Column)),
-    ("row",            1, Rule::Special(Special::Row)),
-    ("fixed_rows",     1, Rule::Special(Special::FixedRows)),
-    ("fixed_columns",  1, Rule::Special(Special::FixedColumns)),
-    ("fixed_view",     2, Rule::Special(Special::FixedView)),
-    ("xy",             0, Rule::Special(Special::FirstTwo)),
-    ("xyz",            0, Rule::Special(Special::FirstThree)),
-    ("rotation",       0, Rule::Special(Special::Rotation)),
-    ("translation",    0, Rule::Special(Special::Translation)),
-    ("matrix",         0, Rule::Special(Special::Matrix)),
-    ("map",            1, Rule::Special(Special::Map)),
-    ("sum",            0, Rule::Special(Special::Sum)),
-    ("sqrt",           0, Rule::Special(Special::Sqrt)),
-    ("powi",           1, Rule::Special(Special::Powi)),
-    ("powf",           1, Rule::Special(Special::Powf)),
-    ("recip",          0, Rule::Special(Special::Recip)),
+    ("column",         1, part(0, [false, true], |all, _| Shape::new(all.rows, 1))),
+    ("row",            1, part(0, [true, false], |all, _| Shape::new(1, all.columns))),
+    ("fixed_rows",     1, part(1, [true, false], |all, n| Shape::new(n[0], all.columns))),
+    ("fixed_columns",  1, part(1, [false, true], |all, n| Shape::new(all.rows, n[0]))),
+    ("fixed_view",     2, part(2, [true, true], |_, n| Shape::new(n[0], n[1]))),
+    ("xy",             0, part(0, [false, false], |_, _| Shape::vector(2))),
+    ("xyz",            0, part(0, [false, false], |_, _| Shape::vector(3))),
+    ("rotation",       0, Rule::Special(|this, call, a| this.rotation(call, a))),
+    ("translation",    0, Rule::Special(|this, call, a| this.translation(call, a))),
+    ("matrix",         0, Rule::Special(|this, call, a| this.velocity_matrix(call, a))),
+    ("map",            1, Rule::Map),
+    ("sum",            0, Rule::Sum),
+    ("sqrt",           0, Rule::OfScalar(|this, call, a| this.sqrt(call, a))),
+    ("powi",           1, Rule::OfScalar(|this, call, a| this.powi(call, a))),
+    ("powf",           1, Rule::OfScalar(|this, call, a| this.powf(call, a))),
+    ("recip",          0, Rule::OfScalar(|this, call, a| this.recip(call, a))),
     ("sin",            0, Rule::Scalar(Function::Sin)),
     ("cos",            0, Rule::Scalar(Function::Cos)),
     ("tan",            0, Rule::Scalar(Function::Tan)),
@@ -121,44 +129,17 @@ pub(super) const REFUSED: [(&str, &str, &str); 19] = [
 /// Methods by other names.
 #[rustfmt::skip]
 pub(super) const SYNONYMS: [(&str, &str); 24] = [
-    ("magnitude", "norm()"),
-    ("length", "norm()"),
-    ("len", "norm()"),
-    ("magnitude_squared", "norm_squared()"),
-    ("length_squared", "norm_squared()"),
-    ("norm2", "norm_squared()"),
-    ("normalized", "normalize()"),
-    ("try_inverse", "inverse()"),
-    ("pseudo_inverse", "inverse()"),
-    ("det", "determinant()"),
-    ("tr", "trace()"),
-    ("t", "transpose()"),
-    ("adjoint", "transpose()"),
-    ("pow", "powi(2)"),
-    ("sq", "powi(2)"),
-    ("square", "powi(2)"),
-    ("squared", "powi(2)"),
-    ("log", "ln()"),
-    ("hat", "cross_matrix()"),
-    ("skew", "cross_matrix()"),
-    ("to_skew", "cross_matrix()"),
-    ("hadamard", "component_mul(&b)"),
-    ("symmetrize", "symmetric_part()"),
-    ("into_iter", "map(|i| …)"),
+    ("magnitude", "norm()"), ("length", "norm()"), ("len", "norm()"),
+    ("magnitude_squared", "norm_squared()"), ("length_squared", "norm_squared()"), ("norm2", "norm_squared()"),
+    ("normalized", "normalize()"), ("try_inverse", "inverse()"), ("pseudo_inverse", "inverse()"),
+    ("det", "determinant()"), ("tr", "trace()"), ("t", "transpose()"), ("adjoint", "transpose()"),
+    ("pow", "powi(2)"), ("sq", "powi(2)"), ("square", "powi(2)"), ("squared", "powi(2)"), ("log", "ln()"),
+    ("hat", "cross_matrix()"), ("skew", "cross_matrix()"), ("to_skew", "cross_matrix()"),
+    ("hadamard", "component_mul(&b)"), ("symmetrize", "symmetric_part()"), ("into_iter", "map(|i| …)"),
 ];
 
 /// Methods that mathematics has no need of.
+#[rustfmt::skip]
 pub(super) const NEEDLESS: [&str; 12] = [
-    "clone",
-    "to_owned",
-    "into",
-    "into_inner",
-    "as_ref",
-    "iter",
-    "collect",
-    "unwrap",
-    "clone_owned",
-    "evaluate",
-    "eval",
-    "copied",
+    "clone", "to_owned", "into", "into_inner", "as_ref", "iter", "collect", "unwrap", "clone_owned", "evaluate", "eval", "copied",
 ];

@@ -1,6 +1,6 @@
 //! Tables: an expression and what it means, an expression and what is wrong with it.
 
-use super::super::slots::SharedNames;
+use super::super::slots::{COST, SharedNames};
 use clebsch_symbolic::{Graph, Property, Role, Shape, identity};
 
 use super::super::arguments::{Arguments, TypedArguments};
@@ -34,12 +34,12 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     );
     let declaration = parse(source.parse().expect("the table holds Rust"))?;
     let graph = Graph::new();
-    let mut diagnostics = Diagnostics::new();
-    let fields = fields::read(&graph, &declaration, &[], None, &mut diagnostics);
+    let diagnostics = Diagnostics::new();
+    let fields = fields::read(&graph, &declaration, &[], None, &diagnostics);
     diagnostics.propagate(())?;
-    let mut diagnostics = Diagnostics::new();
+    let diagnostics = Diagnostics::new();
     let TypedArguments { element, configuration, .. } =
-        arguments::of_action(&declaration.action, &mut diagnostics).expect("two typed arguments");
+        arguments::of_action(&declaration.action, &diagnostics).expect("two typed arguments");
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
@@ -59,7 +59,8 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
     };
     let closure = declaration.kinetic.closure();
-    let scope = arguments.cost_scope(closure, &mut diagnostics);
+    let matched = arguments.matched(closure, COST, &diagnostics);
+    let scope = arguments.scope(&matched, &[], &diagnostics);
     let mut context = Context { graph: &graph, fields: &fields, constants: Vec::new(), power: None, diagnostics };
     let value = Elaborator::new(&mut context, "cost", scope).elaborate(&closure.body);
     context.diagnostics.propagate(())?;

@@ -1,147 +1,96 @@
 //! What a declaration can have that does not go with everything.
 
-/// A feature: a key, a value of a dial, or what a stage finds out about a declaration.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub(crate) enum Feature {
-    // keys
-    Action,
-    Cost,
-    Lagrangian,
-    Potential,
-    Force,
-    ForceOn,
-    Symmetry,
-    Controls,
-    Dynamics,
-    Effort,
-    Bounds,
-    Endpoint,
-    Isotropy,
-    Order,
-    Discretization,
-    Chart,
-    Tolerance,
-    Iterations,
-    Summation,
-    Method,
-    // values of keys
-    OpaquePotential,
-    FreeIsotropy,
-    Composition,
-    Sixteenth,
-    ExactDiscretization,
-    MoserVeselov,
-    OtherDiscretization,
-    CayleyDiscretization,
-    CayleyChart,
-    ExponentialChart,
-    Matrices,
-    Tangent,
-    Boundary,
-    Momentum,
-    // groups and spaces
-    Power,
-    Forces,
-    Quaternions,
-    LargeGroup,
-    NoCayleyMap,
-    UnknownFreeMotion,
-    RotationsOfFourSpace,
-    FreeMotionOfFourSpace,
-    UnmovedFactor,
-    HeldConfiguration,
-    // the action
-    BentAction,
-    UnliftedMomentum,
-    OtherSum,
-    // the kinetic energy
-    DependsOnConfiguration,
-    GeneralLagrangian,
-    CoupledVelocities,
-    MovingInertia,
-    VaryingEnergy,
-    NoMassMatrix,
-    NoDistributionOfMass,
-    CoupledCost,
-    AdjointPair,
-    // the equation of a step
-    ExplicitEquation,
-    FreeMotion,
-    FreeRotation,
-    ExactDrifts,
-    Collocation,
-    Poles,
-    Inputs,
+/// The features with what messages and docs call them.
+macro_rules! features {
+    ($($feature:ident $words:literal,)+) => {
+        /// A feature: a key, a value of a dial, or what a stage finds out about a declaration.
+        #[derive(Copy, Clone, PartialEq, Eq, Debug)]
+        pub(crate) enum Feature {
+            $($feature,)+
+        }
+
+        impl Feature {
+            /// As messages and docs call it.
+            pub fn words(self) -> &'static str {
+                [$($words,)+][self as usize]
+            }
+
+            /// Whether it is a key of this name.
+            pub fn is_key(self, name: &str) -> bool {
+                self.words().strip_prefix('`').and_then(|word| word.strip_suffix('`')) == Some(name)
+            }
+        }
+    };
 }
 
-impl Feature {
-    /// As messages and docs call it.
-    pub fn words(self) -> &'static str {
-        match self {
-            Feature::Action => "`action`",
-            Feature::Cost => "`cost`",
-            Feature::Lagrangian => "`lagrangian`",
-            Feature::Potential => "`potential`",
-            Feature::Force => "`force`",
-            Feature::ForceOn => "`force_on`",
-            Feature::Symmetry => "`symmetry`",
-            Feature::Controls => "`controls`",
-            Feature::Dynamics => "`dynamics`",
-            Feature::Effort => "`effort`",
-            Feature::Bounds => "`bounds`",
-            Feature::Endpoint => "`endpoint`",
-            Feature::Isotropy => "`isotropy`",
-            Feature::Order => "`order`",
-            Feature::Discretization => "`discretization`",
-            Feature::Chart => "`chart`",
-            Feature::Tolerance => "`tolerance`",
-            Feature::Iterations => "`iterations`",
-            Feature::Summation => "`summation`",
-            Feature::Method => "`method`",
-            Feature::OpaquePotential => "an opaque potential",
-            Feature::FreeIsotropy => "`isotropy = free`",
-            Feature::Composition => "`order = 4`, `6` or `8`",
-            Feature::Sixteenth | Feature::Collocation => "`order = 16`",
-            Feature::ExactDiscretization => "`discretization = exact`",
-            Feature::MoserVeselov => "`discretization = moser_veselov`",
-            Feature::OtherDiscretization => "another discretization than `exponential` and `cayley`",
-            Feature::CayleyDiscretization => "`discretization = cayley`",
-            Feature::CayleyChart => "`chart = cayley`",
-            Feature::ExponentialChart => "`chart = exponential`",
-            Feature::Matrices => "`code = matrices`",
-            Feature::Tangent => "`emit = [tangent]`",
-            Feature::Boundary => "`emit = [boundary]`",
-            Feature::Momentum => "`emit = [momentum]`",
-            Feature::Power => "a power",
-            Feature::Forces => "forces",
-            Feature::Quaternions => "a system of quaternions",
-            Feature::LargeGroup => "rotations of unit vectors in more than 64 dimensions",
-            Feature::NoCayleyMap => "a group without a Cayley map",
-            Feature::UnknownFreeMotion => "a group whose free motion is not known",
-            Feature::RotationsOfFourSpace => "`SO<4>` beside a potential or another factor",
-            Feature::FreeMotionOfFourSpace => "`discretization = exact` on `SO<4>`",
-            Feature::UnmovedFactor => "a factor that moves nothing",
-            Feature::HeldConfiguration => "a configuration that some motions leave where it is",
-            Feature::BentAction => "an action that is not affine in the configuration",
-            Feature::UnliftedMomentum => "an action for which no covector of a momentum is known",
-            Feature::OtherSum => "an action that is no sum of the configuration and a change",
-            Feature::DependsOnConfiguration => "a kinetic energy or a force that depends on the configuration",
-            Feature::GeneralLagrangian => "a Lagrangian that is not quadratic",
-            Feature::CoupledVelocities => "a Lagrangian that is no quadratic form of the velocity of each factor",
-            Feature::MovingInertia => "an inertia that is not constant",
-            Feature::VaryingEnergy => {
-                "a kinetic energy that is no constant quadratic form of the velocity of each factor"
-            }
-            Feature::NoMassMatrix => "a Lagrangian without a Moser–Veselov form",
-            Feature::NoDistributionOfMass => "a kinetic energy on `SO<4>` that no distribution of mass has",
-            Feature::CoupledCost => "a cost that couples the configuration and the group element",
-            Feature::AdjointPair => "a step that is composed of two",
-            Feature::ExplicitEquation => "a step that is solved without iteration",
-            Feature::FreeMotion => "a free motion that is found once for all steps",
-            Feature::FreeRotation => "the free rotation of a body",
-            Feature::ExactDrifts => "a step of exact drifts",
-            Feature::Poles => "a momentum equation with poles in that chart",
-            Feature::Inputs => "a choice of inputs",
-        }
-    }
+features! {
+    // keys
+    Action "`action`",
+    Cost "`cost`",
+    Lagrangian "`lagrangian`",
+    Potential "`potential`",
+    Force "`force`",
+    ForceOn "`force_on`",
+    Symmetry "`symmetry`",
+    Controls "`controls`",
+    Dynamics "`dynamics`",
+    Effort "`effort`",
+    Bounds "`bounds`",
+    Endpoint "`endpoint`",
+    Isotropy "`isotropy`",
+    Order "`order`",
+    Discretization "`discretization`",
+    Chart "`chart`",
+    Tolerance "`tolerance`",
+    Iterations "`iterations`",
+    Summation "`summation`",
+    Method "`method`",
+    // values of keys
+    OpaquePotential "an opaque potential",
+    FreeIsotropy "`isotropy = free`",
+    Composition "`order = 4`, `6` or `8`",
+    Sixteenth "`order = 16`",
+    ExactDiscretization "`discretization = exact`",
+    MoserVeselov "`discretization = moser_veselov`",
+    OtherDiscretization "another discretization than `exponential` and `cayley`",
+    CayleyDiscretization "`discretization = cayley`",
+    CayleyChart "`chart = cayley`",
+    ExponentialChart "`chart = exponential`",
+    Matrices "`code = matrices`",
+    Tangent "`emit = [tangent]`",
+    Boundary "`emit = [boundary]`",
+    Momentum "`emit = [momentum]`",
+    // groups and spaces
+    Power "a power",
+    Forces "forces",
+    Quaternions "a system of quaternions",
+    LargeGroup "rotations of unit vectors in more than 64 dimensions",
+    NoCayleyMap "a group without a Cayley map",
+    UnknownFreeMotion "a group whose free motion is not known",
+    RotationsOfFourSpace "`SO<4>` beside a potential or another factor",
+    FreeMotionOfFourSpace "`discretization = exact` on `SO<4>`",
+    UnmovedFactor "a factor that moves nothing",
+    HeldConfiguration "a configuration that some motions leave where it is",
+    // the action
+    BentAction "an action that is not affine in the configuration",
+    UnliftedMomentum "an action for which no covector of a momentum is known",
+    OtherSum "an action that is no sum of the configuration and a change",
+    // the kinetic energy
+    DependsOnConfiguration "a kinetic energy or a force that depends on the configuration",
+    GeneralLagrangian "a Lagrangian that is not quadratic",
+    CoupledVelocities "a Lagrangian that is no quadratic form of the velocity of each factor",
+    MovingInertia "an inertia that is not constant",
+    VaryingEnergy "a kinetic energy that is no constant quadratic form of the velocity of each factor",
+    NoMassMatrix "a Lagrangian without a Moser–Veselov form",
+    NoDistributionOfMass "a kinetic energy on `SO<4>` that no distribution of mass has",
+    CoupledCost "a cost that couples the configuration and the group element",
+    AdjointPair "a step that is composed of two",
+    // the equation of a step
+    ExplicitEquation "a step that is solved without iteration",
+    FreeMotion "a free motion that is found once for all steps",
+    FreeRotation "the free rotation of a body",
+    ExactDrifts "a step of exact drifts",
+    Collocation "`order = 16`",
+    Poles "a momentum equation with poles in that chart",
+    Inputs "a choice of inputs",
 }

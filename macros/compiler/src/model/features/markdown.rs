@@ -1,7 +1,5 @@
 //! The table as the docs print it.
 
-#[cfg(test)]
-use super::combinations;
 use super::rows::ROWS;
 use super::{Feature, Row, filled};
 
@@ -30,23 +28,4 @@ fn either(features: &[Feature], stand_in: &str) -> String {
 
 fn words(features: &[Feature], separator: &str) -> String {
     features.iter().map(|feature| feature.words()).collect::<Vec<_>>().join(separator)
-}
-
-#[test]
-fn the_docs_show_the_table() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/features.md");
-    let page = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(
-        page.contains(&features_as_markdown()),
-        "cargo run -p clebsch-compiler --example features > docs/features.md"
-    );
-}
-
-#[test]
-fn no_pair_is_refused_twice() {
-    let pairs: Vec<_> = combinations().map(|(_, refused, beside)| (refused, beside)).collect();
-    for (position, (one, other)) in pairs.iter().enumerate() {
-        let again = pairs[..position].iter().any(|pair| *pair == (*one, *other) || *pair == (*other, *one));
-        assert!(!again, "{one:?} and {other:?}");
-    }
 }
