@@ -1,7 +1,7 @@
 //! What generated code names, and nothing else. Not part of the public interface: it changes without notice.
 //!
 //! What is the same for every problem is here and compiled once; what depends on the problem is generated. The other side of
-//! this file is the module of paths in the compiler's `emit` stage.
+//! this file is the module of types in the compiler's `emit` stage.
 
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};

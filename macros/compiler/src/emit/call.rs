@@ -57,7 +57,7 @@ impl Scope<'_, '_> {
         // by construction: only an opaque potential makes such calls
         let Some(opaque) = self.opaque else { return TokenStream::new() };
         let path = if matches!(callee, Callee::Gradient(_)) { &opaque.gradient } else { &opaque.value };
-        let (item, behind) = (&self.item, path.segments.iter().skip(1));
+        let (item, behind) = (self.target.of_type(), path.segments.iter().skip(1));
         let is_self = path.leading_colon.is_none() && path.segments.len() > 1 && path.segments[0].ident == "Self";
         if is_self { quote!(<#item>::#(#behind)::*) } else { quote!(#path) }
     }

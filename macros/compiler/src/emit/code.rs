@@ -28,7 +28,7 @@ impl Scope<'_, '_> {
             Code::Constant(index) => {
                 tokens.extend(self.constants.clone());
                 operator(tokens, '.');
-                word(tokens, &self.constant_names[*index]);
+                word(tokens, &self.kernels.constant_names[*index]);
             }
             Code::Term(index) if self.keeps_matrices => {
                 // behind the target

@@ -11,7 +11,6 @@ use crate::lower::{Kernel, Solve};
 use crate::model::{Access, Promise, Side};
 
 impl Emitter<'_, '_> {
-    /// The struct of the constants.
     pub(super) fn constants_type(&self) -> TokenStream {
         let (name, private, scalar) = (&self.names.constants, &self.paths.private, &self.paths.scalar);
         let names = self.kernels.constant_names.iter().map(|name| format_ident!("{name}"));
@@ -29,7 +28,7 @@ impl Emitter<'_, '_> {
         let rotations = self.free_rotations().map(|(name, _)| name);
         let step_size = self.needs_step_size().then(|| quote!(step_size: #scalar,));
         let parameter = self.model.item.scalar.is_parameter().then(|| quote!(<#scalar: #private::Scalar>));
-        let documentation = docs::lines(&["What no step changes: made once per stepper.".to_string()]);
+        let documentation = docs::lines("What no step changes: made once per stepper.");
         quote! {
             #documentation
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
@@ -80,23 +79,19 @@ impl Emitter<'_, '_> {
     /// For each equation whose orientation is a constant: the name of its orientation, and the equation.
     fn implicit_solves(&self) -> impl Iterator<Item = (Ident, &Solve)> {
         let implicit = self.solves().filter(|solve| self.has_orientation(solve));
-        implicit.map(|solve| (self.orientation(solve), solve))
+        implicit.map(|solve| (self.constant_of(solve), solve))
     }
 
-    /// The name of the orientation of an equation.
-    pub(super) fn orientation(&self, solve: &Solve) -> Ident {
-        format_ident!("orientation{}_{}", self.program.suffix(solve.substep), solve.number + 1)
+    /// The name of the constant that belongs to an equation: its orientation, or those of a free rotation.
+    pub(super) fn constant_of(&self, solve: &Solve) -> Ident {
+        let kind = if solve.solution == Solution::FreeRotation { "free_rotation" } else { "orientation" };
+        format_ident!("{kind}{}_{}", self.program.suffix(solve.substep), solve.number + 1)
     }
 
     /// The equations that are solved by the free rotation of a body, with the names of its constants.
     pub(super) fn free_rotations(&self) -> impl Iterator<Item = (Ident, &Solve)> {
         let free = self.solves().filter(|solve| solve.solution == Solution::FreeRotation);
-        free.map(|solve| (self.free_rotation(solve), solve))
-    }
-
-    /// The name of the constants of a free rotation.
-    pub(super) fn free_rotation(&self, solve: &Solve) -> Ident {
-        format_ident!("free_rotation{}_{}", self.program.suffix(solve.substep), solve.number + 1)
+        free.map(|solve| (self.constant_of(solve), solve))
     }
 
     /// The part of `inertia` that belongs to a free rotation.
@@ -113,10 +108,13 @@ impl Emitter<'_, '_> {
         quote!(#private::Blocks::block::<3, 3>(&inertia, #start, #start))
     }
 
-    /// Whether the factor of an equation acts from the left.
     pub(super) fn is_left(&self, solve: &Solve) -> bool {
-        let block = self.symbols.blocks_of(&solve.components)[0];
-        self.model.factors[self.symbols.blocks[block].factor].side == Side::Left
+        self.model.factors[self.factor_of(solve)].side == Side::Left
+    }
+
+    /// The number of the factor that an equation is solved for.
+    pub(super) fn factor_of(&self, solve: &Solve) -> usize {
+        self.symbols.blocks[self.symbols.blocks_of(&solve.components)[0]].factor
     }
 
     /// The sign of det Σ/h for some components: of Dρ at the identity for short steps, but for positive factors.

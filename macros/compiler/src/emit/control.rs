@@ -62,16 +62,6 @@ impl SystemEmitter<'_, '_> {
         )
     }
 
-    /// The constant `DERIVATION` of a system that has no steps in time.
-    pub(super) fn derivation_of_control(&self, text: &str) -> TokenStream {
-        let constant = quote! {
-            /// The derivation of this struct in words and formulas.
-            pub const DERIVATION: &'static ::core::primitive::str = #text;
-        };
-        self.target.derived(None, constant)
-    }
-
-    /// The number of inputs.
     fn inputs(&self) -> usize {
         self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum()
     }

@@ -7,9 +7,8 @@ use crate::derive::Formula;
 use crate::lower::Kernel;
 
 /// Doc attributes, one for each line; the space before each line keeps it off the slashes.
-pub fn lines(text: &[String]) -> TokenStream {
-    let lines = text.iter().flat_map(|text| text.split('\n'));
-    let lines = lines.map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
+pub fn lines(text: &str) -> TokenStream {
+    let lines = text.split('\n').map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
     quote!(#(#[doc = #lines])*)
 }
 
@@ -24,5 +23,5 @@ pub fn formulas(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) 
     line.extend(first.and_then(|formula| formula.source).map(|source| format!("Source: {source}.")));
     let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
     let text: Vec<String> = [line.join(" ")].into_iter().chain(equations).collect();
-    lines(&text)
+    lines(&text.join("\n"))
 }

@@ -23,7 +23,6 @@ pub(super) struct EquationType<'e, 'a, 'g> {
 }
 
 impl<'g> Emitter<'_, 'g> {
-    /// The types of the equations.
     pub(super) fn equations(&self) -> TokenStream {
         let solves = self.program.steps.iter().flat_map(|step| &step.solves);
         // free rotations are solved by the runtime, in the same way for every body
@@ -48,7 +47,7 @@ impl<'g> Emitter<'_, 'g> {
 
 impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     fn new(emitter: &'e Emitter<'a, 'g>, solve: &'e Solve) -> EquationType<'e, 'a, 'g> {
-        let mut scope = emitter.scope_of_equation();
+        let mut scope = emitter.scope(quote!(system), Some(quote!(c)));
         scope.momenta = solve.momenta.clone();
         scope.coordinates = if solve.given.is_empty() { solve.components.clone() } else { solve.given.clone() };
         let [vector, target] = [solve.dimension, solve.momenta.len()].map(|rows| emitter.vector_type(rows));
@@ -101,7 +100,6 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         quote!(let &Self(#(#names,)* #rest) = self; #code)
     }
 
-    /// The functions of a table.
     fn functions(&self, table: &[Function]) -> TokenStream {
         let (vector, target, given) = (&self.vector, &self.target, self.emitter.vector_type(self.solve.given.len()));
         let given = if self.solve.given.is_empty() { quote!() } else { quote!(, x: &#given) };
@@ -160,7 +158,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                 Body::new(kernel?, quote!(#target #locals #both))
             }
             "orientation" if emitter.has_orientation(solve) => {
-                let orientation = emitter.orientation(solve);
+                let orientation = emitter.constant_of(solve);
                 Body::from(quote!(#private::Some(self.1.#orientation)))
             }
             "has_poles" if is_newton && solve.has_poles => Body::from(quote!(true)),

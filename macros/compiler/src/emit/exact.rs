@@ -13,7 +13,6 @@ impl Emitter<'_, '_> {
         self.formulas.is_exact && self.free_rotations().next().is_some()
     }
 
-    /// The type of the constants of a free rotation.
     pub(super) fn kind_of_free_rotation(&self) -> Ident {
         if self.formulas.turns_whole() { format_ident!("FreeRotation4") } else { format_ident!("FreeRotation") }
     }
@@ -54,7 +53,6 @@ impl Emitter<'_, '_> {
         quote!(#private::FreeRotation4::turn(&c.#name, &kept[0], mu))
     }
 
-    /// The implementation of `SplitKicks`.
     pub(super) fn split_kicks(&self) -> TokenStream {
         let functions = self.functions(SPLIT_KICKS, (0, 0), &[], |function, kernel| match function.name {
             "step_size" => Some(Body::from(quote!(c.step_size))),

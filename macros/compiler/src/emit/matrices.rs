@@ -22,7 +22,7 @@ impl Scope<'_, '_> {
         };
         // operands are names: each operation is a statement
         let method = |name: &str| {
-            let (name, receiver) = (format_ident!("{name}"), self.receiver(&operands[0]));
+            let (name, receiver) = (format_ident!("{name}"), self.operand(&operands[0], Binding::Atom));
             let others = operands[1..].iter().map(|operand| self.by_reference(operand));
             quote!(#receiver.#name(#(#others),*))
         };
@@ -88,7 +88,7 @@ impl Scope<'_, '_> {
             }
             MatrixOperation::Entry(i, j) => {
                 let is_column = matches!(&operands[0], Code::Whole(whole) if whole.shape.is_column());
-                let (matrix, index) = (self.receiver(&operands[0]), index(is_column, (*i, *j)));
+                let (matrix, index) = (self.operand(&operands[0], Binding::Atom), index(is_column, (*i, *j)));
                 quote!(#matrix #index)
             }
         }
@@ -103,14 +103,11 @@ impl Scope<'_, '_> {
 
     /// A matrix as an argument of a function.
     fn by_reference(&self, operand: &Code) -> TokenStream {
-        match self.argument(operand) {
-            Some(Reached::Reference(name)) => name,
-            Some(Reached::Value(value)) => quote!(&#value),
-            None => {
-                let value = self.operand(operand, Binding::Atom);
-                quote!(&#value)
-            }
+        if let Some(Reached::Reference(name)) = self.argument(operand) {
+            return name;
         }
+        let value = self.operand(operand, Binding::Atom);
+        quote!(&#value)
     }
 
     /// A matrix that is multiplied: names are borrowed, values are not.
@@ -123,22 +120,13 @@ impl Scope<'_, '_> {
         }
     }
 
-    /// A matrix that is added or multiplied by a number, in brackets unless it binds as much as is asked.
+    /// A matrix that is added, multiplied by a number or asked for more, in brackets unless it binds as much as is needed.
     fn operand(&self, operand: &Code, least: Binding) -> TokenStream {
-        if let Some(Reached::Reference(name)) = self.argument(operand) {
-            return name;
+        if let Some(Reached::Reference(tokens) | Reached::Value(tokens)) = self.argument(operand) {
+            return tokens;
         }
         let value = self.code(operand, true);
         if Binding::of(operand) < least { quote!((#value)) } else { value }
-    }
-
-    /// A matrix whose method is called.
-    fn receiver(&self, operand: &Code) -> TokenStream {
-        match self.argument(operand) {
-            Some(Reached::Reference(name)) => name,
-            Some(Reached::Value(value)) => value,
-            None => self.operand(operand, Binding::Atom),
-        }
     }
 
     /// A matrix among the arguments of a function.

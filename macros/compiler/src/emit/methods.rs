@@ -4,7 +4,6 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::{Emitter, SystemEmitter};
-use crate::MethodProgram;
 
 impl<'g> Emitter<'_, 'g> {
     /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
@@ -36,23 +35,24 @@ impl<'g> Emitter<'_, 'g> {
 
     /// A trait of the parts of a step, as a type names it. That of the declared dials is its default.
     pub(super) fn trait_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
-        let (private, name) = (&self.paths.private, format_ident!("{name}"));
-        match self.method {
-            Some(method) => quote!(#private::#name<#(#sizes,)* #method>),
-            None if sizes.is_empty() => quote!(#private::#name),
-            None => quote!(#private::#name<#(#sizes),*>),
-        }
+        let (private, name, arguments) =
+            (&self.paths.private, format_ident!("{name}"), self.arguments_of_parts(sizes, None));
+        quote!(#private::#name #arguments)
     }
 
     /// The same, as a call names it. What has one method has no other parts.
     pub(super) fn call_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
         let (private, name) = (&self.paths.private, format_ident!("{name}"));
-        match self.method {
-            Some(method) => quote!(#private::#name::<#(#sizes,)* #method>),
-            None if !self.program.methods.is_empty() => quote!(#private::#name::<#(#sizes,)* #private::Declared>),
-            None if sizes.is_empty() => quote!(#private::#name),
-            None => quote!(#private::#name::<#(#sizes),*>),
-        }
+        let declared = (!self.program.methods.is_empty()).then(|| quote!(#private::Declared));
+        let arguments = self.arguments_of_parts(sizes, declared).map(|arguments| quote!(::#arguments));
+        quote!(#private::#name #arguments)
+    }
+
+    /// Sizes, and the method that is emitted or the declared one.
+    fn arguments_of_parts(&self, sizes: &[Literal], declared: Option<TokenStream>) -> Option<TokenStream> {
+        let method = self.method.map(|method| quote!(#method)).or(declared);
+        let arguments: Vec<TokenStream> = sizes.iter().map(|size| quote!(#size)).chain(method).collect();
+        (!arguments.is_empty()).then(|| quote!(<#(#arguments),*>))
     }
 }
 
@@ -67,9 +67,4 @@ impl SystemEmitter<'_, '_> {
         let system = self.target.of_type();
         if self.method.is_some() { quote!(system: &#system) } else { quote!(&self) }
     }
-}
-
-/// The names of the methods of a program.
-pub(super) fn names<'a>(methods: &'a [MethodProgram<'_>]) -> impl Iterator<Item = &'a Ident> {
-    methods.iter().map(|method| &method.name)
 }

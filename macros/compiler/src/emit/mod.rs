@@ -33,7 +33,7 @@ use quote::{ToTokens, format_ident, quote};
 
 use crate::MethodProgram;
 use crate::derive::{FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
-use crate::lower::{KernelTable, MechanicsProgram, Program, SteeredProgram};
+use crate::lower::{KernelTable, MechanicsProgram, Program};
 use crate::model::{Item, Mechanics, Opaque, Power, System};
 use names::Names;
 use scope::{Scope, size};
@@ -75,9 +75,12 @@ fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenSt
             (emitter.system, items)
         }
         Program::Steered(program) => {
-            let emitter = SystemEmitter::of_steered(program);
-            let items = emitter.items_of_control(&program.derivation());
-            (emitter, items)
+            let table = (program.formulas.table(), &program.table);
+            let emitter = SystemEmitter::new(&program.formulas, table, (None, None), &[]);
+            let (groups, aliases, controlled) = (emitter.groups(), emitter.aliases(), emitter.controlled());
+            let documentation = "The derivation of this struct in words and formulas.";
+            let derivation = emitter.constant("DERIVATION", documentation, &program.derivation());
+            (emitter, quote!(#groups #aliases #controlled #derivation))
         }
     }
 }
@@ -165,47 +168,38 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
 impl<'a, 'g> SystemEmitter<'a, 'g> {
     fn of_mechanics(program: &'a MechanicsProgram<'g>) -> SystemEmitter<'a, 'g> {
-        let model = &program.formulas.model;
-        let (power, opaque) = (model.power.as_ref(), model.opaque.as_ref());
-        let names = Names::new(model, (power, opaque), methods::names(&program.methods));
-        let emitter = SystemEmitter::new(&program.formulas, program.formulas.table(), &program.table, names);
-        SystemEmitter { keeps_matrices: program.form.keeps_matrices(), power, opaque, ..emitter }
-    }
-
-    fn of_steered(program: &'a SteeredProgram<'g>) -> SystemEmitter<'a, 'g> {
-        let names = Names::new(&program.formulas.model, (None, None), std::iter::empty());
-        SystemEmitter::new(&program.formulas, program.formulas.table(), &program.table, names)
+        let formulas = &program.formulas;
+        let parts = (formulas.model.power.as_ref(), formulas.model.opaque.as_ref());
+        let emitter = SystemEmitter::new(formulas, (formulas.table(), &program.table), parts, &program.methods);
+        SystemEmitter { keeps_matrices: program.form.keeps_matrices(), ..emitter }
     }
 
     fn new(
         formulas: &'a SystemFormulas<'g>,
-        rows: &'a FormulaTable<'g>,
-        kernels: &'a KernelTable,
-        names: Names,
+        (rows, kernels): (&'a FormulaTable<'g>, &'a KernelTable),
+        (power, opaque): (Option<&'a Power<'g>>, Option<&'a Opaque>),
+        methods: &[MethodProgram<'g>],
     ) -> SystemEmitter<'a, 'g> {
-        let model = &*formulas.model;
-        let spelled = Paths::new(&model.item.krate.to_token_stream(), &model.item.scalar);
+        let (model, symbols, item) = (&*formulas.model, &formulas.symbols, &formulas.model.item);
+        let names = Names::new(model, (power, opaque), methods.iter().map(|method| &method.name));
+        let spelled = Paths::new(&item.krate.to_token_stream(), &item.scalar);
+        let paths = spelled.named(item, &names);
+        let target = Target::new(&item.ident, &item.generics, &item.scalar, &spelled.private);
+        let (method, keeps_matrices) = (None, false);
         SystemEmitter {
             model,
-            symbols: &formulas.symbols,
+            symbols,
             rows,
             kernels,
-            keeps_matrices: false,
-            power: None,
-            opaque: None,
-            method: None,
-            paths: spelled.named(&model.item, &names),
-            target: Target::new(&model.item.ident, &model.item.generics, &model.item.scalar, &spelled.private),
+            keeps_matrices,
+            power,
+            opaque,
+            method,
             spelled,
+            paths,
+            target,
             names,
         }
-    }
-
-    /// What is emitted of a configuration that inputs move.
-    fn items_of_control(&self, derivation: &str) -> TokenStream {
-        let (groups, aliases) = (self.groups(), self.aliases());
-        let (controlled, derivation) = (self.controlled(), self.derivation_of_control(derivation));
-        quote!(#groups #aliases #controlled #derivation)
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -228,7 +222,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
 
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
-        let (name, documentation) = (format_ident!("{name}"), docs::lines(&[documentation.to_string()]));
+        let (name, documentation) = (format_ident!("{name}"), docs::lines(documentation));
         let constant = quote! {
             #documentation
             pub const #name: &'static ::core::primitive::str = #text;
@@ -246,29 +240,10 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         self.scope(quote!(self), Some(quote!(c)))
     }
 
-    /// The scope of a method of an equation.
-    fn scope_of_equation(&self) -> Scope<'_, 'g> {
-        self.scope(quote!(system), Some(quote!(c)))
-    }
-
     fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
-        let dimension = self.dimension();
-        Scope {
-            model: self.model,
-            power: self.power,
-            opaque: self.opaque,
-            paths: &self.paths,
-            system,
-            constants,
-            constant_names: &self.kernels.constant_names,
-            momenta: (0..dimension).collect(),
-            coordinates: (0..dimension).collect(),
-            blocks: self.symbols.blocks.iter().map(|block| block.offset).collect(),
-            item: self.target.of_type(),
-            keeps_matrices: self.keeps_matrices,
-            reads: RefCell::default(),
-            numbers: RefCell::default(),
-        }
+        let [momenta, coordinates] = [(0..self.dimension()).collect(), (0..self.dimension()).collect()];
+        let (reads, numbers) = (RefCell::default(), RefCell::default());
+        Scope { emitter: self, system, constants, momenta, coordinates, reads, numbers }
     }
 }
 

@@ -33,15 +33,12 @@ impl Emitter<'_, '_> {
                 }
             }
         });
-        let documentation = docs::lines(&[
-            "Checks the gradient method of the potential against differences of its value method at a configuration."
-                .into(),
-            String::new(),
-            "For a test: `system.check_potential(&q).unwrap()` at some typical configurations.".into(),
-            String::new(),
-            "# Errors".into(),
-            "`Error::WrongGradient` with the first entry that differs, `Error::NotFinite`.".into(),
-        ]);
+        let documentation = docs::lines(
+            "Checks the gradient method of the potential against differences of its value method at a configuration.\n\n\
+             For a test: `system.check_potential(&q).unwrap()` at some typical configurations.\n\n\
+             # Errors\n\
+             `Error::WrongGradient` with the first entry that differs, `Error::NotFinite`.",
+        );
         let check = quote! {
             #documentation
             pub fn check_potential(

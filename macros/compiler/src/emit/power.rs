@@ -8,6 +8,7 @@ use quote::quote;
 
 use super::functions::{Body, SITES};
 use super::scope::nested_type;
+use super::system::types_of_system;
 use super::types::Target;
 use super::{Emitter, docs, flag};
 use crate::model::{LeafSpace, Order, Parameter, Power};
@@ -32,7 +33,7 @@ impl<'g> Emitter<'_, 'g> {
         });
         let parameter = self.scalar_parameter();
         let scalar = parameter.map(|parameter| quote!(scalar: ::core::marker::PhantomData #parameter,));
-        let documentation = docs::lines(&["One site: what moves it while the others do nothing to it.".to_string()]);
+        let documentation = docs::lines("One site: what moves it while the others do nothing to it.");
         quote! {
             #documentation
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
@@ -110,8 +111,12 @@ impl<'g> Emitter<'_, 'g> {
     fn whole_power(&self, power: &Power<'g>, target: &Target) -> TokenStream {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let (name, length, order) = (target.ident.to_string(), &power.length, self.model.order.number());
-        let (point, element, momentum) = (self.alias("Q"), self.alias("F"), self.alias("Mu"));
-        let (time, derivation, checks) = (self.time_type(), self.program.derivation(), self.checks_of_terms(power));
+        let places = ["Q", "F", "Mu"].map(|name| {
+            let of_site = self.alias(name);
+            quote!([#of_site; #length])
+        });
+        let types = types_of_system(scalar, &places, &quote!(()), &self.time_type());
+        let (derivation, checks) = (self.program.derivation(), self.checks_of_terms(power));
         let (scheme, start, end) = match (power.terms.is_empty(), self.model.order) {
             (true, _) => (quote!(FreeSites), quote!(0.0), quote!(0.0)),
             (false, Order::Second) => (quote!(SitesOfSecondOrder), quote!(-0.5), quote!(-0.5)),
@@ -120,13 +125,7 @@ impl<'g> Emitter<'_, 'g> {
         target.derived(
             Some(quote!(#krate::Clebsch)),
             quote! {
-                type Scalar = #scalar;
-                type Configuration = [#point; #length];
-                type Element = [#element; #length];
-                type Momentum = [#momentum; #length];
-                type MomentumMatrix = [#element; #length];
-                type Input = ();
-                type Time = #time;
+                #types
                 type Constants = #private::SiteConstants<Self, #length>;
                 type Scheme = #private::#scheme<#length>;
 

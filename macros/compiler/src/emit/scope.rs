@@ -2,46 +2,40 @@
 
 use std::cell::RefCell;
 use std::hash::Hash;
+use std::ops::Deref;
 
 use clebsch_symbolic::{Group, Rational, Role, Shape, Symbol, Table, Zero};
 use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
+use super::SystemEmitter;
 use super::code::{list, operator, word};
-use super::types::Paths;
 use crate::lower::{Code, Input, Kernel};
-use crate::model::{Access, Layout, Opaque, Part, Power, System};
+use crate::model::{Access, Layout, Part};
 
 /// Where a function finds its inputs.
-pub struct Scope<'a, 'g> {
-    /// The model, for the fields and accessors.
-    pub model: &'a System<'g>,
-    /// What ties the sites of a power to each other.
-    pub power: Option<&'a Power<'g>>,
-    /// The methods behind an opaque potential.
-    pub opaque: Option<&'a Opaque>,
-    /// The paths of the runtime.
-    pub paths: &'a Paths,
+pub(super) struct Scope<'a, 'g> {
+    pub emitter: &'a SystemEmitter<'a, 'g>,
     /// The user's struct: `self` or `self.system`.
     pub system: TokenStream,
     /// The constants: `self.constants`, or nothing while they are being made.
     pub constants: Option<TokenStream>,
-    /// The names of the constants.
-    pub constant_names: &'a [String],
     /// Which of all components of the momentum `mu` holds, in order.
     pub momenta: Vec<usize>,
     /// Which of all components `x` holds, in order.
     pub coordinates: Vec<usize>,
-    /// The index of the first component of each chart block among those of all factors.
-    pub blocks: Vec<usize>,
-    /// The user's struct as a type, for the methods behind an opaque potential.
-    pub item: TokenStream,
-    /// Whether the program keeps whole matrices.
-    pub keeps_matrices: bool,
     /// The tokens of entries, which stand in code many times.
     pub reads: RefCell<Table<Input, TokenStream>>,
     /// The tokens of numbers.
     pub numbers: RefCell<Table<Rational, TokenStream>>,
+}
+
+impl<'a, 'g> Deref for Scope<'a, 'g> {
+    type Target = SystemEmitter<'a, 'g>;
+
+    fn deref(&self) -> &SystemEmitter<'a, 'g> {
+        self.emitter
+    }
 }
 
 /// Where an argument of a function stands.
@@ -113,11 +107,11 @@ impl Scope<'_, '_> {
             Role::Following(k) => factor("second", k),
             Role::MomentumMatrix(k) => factor("m", k),
             Role::Momentum(k) => Place::Vector("mu", &self.momenta, self.model.offset(k)),
-            Role::Chart(block) => Place::Vector("x", &self.coordinates, self.blocks[block]),
+            Role::Chart(block) => Place::Vector("x", &self.coordinates, self.symbols.blocks[block].offset),
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 Place::Vector("x", &self.coordinates, self.model.offset(k))
             }
-            Role::Direction(block) => Place::Vector("delta", &self.coordinates, self.blocks[block]),
+            Role::Direction(block) => Place::Vector("delta", &self.coordinates, self.symbols.blocks[block].offset),
             _ => return None,
         })
     }
@@ -267,23 +261,21 @@ impl Scope<'_, '_> {
     }
 
     /// A matrix, vector or quaternion of entries.
-    pub fn grid(&self, (shape, entries): &(Shape, Vec<Code>), is_quaternion: bool) -> TokenStream {
-        let private = &self.paths.private;
+    pub fn grid(&self, output: &(Shape, Vec<Code>), is_quaternion: bool) -> TokenStream {
+        let (private, (shape, entries)) = (&self.paths.private, output);
         if entries.len() == 1 && !shape.is_scalar() {
             return self.code(&entries[0], false);
         }
-        let function = match shape.columns {
-            _ if is_quaternion => quote!(quaternion),
-            1 => quote!(vector),
-            _ => return self.matrix(*shape, entries),
-        };
-        let entries = self.list(entries);
+        if shape.columns != 1 && !is_quaternion {
+            return self.matrix(output);
+        }
+        let (function, entries) = (if is_quaternion { quote!(quaternion) } else { quote!(vector) }, self.list(entries));
         quote!(#private::#function(#entries))
     }
 
     /// A matrix of entries, row by row, whatever its shape; the entries that are not zero one by one, with their places, where rows are
     /// long and most are.
-    pub fn matrix(&self, shape: Shape, entries: &[Code]) -> TokenStream {
+    pub fn matrix(&self, (shape, entries): &(Shape, Vec<Code>)) -> TokenStream {
         let private = &self.paths.private;
         let is_zero = |entry: &Code| matches!(entry, Code::Number(value) if value.is_zero());
         let zeros = entries.iter().filter(|entry| is_zero(entry)).count();

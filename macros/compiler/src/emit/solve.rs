@@ -30,7 +30,7 @@ impl Emitter<'_, '_> {
     fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
         let (private, name) = (&self.paths.private, self.equation_name(solve));
         let held = self.held_by_equation(solve).into_iter();
-        let held = held.map(|held| if held == "system" { quote!(self) } else { one_word(held) });
+        let held = held.map(|held| format_ident!("{}", if held == "system" { "self" } else { held }));
         let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
         match solve.solution {
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
@@ -76,7 +76,7 @@ impl Emitter<'_, '_> {
 
     /// The coordinates of a factor that moves freely; `kept` are the motions of many steps.
     fn found_free_rotation(&self, solve: &Solve, kept: bool) -> TokenStream {
-        let (private, rotation) = (&self.paths.private, self.free_rotation(solve));
+        let (private, rotation) = (&self.paths.private, self.constant_of(solve));
         let solution = solution_name(solve.number);
         let weight = self.weight_of(solve);
         let target = self.momentum_of_free_rotation(solve);
@@ -98,9 +98,7 @@ impl Emitter<'_, '_> {
 
     /// The number of the weight of the chart coordinates of an equation, where they are given up to a factor.
     fn weight_of(&self, solve: &Solve) -> Option<usize> {
-        let block = self.symbols.blocks_of(&solve.components)[0];
-        let factor = self.symbols.blocks[block].factor;
-        self.formulas.weighted().iter().position(|&other| other == factor)
+        self.formulas.weighted().iter().position(|&factor| factor == self.factor_of(solve))
     }
 
     /// The momentum of a free rotation. Spatial momenta move as those of the body that turns back.
@@ -118,11 +116,6 @@ impl Emitter<'_, '_> {
         let components = components.iter().copied().map(size);
         quote!(&#private::vector([#(mu[#components]),*]))
     }
-}
-
-fn one_word(name: &str) -> TokenStream {
-    let name = format_ident!("{name}");
-    quote!(#name)
 }
 
 fn solution_name(number: usize) -> Ident {

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::scope::{nested_type, size};
+use super::system::types_of_system;
 use super::types::{Paths, Target};
 use crate::model::Outline;
 use crate::parse::Declaration;
@@ -36,7 +37,8 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
         Some(length) => quote!([#ty; #length]),
         None => ty,
     };
-    let [configuration, element, momentum] = [configuration, element, momentum].map(of_sites);
+    let places = [configuration, element, momentum].map(of_sites);
+    let [configuration, _, momentum] = &places;
     let is_steered = declaration.kinetic.is_steered();
     let place = if is_steered {
         (configuration.clone(), dimension)
@@ -51,15 +53,10 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     }
     let name = target.ident.to_string();
     let time = if outline.takes_time { quote!(#private::Clock<#scalar>) } else { quote!(()) };
+    let types = types_of_system(scalar, &places, &input, &time);
     let formulas = formulas(&krate, scalar);
     let items = quote! {
-        type Scalar = #scalar;
-        type Configuration = #configuration;
-        type Element = #element;
-        type Momentum = #momentum;
-        type MomentumMatrix = #element;
-        type Input = #input;
-        type Time = #time;
+        #types
         type Constants = ();
         type Scheme = #private::Unstepped;
         const NAME: &'static ::core::primitive::str = #name;

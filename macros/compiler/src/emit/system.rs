@@ -17,20 +17,13 @@ impl<'g> Emitter<'_, 'g> {
     pub(super) fn system(&self) -> TokenStream {
         let (krate, scalar, name) = (&self.paths.krate, &self.paths.scalar, self.target.ident.to_string());
         // what a person reads in the documentation is spelled
-        let [configuration, element, momentum] = self.types(&self.spelled);
-        let (input, time) = (self.input_type(), self.time_type());
+        let types = types_of_system(scalar, &self.types(&self.spelled), &self.input_type(), &self.time_type());
         let name = quote!(const NAME: &'static ::core::primitive::str = #name;);
         let stepping = self.stepping(Some(name), &self.program.derivation());
         self.target.derived(
             Some(quote!(#krate::Clebsch)),
             quote! {
-                type Scalar = #scalar;
-                type Configuration = #configuration;
-                type Element = #element;
-                type Momentum = #momentum;
-                type MomentumMatrix = #element;
-                type Input = #input;
-                type Time = #time;
+                #types
                 #stepping
             },
         )
@@ -125,8 +118,7 @@ impl<'g> Emitter<'_, 'g> {
         let inertia = scope.body(self.program.kernel(Id::Inertia));
         let dimension = size(self.dimension());
         let momentum = |solve: &Solve| {
-            let block = self.symbols.blocks_of(&solve.components)[0];
-            let factor = &self.model.factors[self.symbols.blocks[block].factor];
+            let factor = &self.model.factors[self.factor_of(solve)];
             let (access, inertia, is_left) = (&factor.accessor, self.block_of_inertia(solve), self.is_left(solve));
             let sign = is_left.then(|| quote!(-));
             let momentum = if self.formulas.turns_whole() {
@@ -247,5 +239,23 @@ impl SystemEmitter<'_, '_> {
         let entries = membership.iter().flat_map(|kernel| &kernel.outputs[0].1);
         let defects = defects.chain(entries.map(|entry| scope.code(entry, false)));
         quote!(#locals #private::largest([#(#defects),*]))
+    }
+}
+
+/// The types that `Clebsch` asks for, apart from those of steps.
+pub(super) fn types_of_system(
+    scalar: &TokenStream,
+    [configuration, element, momentum]: &[TokenStream; 3],
+    input: &TokenStream,
+    time: &TokenStream,
+) -> TokenStream {
+    quote! {
+        type Scalar = #scalar;
+        type Configuration = #configuration;
+        type Element = #element;
+        type Momentum = #momentum;
+        type MomentumMatrix = #element;
+        type Input = #input;
+        type Time = #time;
     }
 }

@@ -153,8 +153,8 @@ impl Emitter<'_, '_> {
             "edge" => {
                 let (locals, lagrangian) = (self.locals_of_edge(kernel), scope.scalar(kernel, 0));
                 let ([before, after], [by_start, by_end, after_by_end]) = ([1, 2].map(vector), [3, 4, 5].map(matrix));
-                let by_transposition = || quote!(-before_by_end.transpose());
-                let after_by_start = if kernel.outputs.len() == 7 { matrix(6) } else { by_transposition() };
+                let transposed = quote!(-before_by_end.transpose());
+                let after_by_start = if kernel.outputs.len() == 7 { matrix(6) } else { transposed };
                 quote! {
                     #locals
                     let before_by_end = #by_end;
@@ -177,10 +177,7 @@ impl Emitter<'_, '_> {
             }
             _ => {
                 let locals = scope.locals(kernel);
-                let [before, after] = [0, 1].map(|index| {
-                    let (shape, entries) = &kernel.outputs[index];
-                    scope.matrix(*shape, entries)
-                });
+                let [before, after] = [0, 1].map(|index| scope.matrix(&kernel.outputs[index]));
                 quote!(#locals (#before, #after))
             }
         };
@@ -193,8 +190,7 @@ impl Emitter<'_, '_> {
         if self.keeps_matrices {
             return scope.matrix_of(kernel, index, "x", along_motion).1;
         }
-        let (shape, entries) = &kernel.outputs[index];
-        scope.matrix(*shape, entries)
+        scope.matrix(&kernel.outputs[index])
     }
 
     /// The shared terms of an edge; what derivatives along motions are made of stands with them.
