@@ -3,172 +3,260 @@
 use crate::Scalar;
 use core::fmt::{self, Display, Formatter};
 
-/// Why a stepper could not be made, a state not be taken, a step not be done or an extremal not be found. The state that was passed in is unchanged.
-///
-/// Numbers are given as `f64` whatever the scalar of the system is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Error {
-    /// The step size is zero, NaN or infinite. Negative ones are allowed and run back in time.
-    StepSize {
-        /// The step size that was given.
-        value: f64,
-    },
-    /// An input or a result is NaN or infinite.
-    NotFinite {
-        /// What is not finite: a field of the declared struct, or a part of the state.
-        name: &'static str,
-    },
-    /// The error that a step size was asked for is not above what rounding alone makes.
-    BelowRounding {
-        /// The error that was wished.
-        error: f64,
-        /// What rounding makes over the duration, about.
-        rounding: f64,
-    },
-    /// A part of the storage of a [`Sites`](crate::Sites) has another length than there are sites.
-    NumberOfSites {
-        /// The entries of that part.
-        found: usize,
-        /// The sites, N.
-        sites: usize,
-    },
-    /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
-    NotSymmetric {
-        /// The field.
-        field: &'static str,
-        /// The largest |A_ij − A_ji|, in the units of the field.
-        defect: f64,
-        /// The largest defect that is taken for round-off.
-        tolerance: f64,
-    },
-    /// A field that is declared `#[clebsch(diagonal)]` has an entry off its diagonal.
-    NotDiagonal {
-        /// Name of the field.
-        field: &'static str,
-        /// Largest entry off the diagonal, in the unit of the field.
-        defect: f64,
-    },
-    /// A field that is declared `#[clebsch(unit)]` has another length.
-    NotUnit {
-        /// Name of the field.
-        field: &'static str,
-        /// Its length.
-        length: f64,
-    },
-    /// The kinetic energy is degenerate for these parameters: momenta do not determine velocities.
-    SingularKineticEnergy {
-        /// Condition number of the inertia, infinite where it is exactly singular.
-        condition: f64,
-    },
-    /// The configuration is not on the space that the declaration promises, for example no rotation matrix.
-    OffOrbit {
-        /// By how much its equations are violated, as in the largest entry of |RᵀR − I|; infinite on the wrong component.
-        defect: f64,
-        /// The largest defect that is accepted.
-        tolerance: f64,
-    },
-    /// The momentum has a component along the motions that leave the configuration unchanged.
-    OutsideMomentumSpace {
-        /// The size of that component, in the units of the momentum.
-        violation: f64,
-        /// The largest violation that is accepted.
-        tolerance: f64,
-    },
-    /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact drifts: the motion is longer
-    /// than formulas of duplication (on SO(3); h|M|/J up to some 10⁷ in `f64` and a thousand in `f32`) or parts (on SO(4), some thousand radians) reach.
-    Unsolvable {
-        /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
-        solvable_fraction: f64,
-        /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
-        step_size: Option<f64>,
-        /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
-        /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
-        /// found by trying: some ten steps, at most 32; none is tried where a stepper keeps more than two kilobytes of constants, as for exact drifts.
-        solvable_step: Option<f64>,
-    },
-    /// The gradient method of an opaque potential disagrees with differences of its value method.
-    WrongGradient {
-        /// The entry of the configuration, counted through all its leaves, matrices column by column.
-        entry: usize,
-        /// What the gradient method gives for it.
-        gradient: f64,
-        /// What differences of the value method give.
-        difference: f64,
-    },
-    /// The nodes that were given for a path do not make up whole steps.
-    PathLength {
-        /// Their number.
-        nodes: usize,
-        /// The number of nodes of one step.
-        per_step: usize,
-    },
-    /// No small motion of the start comes nearer to the target: its direction is not determined, as between opposite points of a
-    /// sphere, or the target is off the orbit.
-    UndeterminedDirection {
-        /// The distance from start to target, as the root of the sum of squares of all entries.
-        distance: f64,
-    },
-    /// No motion moves the start to the target.
-    Unreachable {
-        /// The least distance that was left, as the root of the sum of squares of all entries.
-        distance: f64,
-    },
-    /// The work allowed for one path with fixed endpoints was used up without a decision.
-    NoExtremal {
-        /// Size of the correction that would come next, relative to the path: the root of the ratio of what it takes from the action.
-        correction: f64,
-        /// Number of linearisations that were made.
-        iterations: u32,
-    },
-    /// To first order no input moves the end of the plan towards the target.
-    Uncontrollable {
-        /// The distance that is left, as the root of the sum of squares of all entries.
-        distance: f64,
-    },
-    /// No inputs were found that keep the bounds.
-    Infeasible {
-        /// The bound that is violated most, as it was written.
-        bound: &'static str,
-        /// The step in which it is, counted from 0.
-        stage: usize,
-        /// By how much it is violated, at most.
-        violation: f64,
-    },
-    /// No inputs were found that lead to the target.
-    TargetMissed {
-        /// The distance that is left, as the root of the sum of squares of all entries.
-        distance: f64,
-        /// Number of linearisations that were made.
-        iterations: u32,
-    },
-    /// The work allowed for one implicit equation was used up without a decision.
-    NotConverged {
-        /// Size of the residual that was left, relative to the terms of the equation.
-        residual: f64,
-        /// Number of linearisations or sweeps that were made.
-        iterations: u32,
-    },
-    /// The step of a lane failed, where the scalar has several: [`Stepper::failure`](crate::Stepper::failure) says why, and
-    /// [`Stepper::step_each`](crate::Stepper::step_each) steps the others.
-    InLane {
-        /// The first such lane, counted from 0.
-        lane: usize,
-    },
-    /// There is no body with this number in an [ensemble](crate#many-bodies).
-    NoBody {
-        /// The number, counted from 0.
-        body: usize,
-        /// How many bodies there are.
-        bodies: usize,
-    },
-    /// A step on T*Q was asked of a system with forces, which act on momenta in 𝔤* and determine no covector, or of momenta alone.
-    NoCovector,
-    /// The step has no derivative: it is at the very edge of what is solvable.
-    SingularTangent {
-        /// The step size.
-        step_size: f64,
-    },
+/// Declares the errors, each with its message, in which fields are called by their names.
+macro_rules! errors {
+    ($(#[$attribute:meta])* pub enum Error { $(
+        $(#[doc = $doc:literal])*
+        $variant:ident $({ $($(#[doc = $about:literal])* $field:ident: $type:ty,)* })? => $message:literal $(, $argument:expr)*;
+    )* }) => {
+        $(#[$attribute])*
+        pub enum Error { $(
+            $(#[doc = $doc])*
+            $variant $({ $($(#[doc = $about])* $field: $type,)* })?,
+        )* }
+
+        impl Display for Error {
+            fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+                match *self { $(
+                    #[allow(unused_variables, reason = "a message need not give all numbers")]
+                    Self::$variant $({ $($field,)* })? => write!(f, $message $(, $argument)*),
+                )* }
+            }
+        }
+    };
+}
+
+/// What a function writes, as part of a message.
+struct Said<F>(F);
+
+impl<F: Fn(&mut Formatter<'_>) -> fmt::Result> Display for Said<F> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        (self.0)(f)
+    }
+}
+
+errors! {
+    /// Why a stepper could not be made, a state not be taken, a step not be done or an extremal not be found. The state that was passed in is unchanged.
+    ///
+    /// Numbers are given as `f64` whatever the scalar of the system is.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    #[non_exhaustive]
+    pub enum Error {
+        /// The step size is zero, NaN or infinite. Negative ones are allowed and run back in time.
+        StepSize {
+            /// The step size that was given.
+            value: f64,
+        } => "the step size is {value}: it must be a finite number other than zero (negative runs back in time)";
+        /// An input or a result is NaN or infinite.
+        NotFinite {
+            /// What is not finite: a field of the declared struct, or a part of the state.
+            name: &'static str,
+        } => "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from";
+        /// The error that a step size was asked for is not above what rounding alone makes.
+        BelowRounding {
+            /// The error that was wished.
+            error: f64,
+            /// What rounding makes over the duration, about.
+            rounding: f64,
+        } =>
+            "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: \
+             ask for more than that, or for a shorter duration";
+        /// A part of the storage of a [`Sites`](crate::Sites) has another length than there are sites.
+        NumberOfSites {
+            /// The entries of that part.
+            found: usize,
+            /// The sites, N.
+            sites: usize,
+        } => "the storage has {found} entries where there are {sites} sites: give one entry for each site";
+        /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
+        NotSymmetric {
+            /// The field.
+            field: &'static str,
+            /// The largest |A_ij − A_ji|, in the units of the field.
+            defect: f64,
+            /// The largest defect that is taken for round-off.
+            tolerance: f64,
+        } =>
+            "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more \
+             than the round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove `#[clebsch(symmetric)]`";
+        /// A field that is declared `#[clebsch(diagonal)]` has an entry off its diagonal.
+        NotDiagonal {
+            /// Name of the field.
+            field: &'static str,
+            /// Largest entry off the diagonal, in the unit of the field.
+            defect: f64,
+        } =>
+            "`{field}` is declared diagonal, but has an entry of {defect:.3e} off its diagonal: set it to zero, or \
+             remove `#[clebsch(diagonal)]`";
+        /// A field that is declared `#[clebsch(unit)]` has another length.
+        NotUnit {
+            /// Name of the field.
+            field: &'static str,
+            /// Its length.
+            length: f64,
+        } =>
+            "`{field}` is declared a unit vector, but its length is {length}: pass {field}.normalize(), or remove \
+             `#[clebsch(unit)]`";
+        /// The kinetic energy is degenerate for these parameters: momenta do not determine velocities.
+        SingularKineticEnergy {
+            /// Condition number of the inertia, infinite where it is exactly singular.
+            condition: f64,
+        } =>
+            "the kinetic energy is singular for these parameters (condition number {condition:.2e}), so that momenta \
+             do not determine velocities: check masses and moments of inertia for zeros and for units that differ by \
+             many orders";
+        /// The configuration is not on the space that the declaration promises, for example no rotation matrix.
+        OffOrbit {
+            /// By how much its equations are violated, as in the largest entry of |RᵀR − I|; infinite on the wrong component.
+            defect: f64,
+            /// The largest defect that is accepted.
+            tolerance: f64,
+        } =>
+            "the configuration is {}",
+            Said(|f: &mut Formatter<'_>| if defect == f64::INFINITY {
+                f.write_str("on another component of its space, such as a reflection instead of a rotation: check the \
+                 sign of its determinant, for example the order or the signs of its columns")
+            } else {
+                write!(f, "off its space by {defect:.3e} where {tolerance:.1e} is accepted: normalise it, for example \
+                 give unit length to a vector or orthonormal columns to a rotation")
+            });
+        /// The momentum has a component along the motions that leave the configuration unchanged.
+        OutsideMomentumSpace {
+            /// The size of that component, in the units of the momentum.
+            violation: f64,
+            /// The largest violation that is accepted.
+            tolerance: f64,
+        } =>
+            "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, \
+             where {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
+             where such motions are motions of the body, declare `isotropy = free`";
+        /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact drifts: the motion is longer
+        /// than formulas of duplication (on SO(3); h|M|/J up to some 10⁷ in `f64` and a thousand in `f32`) or parts (on SO(4), some thousand radians) reach.
+        Unsolvable {
+            /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
+            solvable_fraction: f64,
+            /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
+            step_size: Option<f64>,
+            /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
+            /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
+            /// found by trying: some ten steps, at most 32; none is tried where a stepper keeps more than two kilobytes of constants, as for exact drifts.
+            solvable_step: Option<f64>,
+        } =>
+            "the step {}is too long for this momentum: its equation has a solution up to {solvable_fraction:.3} times it; {}",
+            Said(|f: &mut Formatter<'_>| step_size.map_or(Ok(()), |h| write!(f, "of {h:.3e} "))),
+            Said(|f: &mut Formatter<'_>| match solvable_step {
+                // rounded down
+                Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
+                None => f.write_str("reduce the step size, by that factor or more"),
+            });
+        /// The gradient method of an opaque potential disagrees with differences of its value method.
+        WrongGradient {
+            /// The entry of the configuration, counted through all its leaves, matrices column by column.
+            entry: usize,
+            /// What the gradient method gives for it.
+            gradient: f64,
+            /// What differences of the value method give.
+            difference: f64,
+        } =>
+            "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
+             check the sign, the factor and the order of entries of the gradient method";
+        /// The nodes that were given for a path do not make up whole steps.
+        PathLength {
+            /// Their number.
+            nodes: usize,
+            /// The number of nodes of one step.
+            per_step: usize,
+        } => "a path of {nodes} nodes was given: give {per_step} for each step, and at least one step";
+        /// No small motion of the start comes nearer to the target: its direction is not determined, as between opposite points of a
+        /// sphere, or the target is off the orbit.
+        UndeterminedDirection {
+            /// The distance from start to target, as the root of the sum of squares of all entries.
+            distance: f64,
+        } =>
+            "no small motion brings the start nearer to the target, {distance:.3e} away: where they are opposite, give \
+             a velocity as the guess; else check that some motion moves one to the other";
+        /// No motion moves the start to the target.
+        Unreachable {
+            /// The least distance that was left, as the root of the sum of squares of all entries.
+            distance: f64,
+        } =>
+            "no motion was found from the start to the target: {distance:.3e} were left; check that the target is on \
+             the orbit of the start, such as a vector of the same length, or give a velocity as the guess";
+        /// The work allowed for one path with fixed endpoints was used up without a decision.
+        NoExtremal {
+            /// Size of the correction that would come next, relative to the path: the root of the ratio of what it takes from the action.
+            correction: f64,
+            /// Number of linearisations that were made.
+            iterations: u32,
+        } =>
+            "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): give a \
+             better guess, or go there by targets between; of a plan, check that its price cannot fall for ever";
+        /// To first order no input moves the end of the plan towards the target.
+        Uncontrollable {
+            /// The distance that is left, as the root of the sum of squares of all entries.
+            distance: f64,
+        } =>
+            "no small change of the inputs brings the end nearer to the target, {distance:.3e} away: check that the \
+             inputs control all that the target fixes, and that there are enough steps; else guess inputs that lead \
+             near it";
+        /// No inputs were found that keep the bounds.
+        Infeasible {
+            /// The bound that is violated most, as it was written.
+            bound: &'static str,
+            /// The step in which it is, counted from 0.
+            stage: usize,
+            /// By how much it is violated, at most.
+            violation: f64,
+        } =>
+            "no inputs were found that keep the bounds: `{bound}` is violated by {violation:.3e} in step {stage}; \
+             relax it, or guess inputs that keep it";
+        /// No inputs were found that lead to the target.
+        TargetMissed {
+            /// The distance that is left, as the root of the sum of squares of all entries.
+            distance: f64,
+            /// Number of linearisations that were made.
+            iterations: u32,
+        } =>
+            "no inputs were found that lead to the target: {distance:.3e} were left after {iterations} linearisations; \
+             give more steps or wider bounds, or guess inputs that lead near it";
+        /// The work allowed for one implicit equation was used up without a decision.
+        NotConverged {
+            /// Size of the residual that was left, relative to the terms of the equation.
+            residual: f64,
+            /// Number of linearisations or sweeps that were made.
+            iterations: u32,
+        } =>
+            "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
+             reduce the step size, or allow more by `iterations` where the declaration limits them";
+        /// The step of a lane failed, where the scalar has several: [`Stepper::failure`](crate::Stepper::failure) says why, and
+        /// [`Stepper::step_each`](crate::Stepper::step_each) steps the others.
+        InLane {
+            /// The first such lane, counted from 0.
+            lane: usize,
+        } =>
+            "the step of lane {lane} failed, and may have in others: `Stepper::failure` says why, and \
+             `Stepper::step_each` steps those that can be";
+        /// There is no body with this number in an [ensemble](crate#many-bodies).
+        NoBody {
+            /// The number, counted from 0.
+            body: usize,
+            /// How many bodies there are.
+            bodies: usize,
+        } =>
+            "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below \
+             {bodies}";
+        /// A step on T*Q was asked of a system with forces, which act on momenta in 𝔤* and determine no covector, or of momenta alone.
+        NoCovector =>
+            "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the \
+             configuration to step: step in (q, N), by `Stepper::step`";
+        /// The step has no derivative: it is at the very edge of what is solvable.
+        SingularTangent {
+            /// The step size.
+            step_size: f64,
+        } =>
+            "the step of {step_size:.3e} has no derivative, as it is at the edge of what can be solved: reduce the \
+             step size";
+    }
 }
 
 impl Error {
@@ -176,142 +264,6 @@ impl Error {
     #[cold]
     pub(crate) fn unsolvable<T: Scalar>(fraction: T) -> Self {
         Self::Unsolvable { solvable_fraction: fraction.to_f64(), step_size: None, solvable_step: None }
-    }
-}
-
-impl Display for Error {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::StepSize { value } => {
-                write!(
-                    f,
-                    "the step size is {value}: it must be a finite number other than zero (negative runs back in time)"
-                )
-            }
-            Self::NotFinite { name } => {
-                write!(
-                    f,
-                    "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from"
-                )
-            }
-            Self::BelowRounding { error, rounding } => write!(
-                f,
-                "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: ask for more than \
-                 that, or for a shorter duration"
-            ),
-            Self::NotSymmetric { field, defect, tolerance } => write!(
-                f,
-                "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more than the \
-                 round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove `#[clebsch(symmetric)]`"
-            ),
-            Self::NotDiagonal { field, defect } => write!(
-                f,
-                "`{field}` is declared diagonal, but has an entry of {defect:.3e} off its diagonal: set it to zero, or remove \
-                 `#[clebsch(diagonal)]`"
-            ),
-            Self::NotUnit { field, length } => write!(
-                f,
-                "`{field}` is declared a unit vector, but its length is {length}: pass {field}.normalize(), or remove \
-                 `#[clebsch(unit)]`"
-            ),
-            Self::SingularKineticEnergy { condition } => write!(
-                f,
-                "the kinetic energy is singular for these parameters (condition number {condition:.2e}), so that momenta do not \
-                 determine velocities: check masses and moments of inertia for zeros and for units that differ by many orders"
-            ),
-            Self::OffOrbit { defect, .. } if defect == f64::INFINITY => write!(
-                f,
-                "the configuration is on another component of its space, such as a reflection instead of a rotation: \
-                 check the sign of its determinant, for example the order or the signs of its columns"
-            ),
-            Self::OffOrbit { defect, tolerance } => write!(
-                f,
-                "the configuration is off its space by {defect:.3e} where {tolerance:.1e} is accepted: normalise it, for example \
-                 give unit length to a vector or orthonormal columns to a rotation"
-            ),
-            Self::OutsideMomentumSpace { violation, tolerance } => write!(
-                f,
-                "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, where \
-                 {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
-                 where such motions are motions of the body, declare `isotropy = free`"
-            ),
-            Self::Unsolvable { solvable_fraction, step_size, solvable_step } => {
-                f.write_str("the step ")?;
-                if let Some(h) = step_size {
-                    write!(f, "of {h:.3e} ")?;
-                }
-                write!(
-                    f,
-                    "is too long for this momentum: its equation has a solution up to {solvable_fraction:.3} times it; "
-                )?;
-                match solvable_step {
-                    // rounded down
-                    Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
-                    None => f.write_str("reduce the step size, by that factor or more"),
-                }
-            }
-            Self::WrongGradient { entry, gradient, difference } => write!(
-                f,
-                "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
-                 check the sign, the factor and the order of entries of the gradient method"
-            ),
-            Self::PathLength { nodes, per_step } => {
-                write!(f, "a path of {nodes} nodes was given: give {per_step} for each step, and at least one step")
-            }
-            Self::UndeterminedDirection { distance } => write!(
-                f,
-                "no small motion brings the start nearer to the target, {distance:.3e} away: where they are opposite, give a velocity as \
-                 the guess; else check that some motion moves one to the other"
-            ),
-            Self::Unreachable { distance } => write!(
-                f,
-                "no motion was found from the start to the target: {distance:.3e} were left; check that the target is on the orbit of the \
-                 start, such as a vector of the same length, or give a velocity as the guess"
-            ),
-            Self::NoExtremal { correction, iterations } => write!(
-                f,
-                "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): \
-                 give a better guess, or go there by targets between; of a plan, check that its price cannot fall for ever"
-            ),
-            Self::Uncontrollable { distance } => write!(
-                f,
-                "no small change of the inputs brings the end nearer to the target, {distance:.3e} away: check that the inputs control all \
-                 that the target fixes, and that there are enough steps; else guess inputs that lead near it"
-            ),
-            Self::Infeasible { bound, stage, violation } => write!(
-                f,
-                "no inputs were found that keep the bounds: `{bound}` is violated by {violation:.3e} in step {stage}; relax it, \
-                 or guess inputs that keep it"
-            ),
-            Self::TargetMissed { distance, iterations } => write!(
-                f,
-                "no inputs were found that lead to the target: {distance:.3e} were left after {iterations} linearisations; \
-                 give more steps or wider bounds, or guess inputs that lead near it"
-            ),
-            Self::NotConverged { residual, iterations } => write!(
-                f,
-                "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
-                 reduce the step size, or allow more by `iterations` where the declaration limits them"
-            ),
-            Self::NumberOfSites { found, sites } => {
-                write!(f, "the storage has {found} entries where there are {sites} sites: give one entry for each site")
-            }
-            Self::InLane { lane } => write!(
-                f,
-                "the step of lane {lane} failed, and may have in others: `Stepper::failure` says why, and `Stepper::step_each` steps those \
-                 that can be"
-            ),
-            Self::NoBody { body, bodies } => {
-                write!(f, "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below {bodies}")
-            }
-            Self::NoCovector => f.write_str(
-                "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the configuration to step: step in (q, N), by `Stepper::step`",
-            ),
-            Self::SingularTangent { step_size } => write!(
-                f,
-                "the step of {step_size:.3e} has no derivative, as it is at the edge of what can be solved: reduce the step size"
-            ),
-        }
     }
 }
 
