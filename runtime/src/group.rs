@@ -24,10 +24,146 @@
 //! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; so m·ξ = ⟨M, ξ⟩ is twice the kinetic
 //!   energy of a Lagrangian that is quadratic in ξ.
 
-mod linear;
-mod motion;
-mod turn;
+use core::convert::Infallible;
 
-pub use linear::{GL, SL, Sp};
-pub use motion::{Aff, Heisenberg, SE, Sim, Translation};
-pub use turn::{SO, SU, U};
+/// The rotations of P-dimensional space, `SO<P>`; with a second number the maps of P + Q dimensions that keep
+/// x₁² + … + x_P² − x_{P+1}² − … − x_{P+Q}², such as the Lorentz group `SO<1, 3>` or `SO<3, 1>`.
+///
+/// Matrices F with FᵀηF = η and det F = 1, η = diag(1, …, 1, −1, …, −1); η = I for `SO<N>`. Where Q > 0 these are two components,
+/// and steps stay in that of the identity: for the Lorentz group, the one that keeps the direction of time.
+///
+/// | group | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|---|
+/// | `SO<3>` | 3×3 | e₁^, e₂^, e₃^ | the angular momentum π₁, π₂, π₃ |
+/// | `SO<N>` | N×N | E_ji − E_ij for i < j, in the order (12), (13), …, (N−1 N): axis i turns to axis j | x_i p_j − x_j p_i |
+/// | `SO<P, Q>` | (P+Q)×(P+Q) | E_ji − η_i η_j E_ij for i < j, in the same order | `SO<1, 3>`: boosts (12), (13), (14), then rotations |
+///
+/// All of these bases have the Gram matrix 2I, so that M = ½ Σ m_i E_i: for `SO<3>`, M = ½ π^; else m_(ij) = 2 M_ji.
+/// `SO<2>` has the one component (12), the angular momentum in the plane.
+///
+/// ```text
+///        ⎡  0  −x₃  x₂ ⎤
+///   x^ = ⎢  x₃  0  −x₁ ⎥
+///        ⎣ −x₂  x₁  0  ⎦
+/// ```
+///
+/// Momenta have the unit of a discrete Lagrangian, J·s, for an angle has none.
+#[derive(Debug)]
+pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
+
+/// The unitary maps of N complex dimensions, in real form: A + iB is the 2N×2N matrix with the blocks A, −B; B, A.
+///
+/// | matrices | basis, in order (the blocks that are not given are 0) |
+/// |---|---|
+/// | 2N×2N, FᵀF = I, FᵀΩF = Ω | A = E_ji − E_ij for i < j; then B = E_ji + E_ij for i < j; then B = E_ii |
+///
+/// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12), (13), …,
+/// (N−1 N). Every entry stands twice in the real form, so that the Gram matrix is 4 for pairs and 2 for B = E_ii:
+/// M = ¼ Σ m E over the pairs + ½ Σ m E over the others.
+///
+/// `U<1>` is the circle. The component along B = E_ii is the momentum of the phase of number i.
+#[derive(Debug)]
+pub struct U<const N: usize>(Infallible);
+
+/// The special unitary maps of N complex dimensions; `SU<2>` is the unit quaternions.
+///
+/// | group | elements | basis, in order |
+/// |---|---|---|
+/// | `SU<2>` | `nalgebra::Quaternion`, coordinates i, j, k, w | i/2, j/2, k/2 |
+/// | `SU<N>` | 2N×2N as of [`U`], with determinant 1 in complex form | as of [`U`], with B = E_ii − E_{i+1,i+1} for i < N at the end |
+///
+/// * `SU<2>`: `Q * v` turns v as its rotation does, and components are those of `SO<3>`: the angular momentum π₁, π₂, π₃.
+///   Quaternions pair by the dot product of their four coordinates; the Gram matrix is ¼ I and the representing quaternion is
+///   2(π₁ i + π₂ j + π₃ k). Q and −Q are the same rotation and two configurations.
+/// * `SU<N>`: the Gram matrix is 4 for pairs; for the last N − 1 it has 4 on the diagonal and −2 beside it, twice the Cartan matrix.
+#[derive(Debug)]
+pub struct SU<const N: usize>(Infallible);
+
+/// The translations of N-dimensional space: vectors under addition.
+///
+/// | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|
+/// | none: an element is a vector with N entries, the identity is 0 | e₁, …, e_N | the linear momentum p₁, …, p_N |
+///
+/// The Gram matrix is I and M = m. Ad and Ad* are the identity; every action is left and right at once, and takes the side of
+/// the other factors, else left.
+#[derive(Debug)]
+pub struct Translation<const N: usize>(Infallible);
+
+/// The rigid motions of N-dimensional space: x ↦ R x + a, `F.rotation() * x + F.translation()`.
+///
+/// | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|
+/// | (N+1)×(N+1), R and a above (0 … 0 1) | that of [`SO`] in the upper left; then E_{i,N+1} | angular momentum, then linear momentum |
+///
+/// The Gram matrix is 2 for the turns and 1 for the shifts: M has ½ π^ (N = 3) in the upper left and p in the last column, and its
+/// last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the Lie algebra.
+///
+/// For a right action, `q * F`, both momenta are in the body frame, the angular one about the body's origin. For a left action
+/// they are spatial, the angular one about the origin of space.
+#[derive(Debug)]
+pub struct SE<const N: usize>(Infallible);
+
+/// The similarities of N-dimensional space: x ↦ s R x + a with s > 0. `Sim<1>` scales and shifts a line.
+///
+/// | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|
+/// | (N+1)×(N+1), s R and a above (0 … 0 1) | that of [`SO`] in the upper left; diag(I, 0); then E_{i,N+1} | angular momentum, x·p of the dilation, linear momentum |
+///
+/// The Gram matrix is 2 for the turns, N for the dilation and 1 for the shifts.
+#[derive(Debug)]
+pub struct Sim<const N: usize>(Infallible);
+
+/// The affine maps of N-dimensional space: x ↦ A x + a with det A > 0.
+///
+/// | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|
+/// | (N+1)×(N+1), A and a above (0 … 0 1) | E_ij of the upper left by rows; then E_{i,N+1} | p_i x_j, then linear momentum (left action) |
+///
+/// The Gram matrix is I: the entries of M are the components.
+#[derive(Debug)]
+pub struct Aff<const N: usize>(Infallible);
+
+/// The Heisenberg group of 2N + 1 dimensions: N positions x, N positions y and one z that commutes with all.
+///
+/// | matrices | basis, in order | component for a physical Lagrangian |
+/// |---|---|---|
+/// | (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1) | X_i = E_{1,1+i}; then Y_i = E_{1+i,N+2}; then Z = E_{1,N+2} | the momenta p_x, p_y, p_z |
+///
+/// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components.
+/// exp(Σ x_i X_i + Σ y_i Y_i + z Z) has the corner z + ½ x·y. The momentum p_z is constant in a free motion, and is what a
+/// magnetic field is to the other two.
+#[derive(Debug)]
+pub struct Heisenberg<const N: usize>(Infallible);
+
+/// The invertible linear maps of N-dimensional space. `GL<1>` is the scalings, a positive number where it starts at one.
+///
+/// | matrices | basis, in order |
+/// |---|---|
+/// | N×N, det F ≠ 0 | E_ij by rows: (11), (12), …, (NN) |
+///
+/// The Gram matrix is I: m are the entries of M by rows. Steps never leave the component det F > 0 of the identity.
+#[derive(Debug)]
+pub struct GL<const N: usize>(Infallible);
+
+/// The linear maps of N-dimensional space that keep the volume.
+///
+/// | matrices | basis, in order |
+/// |---|---|
+/// | N×N, det F = 1 | E_ii − E_{i+1,i+1} for i < N; then E_ij for i ≠ j by rows |
+///
+/// For `SL<2>` these are H = diag(1, −1), E = E₁₂ and F = E₂₁. The Gram matrix is the Cartan matrix for the first N − 1 (2 on
+/// the diagonal, −1 beside it) and I for the others: for `SL<2>`, M = ½ m_H H + m_E E + m_F F.
+#[derive(Debug)]
+pub struct SL<const N: usize>(Infallible);
+
+/// The linear maps that keep the symplectic form of a phase space of `DIMENSION` = 2n dimensions: `Sp<2>` is `SL<2>`.
+///
+/// | matrices | basis, in order |
+/// |---|---|
+/// | 2n×2n, FᵀΩF = Ω with Ω = (0 I; −I 0) | E_ij − E_{n+j,n+i} by rows; then E_{i,n+j} + E_{j,n+i} for j ≤ i (E_{i,n+i} for i = j); then their transposes |
+///
+/// Pairs j ≤ i are in the order (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. A vector of
+/// phase space is its n positions followed by its n momenta.
+#[derive(Debug)]
+pub struct Sp<const DIMENSION: usize>(Infallible);

@@ -11,7 +11,9 @@ use nalgebra::SVector;
 #[inline]
 pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu: &SVector<T, M>) -> SVector<T, N> {
     let missing = T::one() - q.dot(q);
-    perpendicular(q, skew_times(mu, q)) * (T::one() + missing)
+    let mut w = skew_times(mu, q);
+    straighten(q, &mut w);
+    w * (T::one() + missing)
 }
 
 /// The components of M = wqᵀ − qwᵀ.
@@ -35,13 +37,6 @@ pub fn push<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>,
 fn straighten<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>) {
     let along = q.dot(w);
     w.zip_apply(q, |w, q| *w -= q * along);
-}
-
-/// w without what of it is along q.
-#[inline]
-fn perpendicular<T: Scalar, const N: usize>(q: &SVector<T, N>, mut w: SVector<T, N>) -> SVector<T, N> {
-    straighten(q, &mut w);
-    w
 }
 
 /// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), and w longer by as much as q is shorter: the momentum
@@ -86,10 +81,10 @@ pub fn turn_great_circle<T: Scalar, const N: usize>(
 /// Those of [`turn_great_circle`].
 #[inline]
 fn cosine_of<T: Scalar>(sine_squared: T) -> Result<T, Error> {
-    match sine_squared.below(T::one()).any() {
-        true => Ok((T::one() - sine_squared).sqrt()),
-        false => Err(crate::element::beyond_right_angle(sine_squared)),
+    if !sine_squared.below(T::one()).any() {
+        return Err(crate::element::beyond_right_angle(sine_squared));
     }
+    Ok((T::one() - sine_squared).sqrt())
 }
 
 /// The same of a point that nothing pushes, whose momentum M = vuᵀ − uvᵀ stays, with w = Mq: q stays in the plane of u and v, what rounding puts beside it
