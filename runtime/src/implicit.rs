@@ -19,6 +19,7 @@ pub use jacobian::Jacobian;
 pub use linear_equation::{LinearEquation, solve_linear_equation};
 pub use path::LINEARIZATIONS;
 
+use crate::linear::Solution;
 use crate::matrices::total;
 use crate::orientation::Orientation;
 use crate::space::larger;
@@ -65,7 +66,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// The provided method is [`Jacobian::solve`], for a matrix elimination with pivoting. Where the Jacobian is known to be symmetric or block triangular, answer with
     /// [`solve_symmetric`](crate::linear::solve_symmetric), or with one [`solve_dense`](crate::linear::solve_dense) for each block on its diagonal.
     #[inline(always)]
-    fn correct(jacobian: &Self::Jacobian, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn correct(jacobian: &Self::Jacobian, residual: &SVector<T, M>) -> Solution<T, M> {
         jacobian.solve(residual)
     }
 

@@ -10,6 +10,9 @@ use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
+/// x of A x = b, and the sign of det A in the lanes in which A is regular; `None` where there is no such lane.
+pub type Solution<T, const M: usize> = Option<(SVector<T, M>, Orientation)>;
+
 /// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
 ///
 /// Without that, a loop over loops whose bounds depend on it stays a loop for lanes, with the matrix in memory: a step of eight free bodies
@@ -110,12 +113,9 @@ pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector
 
 /// x of A x = b and the sign of det A, by cofactors or by elimination with pivoting; `None` where A is singular or not finite in all lanes.
 #[inline(always)]
-pub fn solve_dense<T: Scalar, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> Option<(SVector<T, M>, Orientation)> {
+pub fn solve_dense<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     if !cofactors::are_for(M) {
-        return eliminated(a, b);
+        return eliminated(rows(a), b);
     }
     let (x, orientation, safe) = cofactors::solve(a, b);
     if safe.all() {
@@ -136,7 +136,7 @@ fn eliminated_at_last<T: Scalar, const M: usize>(
     x: &SVector<T, M>,
     mut orientation: Orientation,
     mut safe: T::Mask,
-) -> Option<(SVector<T, M>, Orientation)> {
+) -> Solution<T, M> {
     let mut x = *x;
     let unit = power_of_two_near(a.max_abs());
     let (other, turned, other_safe) = cofactors::solve(&a.map(|entry| entry * unit), &b.map(|entry| entry * unit));
@@ -147,7 +147,7 @@ fn eliminated_at_last<T: Scalar, const M: usize>(
     if safe.all() {
         return Some((x, orientation));
     }
-    match eliminated(a, b) {
+    match eliminated(rows(a), b) {
         Some((other, turned)) => {
             let x = x.zip_map(&other, |own, other| T::select(safe, own, other));
             Some((x, orientation.or(safe.bits(), Some(turned))))
@@ -172,13 +172,11 @@ pub(crate) fn power_of_two_near<T: Scalar>(size: T) -> T {
     power
 }
 
+/// The same of a matrix by rows, by elimination with pivoting.
 #[inline]
-fn eliminated<T: Scalar, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> Option<(SVector<T, M>, Orientation)> {
+pub(crate) fn eliminated<T: Scalar, const M: usize>(rows: [[T; M]; M], b: &SVector<T, M>) -> Solution<T, M> {
     let mut unknowns: [[T; 1]; M] = from_fn(|i| [b[i]]);
-    let orientation = eliminate(rows(a), &mut unknowns)?;
+    let orientation = eliminate(rows, &mut unknowns)?;
     Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
 }
 
@@ -189,10 +187,7 @@ fn eliminated<T: Scalar, const M: usize>(
 /// no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
-pub fn solve_symmetric<T: Scalar, const M: usize>(
-    a: &SMatrix<T, M, M>,
-    b: &SVector<T, M>,
-) -> Option<(SVector<T, M>, Orientation)> {
+pub fn solve_symmetric<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     let mut l = rows(a);
     let mut x: [T; M] = from_fn(|i| b[i]);
     let mut reciprocals = [T::zero(); M];

@@ -7,7 +7,7 @@
 //! Source: Bartels and Stewart, *Solution of the matrix equation AX + XB = C*, Communications of the ACM 15 (1972) 820–826.
 
 use crate::implicit::Jacobian;
-use crate::linear::{eliminate, entry, matrix, power_of_two_near, rows, solve_dense};
+use crate::linear::{Solution, eliminate, entry, matrix, power_of_two_near, rows, solve_dense};
 use crate::matrices::{matrix_of, skew, skew_components};
 use crate::orientation::Orientation;
 use crate::schur::Schur;
@@ -97,7 +97,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
     }
 
     /// x with ⟨x^B, E⟩ = `right`, and the sign of the determinant of this map; `None` where it is 0.
-    fn solve<const M: usize>(&self, right: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn solve<const M: usize>(&self, right: &SVector<T, M>) -> Solution<T, M> {
         let q = matrix(self.q);
         let right: SMatrix<T, N, N> = skew(right);
         let right = rows(&(q.transpose() * right * q));
@@ -199,7 +199,7 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
     }
 
     #[inline(never)]
-    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn solve(&self, residual: &SVector<T, M>) -> Solution<T, M> {
         let mut solution = *residual;
         let (mut regular, mut negative) = (0_u16, 0_u16);
         for lane in 0..T::LANES {
@@ -219,11 +219,7 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
         orientation.is_known::<T>().then_some(orientation)
     }
 
-    fn solve_exchanged(
-        &self,
-        exchanged: Option<(usize, &SVector<T, M>)>,
-        right: &SVector<T, M>,
-    ) -> Option<(SVector<T, M>, Orientation)>
+    fn solve_exchanged(&self, exchanged: Option<(usize, &SVector<T, M>)>, right: &SVector<T, M>) -> Solution<T, M>
     where
         T: Real,
     {

@@ -1,6 +1,6 @@
 //! Dρ(ξ) as the solvers take it: a matrix, or a linear map that is inverted by its structure.
 
-use crate::linear::{eliminate, rows, solve_dense};
+use crate::linear::{Solution, eliminated, rows, solve_dense};
 use crate::orientation::Orientation;
 use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
@@ -15,17 +15,13 @@ pub trait Jacobian<T: Scalar, const M: usize>: Copy {
     fn lane(&self, lane: usize) -> Self::Lane;
 
     /// Δ with Dρ Δ = `residual` and the sign of det Dρ; `None` where it is singular in all lanes.
-    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)>;
+    fn solve(&self, residual: &SVector<T, M>) -> Solution<T, M>;
 
     /// The sign of det Dρ; `None` where it is singular or not finite in some lane.
     fn orientation(&self) -> Option<Orientation>;
 
     /// The same as [`solve`](Self::solve) with another column j in place of its own; by elimination where this is a matrix.
-    fn solve_exchanged(
-        &self,
-        exchanged: Option<(usize, &SVector<T, M>)>,
-        right: &SVector<T, M>,
-    ) -> Option<(SVector<T, M>, Orientation)>
+    fn solve_exchanged(&self, exchanged: Option<(usize, &SVector<T, M>)>, right: &SVector<T, M>) -> Solution<T, M>
     where
         T: Real;
 
@@ -54,7 +50,7 @@ impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
     }
 
     #[inline(always)]
-    fn solve(&self, residual: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn solve(&self, residual: &SVector<T, M>) -> Solution<T, M> {
         solve_dense(self, residual)
     }
 
@@ -63,11 +59,7 @@ impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
         Orientation::of(rows(self))
     }
 
-    fn solve_exchanged(
-        &self,
-        exchanged: Option<(usize, &SVector<T, M>)>,
-        right: &SVector<T, M>,
-    ) -> Option<(SVector<T, M>, Orientation)>
+    fn solve_exchanged(&self, exchanged: Option<(usize, &SVector<T, M>)>, right: &SVector<T, M>) -> Solution<T, M>
     where
         T: Real,
     {
@@ -76,9 +68,7 @@ impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
             let entries = matrix.iter_mut().filter_map(|row| row.get_mut(j));
             entries.zip(column).for_each(|(entry, &other)| *entry = other);
         }
-        let mut unknowns = core::array::from_fn(|i| [right[i]]);
-        let orientation = eliminate(matrix, &mut unknowns)?;
-        Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
+        eliminated(matrix, right)
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! Implicit equations that are affine in the unknowns: one elimination solves them.
 
 use super::{Equation, lane};
-use crate::linear::solve_dense;
+use crate::linear::{Solution, solve_dense};
 use crate::orientation::Orientation;
 use crate::{Error, Mask, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
@@ -16,7 +16,7 @@ pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// ξ with A ξ = b, and the sign of det A; `None` where it is singular in all lanes. See [`Equation::correct`].
     #[inline]
-    fn correct(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<(SVector<T, M>, Orientation)> {
+    fn correct(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
         solve_dense(a, b)
     }
 

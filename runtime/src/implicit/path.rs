@@ -74,7 +74,7 @@ impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_,
         let (mut before, mut residual_before) = (size(&step), SVector::from_element(T::zero()));
         while self.is_affordable() {
             T::iterated();
-            self.count(1);
+            self.count += 1;
             let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
             let (correction, orientation) = jacobian.solve(&residual)?;
             if orientation != self.branch {

@@ -34,7 +34,8 @@ pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
     pub scale: T,
     /// Size of ρ(0; μ): what a residual is measured by.
     pub weight: T,
-    count: u32,
+    /// The linearisations on the path.
+    pub count: u32,
     /// The most linearisations.
     most: u32,
     /// The iterations before the path was followed.
@@ -74,10 +75,6 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
 
     pub fn is_affordable(&self) -> bool {
         self.count < self.most
-    }
-
-    pub fn count(&mut self, linearizations: u32) {
-        self.count += linearizations;
     }
 
     /// The error for too much work.
@@ -130,7 +127,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         let mut is_first = true;
         while self.is_affordable() {
             let at = self.linearize(&xi, s);
-            let (correction, change) = at.correct(parameter)?;
+            let (correction, change) = at.solve(parameter, &at.residual, T::zero())?;
             let terms = larger(self.weight * s.abs(), at.jacobian.largest_entry() * size(&xi));
             xi -= correction;
             s -= change;
@@ -164,7 +161,9 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         from: &PathPoint<T, M>,
     ) -> Option<PathPoint<T, M>> {
         let at = self.linearize(&xi, s);
-        let (mut slope_xi, mut slope_s) = at.tangent(parameter)?;
+        // the derivatives by the parameter
+        let fixed = if parameter.0 < M { at.jacobian.column(parameter.0) } else { at.rate };
+        let (mut slope_xi, mut slope_s) = at.solve(parameter, &-fixed, T::one())?;
         let along = (slope_xi / self.scale).dot(&(from.slope_xi / self.scale)) + slope_s * from.slope_s;
         let speed = larger(slope_s.abs(), slope_xi.max_abs() / self.scale);
         let unit = if along < T::zero() { -T::one() / speed } else { T::one() / speed };
@@ -181,7 +180,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
 
     /// ρ(ξ; sμ) = ρ(ξ; 0) + s(ρ(ξ; μ) − ρ(ξ; 0)), for ρ is affine in μ.
     fn linearize(&mut self, xi: &SVector<T, M>, s: T) -> Linearization<T, E::Jacobian, M> {
-        self.count(2);
+        self.count += 2;
         T::iterated();
         T::iterated();
         let (residual, jacobian) = self.equation.linearize(&self.still, xi);
@@ -192,17 +191,6 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
 }
 
 impl<T: Real, J: Jacobian<T, M>, const M: usize> Linearization<T, J, M> {
-    /// The Newton correction of (ξ, s) with the parameter held fixed.
-    fn correct(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
-        self.solve(parameter, &self.residual, T::zero())
-    }
-
-    /// The derivatives of (ξ, s) by the parameter.
-    fn tangent(&self, parameter: Parameter) -> Option<(SVector<T, M>, T)> {
-        let fixed = if parameter.0 < M { self.jacobian.column(parameter.0) } else { self.rate };
-        self.solve(parameter, &-fixed, T::one())
-    }
-
     /// Solves \[Dρ ∂ρ/∂s\] (ξ, s) = `right` without the column of the parameter, which gets `fixed`.
     fn solve(&self, parameter: Parameter, right: &SVector<T, M>, fixed: T) -> Option<(SVector<T, M>, T)> {
         let exchanged = (parameter.0 < M).then_some((parameter.0, &self.rate));
