@@ -23,9 +23,9 @@ use crate::free_rotation::axes::Axes;
 use crate::linear::{matrix, rows};
 use crate::parameters::invert;
 use crate::root::root;
-use crate::space::{each_lane, lane_of, larger, set_lane};
+use crate::space::{each_lane, lane_of, larger};
 use crate::{Error, Mask, Real, Scalar, Space};
-use flow::{Matrix, PLANES, above, dot, flow, product, skew};
+use flow::{Matrix, PLANES, Vector, above, dot, flow, product, skew};
 use nalgebra::{SMatrix, SVector};
 use setup::Constants;
 use turn::{composed, turn};
@@ -75,7 +75,7 @@ impl<T: Scalar> FreeRotation4<T> {
         let m = self.in_principal_axes(momentum);
         let mut kept: KeptRotation4<T> = Space::<T>::origin();
         for lane in 0..T::LANES {
-            if let Ok(found) = self.of_lane(lane).constants(&m.lane(lane)) {
+            if let Ok(found) = self.of_lane(lane).constants(&lane_of(&m, lane)) {
                 kept.set_lane(lane, &found.write());
             }
         }
@@ -87,17 +87,13 @@ impl<T: Scalar> FreeRotation4<T> {
     /// # Errors
     /// [`Error::Unsolvable`] where the motion is too long, [`Error::NotFinite`]: of the first lane, where all fail; else those lanes are NaN.
     #[inline]
-    pub fn turn(
-        &self,
-        kept: &KeptRotation4<T>,
-        momentum: &SVector<T, 6>,
-    ) -> Result<(SMatrix<T, 4, 4>, SVector<T, 6>), Error> {
+    pub fn turn(&self, kept: &KeptRotation4<T>, momentum: &Vector<T>) -> Result<(SMatrix<T, 4, 4>, Vector<T>), Error> {
         let constants = Constants::read(kept);
         let m = self.in_principal_axes(momentum);
         let alone = constants.parts.equals(T::one()) & constants.by_series.equals(T::zero());
         let (increment, next) = if alone.all() {
-            let (increment, next) = turn(&constants, &scaled(&m, constants.step));
-            (increment, scaled(&next, constants.step.recip()))
+            let (increment, next) = turn(&constants, &(m * constants.step));
+            (increment, next * constants.step.recip())
         } else {
             self.lane_by_lane(kept, &m)?
         };
@@ -107,10 +103,10 @@ impl<T: Scalar> FreeRotation4<T> {
     /// The same where lanes have different numbers of parts.
     #[cold]
     #[inline(never)]
-    fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+    fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
         let nothing = T::Lane::from_f64(f64::NAN);
-        let all = each_lane::<T, _>(([[nothing; 4]; 4], [nothing; 6]), |lane| {
-            self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &m.lane(lane))
+        let all = each_lane::<T, _>(([[nothing; 4]; 4], SVector::from_element(nothing)), |lane| {
+            self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &lane_of(m, lane))
         })?;
         Ok(Space::<T>::side_by_side(|lane| all[lane]))
     }
@@ -121,9 +117,8 @@ impl<T: Scalar> FreeRotation4<T> {
 
     /// The entries above the diagonal of hM/s. Components are those below it.
     #[inline]
-    fn in_principal_axes(&self, momentum: &SVector<T, 6>) -> [T; 6] {
-        let [m] = momentum.data.0;
-        let scaled = scaled(&m, -self.scale);
+    fn in_principal_axes(&self, momentum: &Vector<T>) -> Vector<T> {
+        let scaled = momentum * -self.scale;
         match &self.axes {
             // columns, one after the other, are the rows of the transposed
             Axes::Principal(axes) => above(&product(&axes.data.0, &product(&skew(&scaled), &rows(axes)))),
@@ -132,15 +127,14 @@ impl<T: Scalar> FreeRotation4<T> {
     }
 
     #[inline]
-    fn in_coordinates(&self, increment: &Matrix<T>, m: &[T; 6]) -> (SMatrix<T, 4, 4>, SVector<T, 6>) {
+    fn in_coordinates(&self, increment: &Matrix<T>, m: &Vector<T>) -> (SMatrix<T, 4, 4>, Vector<T>) {
         let inverse = -self.scale.recip();
         match &self.axes {
             Axes::Principal(axes) => {
                 let turned = |a: &Matrix<T>| product(&rows(axes), &product(a, &axes.data.0));
-                let (increment, body) = (turned(increment), turned(&skew(m)));
-                (matrix(increment), scaled(&above(&body), inverse).into())
+                (matrix(turned(increment)), above(&turned(&skew(m))) * inverse)
             }
-            _ => (matrix(*increment), scaled(m, inverse).into()),
+            _ => (matrix(*increment), m * inverse),
         }
     }
 }
@@ -154,7 +148,7 @@ impl<T: Real> FreeRotation4<T> {
         let (moments, axes) = Axes::principal(&mass(inertia));
         let size = moments.iter().fold(T::zero(), |most, moment| larger(most, moment.abs()));
         let inverse = size.recip();
-        let relative = moments.map(|moment| moment * inverse);
+        let relative = moments * inverse;
         // Σ_(ij) = d_i + d_j
         let [[p, q, r, s]] = relative.data.0;
         let least = [p + q, p + r, p + s, q + r, q + s, r + s].into_iter().map(T::abs);
@@ -172,7 +166,7 @@ impl<T: Real> FreeRotation4<T> {
     /// # Errors
     /// [`Error::Unsolvable`], [`Error::NotFinite`].
     #[cold]
-    fn constants(&self, m: &[T; 6]) -> Result<Constants<T>, Error> {
+    fn constants(&self, m: &Vector<T>) -> Result<Constants<T>, Error> {
         if m.iter().any(|entry| !entry.is_finite()) {
             return Err(Error::NotFinite { name: "the momentum" });
         }
@@ -187,7 +181,7 @@ impl<T: Real> FreeRotation4<T> {
         let mut parts = fewest;
         while parts <= PARTS && !matches!(self.axes, Axes::Tensor(_)) {
             let part = T::from_ratio(1, i64::from(parts));
-            if let Some(found) = setup::set_up(&self.moments, &scaled(m, part)) {
+            if let Some(found) = setup::set_up(&self.moments, &(m * part)) {
                 return Ok(Constants { parts: T::from_f64(f64::from(parts)), step: part * found.step, ..found });
             }
             parts *= 2;
@@ -196,16 +190,16 @@ impl<T: Real> FreeRotation4<T> {
     }
 
     /// F − I and the momentum after a part of a motion, by one series, or by some of half the time, of a quarter, …: each as long as it may be.
-    fn series(&self, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+    fn series(&self, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], *m);
         // of the time, in units of 1/PARTS
         let (mut done, mut length) = (0, PARTS);
         while done < PARTS {
             let part = T::from_ratio(i64::from(length), i64::from(PARTS));
-            match flow(|m| self.velocity(m), &scaled(&m, part)) {
+            match flow(|m| self.velocity(m), &(m * part)) {
                 Some((increment, end)) => {
                     whole = if done == 0 { increment } else { composed(&whole, &increment) };
-                    m = scaled(&end, part.recip());
+                    m = end * part.recip();
                     done += length;
                     // what is left of the half that was too long
                     while done & (2 * length - 1) == 0 && done < PARTS {
@@ -219,45 +213,42 @@ impl<T: Real> FreeRotation4<T> {
         Ok((whole, m))
     }
 
-    fn velocity(&self, m: &[T; 6]) -> [T; 6] {
+    fn velocity(&self, m: &Vector<T>) -> Vector<T> {
         match &self.axes {
-            Axes::Tensor(inverse) => (inverse * SVector::from(*m)).into(),
+            Axes::Tensor(inverse) => inverse * m,
             _ => setup::velocity(&self.moments, m),
         }
     }
 
     /// F − I and the momentum after all parts of the time.
-    fn in_parts(&self, constants: &Constants<T>, m: &[T; 6]) -> Result<(Matrix<T>, [T; 6]), Error> {
+    fn in_parts(&self, constants: &Constants<T>, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
         let parts = constants.parts.to_f64();
         // no constants: the motion says why
         let constants = if parts >= 1.0 { *constants } else { self.constants(m)? };
         let parts = constants.parts.to_f64() as u32;
-        let (mut whole, mut m) = ([[T::zero(); 4]; 4], scaled(m, constants.step));
+        let (mut whole, mut m) = ([[T::zero(); 4]; 4], m * constants.step);
         for _ in 0..parts {
             let (increment, next) =
                 if constants.by_series > T::zero() { self.series(&m)? } else { turn(&constants, &m) };
             (whole, m) = (composed(&whole, &increment), next);
         }
-        Ok((whole, scaled(&m, constants.step.recip())))
+        Ok((whole, m * constants.step.recip()))
     }
 }
 
 /// The momentum of the free motion over the time `h` from I to `f`, the one that Newton's method finds from M = (FD − DFᵀ)/h; NaN where it finds none.
 #[cold]
 pub fn free_momentum_4d<T: Scalar>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> SVector<T, 6> {
-    let mut momentum = SVector::from_element(T::zero());
-    for lane in 0..T::LANES {
+    Space::<T>::side_by_side(|lane| {
         let found = momentum_of(&lane_of(inertia, lane), h.lane(lane), &lane_of(f, lane));
-        let nothing = SVector::from_element(T::Lane::from_f64(f64::NAN));
-        set_lane(&mut momentum, lane, &found.unwrap_or(nothing));
-    }
-    momentum
+        found.unwrap_or(SVector::from_element(T::Lane::from_f64(f64::NAN)))
+    })
 }
 
 fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> Option<SVector<T, 6>> {
     let free = FreeRotation4::new(inertia, h).ok()?;
     // columns, one after the other: those of the transposed
-    let below = |a: &SMatrix<T, 4, 4>| SVector::<T, 6>::from(above(&a.data.0));
+    let below = |a: &SMatrix<T, 4, 4>| above(&a.data.0);
     // the turn that is left, R(μ)ᵀF, is small: its skew part tells it
     let defect = |momentum: &SVector<T, 6>| {
         let (increment, _) = free.turn(&free.motion(momentum), momentum).ok()?;
@@ -267,11 +258,6 @@ fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) 
     let mass = mass(inertia);
     let skew = f * mass - mass * f.transpose();
     root(below(&skew) * h.recip(), defect)
-}
-
-#[inline]
-fn scaled<T: Scalar, const N: usize>(vector: &[T; N], factor: T) -> [T; N] {
-    vector.map(|entry| factor * entry)
 }
 
 /// The symmetric D of a quadratic form Σ with ΣΩ = DΩ + ΩD: from R_ij = Σ_k Σ(e_i∧e_k, e_j∧e_k) = 2D + tr D.

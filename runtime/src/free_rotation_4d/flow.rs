@@ -3,7 +3,7 @@
 use crate::linear::rows;
 use crate::space::larger;
 use crate::{Real, Scalar};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// The entries (i, j) above the diagonal, in the order of the components.
 pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
@@ -11,16 +11,19 @@ pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), 
 /// A matrix by rows.
 pub(super) type Matrix<T> = [[T; 4]; 4];
 
+/// One number for each of the [`PLANES`].
+pub(super) type Vector<T> = SVector<T, 6>;
+
 /// The skew matrix with these entries above the diagonal.
-pub(super) fn skew<T: Scalar>([a, b, c, d, e, f]: &[T; 6]) -> Matrix<T> {
-    let zero = T::zero();
-    [[zero, *a, *b, *c], [-*a, zero, *d, *e], [-*b, -*d, zero, *f], [-*c, -*e, -*f, zero]]
+pub(super) fn skew<T: Scalar>(v: &Vector<T>) -> Matrix<T> {
+    let ([[a, b, c, d, e, f]], zero) = (v.data.0, T::zero());
+    [[zero, a, b, c], [-a, zero, d, e], [-b, -d, zero, f], [-c, -e, -f, zero]]
 }
 
 /// The entries above the diagonal.
 #[inline]
-pub(super) fn above<T: Scalar>([[_, a, b, c], [_, _, d, e], [_, _, _, f], _]: &Matrix<T>) -> [T; 6] {
-    [*a, *b, *c, *d, *e, *f]
+pub(super) fn above<T: Scalar>([[_, a, b, c], [_, _, d, e], [_, _, _, f], _]: &Matrix<T>) -> Vector<T> {
+    SVector::from([*a, *b, *c, *d, *e, *f])
 }
 
 /// One of four numbers: indices are below 4, and no panic is left where the optimiser does not see that.
@@ -43,19 +46,19 @@ pub(super) fn place<T>(matrix: &mut Matrix<T>, row: usize, column: usize) -> &mu
 
 /// ⋆v, the planes perpendicular to those of v.
 #[inline]
-pub(super) fn dual<T: Scalar>(v: &[T; 6]) -> [T; 6] {
-    [v[5], -v[4], v[3], v[2], -v[1], v[0]]
+pub(super) fn dual<T: Scalar>(v: &Vector<T>) -> Vector<T> {
+    SVector::from([v[5], -v[4], v[3], v[2], -v[1], v[0]])
 }
 
 /// Pf v
 #[inline]
-pub(super) fn pfaffian<T: Scalar>(v: &[T; 6]) -> T {
+pub(super) fn pfaffian<T: Scalar>(v: &Vector<T>) -> T {
     v[0] * v[5] - v[1] * v[4] + v[2] * v[3]
 }
 
 #[inline]
-pub(super) fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
-    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
+pub(super) fn dot<'a, T: Scalar>(a: impl IntoIterator<Item = &'a T>, b: impl IntoIterator<Item = &'a T>) -> T {
+    a.into_iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
 /// A B
@@ -72,17 +75,20 @@ const TERMS: usize = 36;
 
 /// F − I and the momentum after the free motion from I in the time 1, Ω = `velocity`(M); `None` where the series has not ended.
 #[cold]
-pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) -> Option<(Matrix<T>, [T; 6])> {
+pub(super) fn flow<T: Real>(
+    velocity: impl Fn(&Vector<T>) -> Vector<T>,
+    m: &Vector<T>,
+) -> Option<(Matrix<T>, Vector<T>)> {
     let zero = T::zero();
-    let (mut rotations, mut momenta, mut velocities) =
-        ([[[zero; 4]; 4]; TERMS], [[zero; 6]; TERMS], [[zero; 6]; TERMS]);
+    let nothing = SVector::from_element(zero);
+    let (mut rotations, mut momenta, mut velocities) = ([[[zero; 4]; 4]; TERMS], [nothing; TERMS], [nothing; TERMS]);
     rotations[0] = rows(&SMatrix::identity());
     (momenta[0], velocities[0]) = (*m, velocity(m));
     let small = T::from_ratio(1, 32) * T::EPSILON;
     let (mut whole, mut ends, mut derivatives) = (([[zero; 4]; 4], *m), 0, T::DERIVATIVES);
     for n in 0..TERMS - 1 {
         let factor = T::from_ratio(1, n as i64 + 1);
-        let (mut rotation, mut momentum) = ([[zero; 4]; 4], [zero; 6]);
+        let (mut rotation, mut momentum) = ([[zero; 4]; 4], nothing);
         let backward = velocities.iter().take(n + 1).rev();
         for ((turn, body), speed) in rotations.iter().zip(&momenta).zip(backward) {
             let (body, speed) = (skew(body), skew(speed));
@@ -98,12 +104,13 @@ pub(super) fn flow<T: Real>(velocity: impl Fn(&[T; 6]) -> [T; 6], m: &[T; 6]) ->
             }
         }
         let rotation = rotation.map(|row| row.map(|entry| entry * factor));
-        let momentum = momentum.map(|entry| entry * factor);
+        momentum *= factor;
         (rotations[n + 1], momenta[n + 1], velocities[n + 1]) = (rotation, momentum, velocity(&momentum));
         whole.0.iter_mut().flatten().zip(rotation.iter().flatten()).for_each(|(sum, term)| *sum += *term);
-        whole.1.iter_mut().zip(&momentum).for_each(|(sum, term)| *sum += *term);
+        whole.1 += momentum;
         let largest = |entries: &[T]| entries.iter().fold(zero, |most, entry| larger(most, entry.abs()));
-        let is_small = largest(rotation.as_flattened()) < small && largest(&momentum) <= small * largest(m);
+        let is_small =
+            largest(rotation.as_flattened()) < small && largest(momentum.as_slice()) <= small * largest(m.as_slice());
         ends = if is_small { ends + 1 } else { 0 };
         // two terms in a row, as one may vanish
         if ends >= 2 {

@@ -1,9 +1,10 @@
 //! The constants of a motion, from its Taylor series.
 
-use super::flow::{Matrix, PLANES, at, dot, dual, entry, flow, pfaffian, product, skew};
+use super::flow::{Matrix, PLANES, Vector, at, dot, dual, entry, flow, pfaffian, product, skew};
 use crate::space::larger;
 use crate::stumpff::stumpff;
 use crate::{Real, Scalar, Space};
+use nalgebra::SVector;
 
 /// The fields of [`Constants`], in their order.
 pub type Numbers<T> = (T, T, T, [T; 4], [T; 3], [[T; 3]; 3], [T; 2], [T; 4]);
@@ -57,7 +58,7 @@ impl<T: Scalar> Constants<T> {
 
 /// Σm², Pf² − Σ m_ij²(k_p + k_q) and Σ m_ij² k_p k_q, with p and q those that are not i and j: what det(λ² − λm − K) depends on.
 #[inline]
-pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &[T; 6], pfaffian: T) -> [T; 3] {
+pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &Vector<T>, pfaffian: T) -> [T; 3] {
     let [a, b, c, d] = *k;
     let sums = [c + d, b + d, b + c, a + d, a + c, a + b];
     let products = [c * d, b * d, b * c, a * d, a * c, a * b];
@@ -67,17 +68,17 @@ pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &[T; 6], pfaffian: T) ->
 
 /// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD; `None` where they are not found.
 #[cold]
-pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants<T>> {
+pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &Vector<T>) -> Option<Constants<T>> {
     let (increment, _) = flow(|m| velocity(d, m), momentum)?;
     let mut motion = increment;
     (0..4).for_each(|i| motion[i][i] += T::one());
     let fitted = Fit { d, momentum, motion: &motion }.fit()?;
     let [_, step, delta, kappa] = fitted.unknowns;
     let moments = fitted.moments;
-    let m = momentum.map(|entry| step * entry);
+    let m = momentum * step;
     let k = moments.map(|j| j * j);
-    let squares = m.map(|entry| entry * entry);
-    let (pf, square) = (pfaffian(&m), squares.iter().fold(T::zero(), |sum, entry| sum + *entry));
+    let squares = m.component_mul(&m);
+    let (pf, square) = (pfaffian(&m), dot(&m, &m));
     let here = integrals(&k, &squares, pf);
     let e = characteristic(&moments, &fitted.motion, &k, &here)?;
     let slopes = slopes(&e, last(&moments))?;
@@ -93,12 +94,9 @@ pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &[T; 6]) -> Option<Constants
 
 /// Ω of M = DΩ + ΩD.
 #[inline]
-pub(super) fn velocity<T: Scalar>(d: &[T; 4], m: &[T; 6]) -> [T; 6] {
+pub(super) fn velocity<T: Scalar>(d: &[T; 4], m: &Vector<T>) -> Vector<T> {
     let [p, q, r, s] = *d;
-    let sums = [p + q, p + r, p + s, q + r, q + s, r + s];
-    let mut velocity = *m;
-    velocity.iter_mut().zip(sums).for_each(|(entry, sum)| *entry /= sum);
-    velocity
+    m.component_div(&SVector::from([p + q, p + r, p + s, q + r, q + s, r + s]))
 }
 
 /// The coefficients of exp(δm + κ⋆m) − I, by the two parts of a rotation in four dimensions, which commute.
@@ -166,7 +164,7 @@ fn slopes<T: Real>(e: &[T; 3], last: T) -> Option<[[T; 3]; 3]> {
 /// The four constants that make a map of Moser and Veselov of the exact motion.
 struct Fit<'a, T> {
     d: &'a [T; 4],
-    momentum: &'a [T; 6],
+    momentum: &'a Vector<T>,
     /// F
     motion: &'a Matrix<T>,
 }
@@ -179,13 +177,13 @@ struct Fitted<T> {
     /// F̃ = exp(−(δM + κ⋆M)) F
     motion: Matrix<T>,
     /// F̃J̃ − J̃F̃ᵀ − h̃M
-    residual: [T; 6],
+    residual: Vector<T>,
 }
 
 impl<T: Real> Fit<'_, T> {
     /// By the method of Gauss and Newton, from no correction at all: from a small one where a moment vanishes, as J̃ has no slope there.
     fn fit(&self) -> Option<Fitted<T>> {
-        let largest = |entries: &[T]| entries.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
+        let largest = |entries: &Vector<T>| entries.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
         let small = T::from_ratio(1, 1000) * dot(self.momentum, self.momentum);
         let beta = if self.d.iter().any(|d| *d * *d <= small) { small } else { T::zero() };
         let mut found = self.at([beta, T::one(), T::zero(), T::zero()]);
@@ -213,7 +211,7 @@ impl<T: Real> Fit<'_, T> {
             if d < T::zero() { -root } else { root }
         });
         let m = self.momentum;
-        let square = m.iter().fold(T::zero(), |sum, entry| sum + *entry * *entry);
+        let square = dot(m, m);
         let [a, b, c, d] = turn([-delta, -kappa], square, pfaffian(m));
         let (body, perpendicular) = (skew(m), skew(&dual(m)));
         let squared = product(&body, &body);
@@ -226,8 +224,7 @@ impl<T: Real> Fit<'_, T> {
         let carried = product(&increment, self.motion);
         let sum = |i: usize, j: usize| entry(self.motion, i, j) + entry(&carried, i, j);
         let motion: Matrix<T> = core::array::from_fn(|i| core::array::from_fn(|j| sum(i, j)));
-        let mut residual = PLANES.map(|plane| across(&motion, &moments, plane));
-        residual.iter_mut().zip(self.momentum).for_each(|(entry, m)| *entry -= step * *m);
+        let residual = SVector::from(PLANES.map(|plane| across(&motion, &moments, plane))) - m * step;
         Fitted { unknowns, moments, motion, residual }
     }
 
@@ -239,10 +236,10 @@ impl<T: Real> Fit<'_, T> {
         let half = T::from_ratio(1, 2);
         let reciprocals = moments.map(T::recip);
         let columns = [
-            PLANES.map(|plane| half * across(motion, &reciprocals, plane)),
-            self.momentum.map(|entry| -entry),
-            PLANES.map(|plane| -across(&turned, moments, plane)),
-            PLANES.map(|plane| -across(&other, moments, plane)),
+            PLANES.map(|plane| half * across(motion, &reciprocals, plane)).into(),
+            -self.momentum,
+            PLANES.map(|plane| -across(&turned, moments, plane)).into(),
+            PLANES.map(|plane| -across(&other, moments, plane)).into(),
         ];
         let correction = least_squares(columns, *residual);
         self.at(core::array::from_fn(|i| unknowns[i] - correction[i]))
@@ -256,12 +253,11 @@ fn across<T: Scalar>(f: &Matrix<T>, moments: &[T; 4], (i, j): (usize, usize)) ->
 }
 
 /// The x that comes closest to Σ x_k a_k = b, by orthogonal columns, the longest first. Where columns are dependent, there are many, and x is small.
-fn least_squares<T: Real>(columns: [[T; 6]; 4], b: [T; 6]) -> [T; 4] {
+fn least_squares<T: Real>(columns: [Vector<T>; 4], b: Vector<T>) -> [T; 4] {
     let lengths = columns.map(|column| dot(&column, &column).sqrt());
-    let unit = |column: &[T; 6], length: T| column.map(|entry| entry / length);
     let mut left = columns;
     for (column, length) in left.iter_mut().zip(lengths) {
-        *column = if length > T::zero() { unit(column, length) } else { [T::zero(); 6] };
+        *column = if length > T::zero() { *column / length } else { SVector::from_element(T::zero()) };
     }
     let mut rest = b;
     // a_k less its parts along those before is r_kk q_k
@@ -283,15 +279,15 @@ fn least_squares<T: Real>(columns: [[T; 6]; 4], b: [T; 6]) -> [T; 4] {
             break;
         }
         (order[stage], used[next % 4], rank) = (next % 4, true, stage + 1);
-        let q = unit(&at(&left, next), length);
+        let q = at(&left, next) / length;
         upper[stage][next % 4] = length;
         let part = dot(&q, &rest);
         right[stage] = part;
-        rest.iter_mut().zip(q).for_each(|(entry, q)| *entry -= part * q);
+        rest -= q * part;
         let columns = left.iter_mut().zip(&mut upper[stage]).zip(used);
         for ((column, along), _) in columns.filter(|(_, used)| !used) {
-            *along = dot(&q, column);
-            column.iter_mut().zip(q).for_each(|(entry, q)| *entry -= *along * q);
+            *along = dot(&q, &*column);
+            *column -= q * *along;
         }
     }
     let mut x = [T::zero(); 4];

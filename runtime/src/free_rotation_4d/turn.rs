@@ -1,12 +1,12 @@
 //! One step of a motion whose constants are known: no iteration, one division.
 
-use super::flow::{Matrix, PLANES, at, dot, dual, entry, pfaffian, place};
+use super::flow::{Matrix, PLANES, Vector, at, dot, dual, entry, pfaffian, place};
 use super::setup::{Constants, integrals};
 use crate::Scalar;
 
 /// F − I and the next m of a motion, from m = h̃M.
 #[inline]
-pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &[T; 6]) -> (Matrix<T>, [T; 6]) {
+pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> (Matrix<T>, Vector<T>) {
     let Powers { squares, square, pf, of_square } = Powers::of(m);
     let j = &constants.moments;
     let k = j.map(|j| j * j);
@@ -20,7 +20,7 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &[T; 6]) -> (Matrix<T
     let mut motion = super::flow::product(&adjugate, &g).map(|row| row.map(|entry| entry * inverse));
     let next = PLANES
         .map(|(row, column)| at(j, row) * entry(&motion, row, column) - entry(&motion, column, row) * at(j, column));
-    let next = on_level(constants, &next, square, pf);
+    let next = on_level(constants, &next.into(), square, pf);
     let turn = of_casimirs(&constants.turn, m, &of_square, square);
     (0..4).for_each(|i| motion[i][i] -= T::one());
     (orthogonal(&composed(&turn, &motion)), next)
@@ -28,24 +28,23 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &[T; 6]) -> (Matrix<T
 
 /// m², and what else is quadratic in m.
 struct Powers<T> {
-    squares: [T; 6],
+    squares: Vector<T>,
     /// |m|²
     square: T,
     pf: T,
     /// m²: above the diagonal, and on it.
-    of_square: ([T; 6], [T; 4]),
+    of_square: (Vector<T>, [T; 4]),
 }
 
 impl<T: Scalar> Powers<T> {
     #[inline]
-    fn of(m: &[T; 6]) -> Self {
-        let [a, b, c, d, e, f] = *m;
-        let squares = m.map(|entry| entry * entry);
-        let [aa, bb, cc, dd, ee, ff] = squares;
+    fn of(m: &Vector<T>) -> Self {
+        let squares = m.component_mul(m);
+        let ([[a, b, c, d, e, f]], [[aa, bb, cc, dd, ee, ff]]) = (m.data.0, squares.data.0);
         let above = [-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)];
         let diagonal = [-(aa + bb + cc), -(aa + dd + ee), -(bb + dd + ff), -(cc + ee + ff)];
         let square = (aa + bb + cc) + (dd + ee + ff);
-        Self { squares, square, pf: pfaffian(m), of_square: (above, diagonal) }
+        Self { squares, square, pf: pfaffian(m), of_square: (above.into(), diagonal) }
     }
 }
 
@@ -55,13 +54,15 @@ fn equation<T: Scalar>(
     j: &[T; 4],
     k: &[T; 4],
     e: &[T; 3],
-    m: &[T; 6],
-    ((above, diagonal), square, pf): (&([T; 6], [T; 4]), T, T),
+    m: &Vector<T>,
+    ((above, diagonal), square, pf): (&(Vector<T>, [T; 4]), T, T),
 ) -> (Matrix<T>, Matrix<T>) {
     let zero = [[T::zero(); 4]; 4];
     let (mut n, mut g) = (zero, zero);
     let (perpendicular, rest) = (dual(m), e[1] - square);
-    for ((&(row, column), m), (perpendicular, above)) in PLANES.iter().zip(m).zip(perpendicular.iter().zip(above)) {
+    for ((&(row, column), m), (perpendicular, above)) in
+        PLANES.iter().zip(m.iter()).zip(perpendicular.iter().zip(above.iter()))
+    {
         let skew = (rest + (at(k, row) + at(k, column))) * *m + pf * *perpendicular;
         let symmetric = e[0] * *above;
         (*place(&mut n, row, column), *place(&mut n, column, row)) = (skew - symmetric, -skew - symmetric);
@@ -116,7 +117,7 @@ fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
 
 /// The momentum with |m|² and Pf m of the motion, by what those before the step have lost: off the path of the step.
 #[inline]
-fn on_level<T: Scalar>(constants: &Constants<T>, next: &[T; 6], square: T, pf: T) -> [T; 6] {
+fn on_level<T: Scalar>(constants: &Constants<T>, next: &Vector<T>, square: T, pf: T) -> Vector<T> {
     let (quarter, twice) = (T::from_ratio(1, 4), pf + pf);
     let lost = |size: T, reciprocal: T| {
         let lost = quarter * (size * reciprocal - T::one());
@@ -125,21 +126,22 @@ fn on_level<T: Scalar>(constants: &Constants<T>, next: &[T; 6], square: T, pf: T
     let [left, right] = constants.casimirs;
     let (left, right) = (lost(square + twice, left), lost(square - twice, right));
     let (along, across) = (T::one() - (left + right), right - left);
-    let perpendicular = dual(next);
-    core::array::from_fn(|i| along * next[i] + across * perpendicular[i])
+    next * along + dual(next) * across
 }
 
 /// exp(δM + κ⋆M) − I
 #[inline]
 fn of_casimirs<T: Scalar>(
     [a, b, c, d]: &[T; 4],
-    m: &[T; 6],
-    (above, diagonal): &([T; 6], [T; 4]),
+    m: &Vector<T>,
+    (above, diagonal): &(Vector<T>, [T; 4]),
     square: T,
 ) -> Matrix<T> {
     let mut turn = [[T::zero(); 4]; 4];
     let (perpendicular, mean) = (dual(m), *a + *d * (T::from_ratio(1, 2) * square));
-    for ((&(row, column), m), (perpendicular, above)) in PLANES.iter().zip(m).zip(perpendicular.iter().zip(above)) {
+    for ((&(row, column), m), (perpendicular, above)) in
+        PLANES.iter().zip(m.iter()).zip(perpendicular.iter().zip(above.iter()))
+    {
         let (skew, symmetric) = (*b * *m + *c * *perpendicular, *d * *above);
         (*place(&mut turn, row, column), *place(&mut turn, column, row)) = (symmetric + skew, symmetric - skew);
     }
