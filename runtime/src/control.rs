@@ -33,7 +33,7 @@ pub use optimum::{Optimum, Stage};
 use crate::fields::getters;
 use crate::newton::{Bracket, Trial};
 use crate::parameters::check_finite;
-use crate::{Controlled, Error, Real, Scalar, Space};
+use crate::{Controlled, Error, Real, Scalar};
 use core::ops::RangeInclusive;
 use nalgebra::SVector;
 use num_traits::Zero;
@@ -189,11 +189,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         }
         self.system.check_place(start)?;
         target.place().map_or(Ok(()), |goal| self.system.check_place(goal))?;
-        if plan.iter().all(|stage| stage.input.is_finite()) {
-            Ok(())
-        } else {
-            Err(Error::NotFinite { name: "the guessed inputs" })
-        }
+        plan.iter().try_for_each(|stage| check_finite("the guessed inputs", &stage.input))
     }
 }
 

@@ -109,11 +109,9 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
     /// The state after so many steps.
     fn state(&self, steps: usize) -> Option<State<S>> {
         let edges = steps.checked_mul(S::EDGES.max(1))?;
-        let (configuration, momentum) = match self.nodes.get(edges) {
-            Some(node) => (node.configuration, node.momentum),
-            None if edges == self.nodes.len() => (self.end, self.final_momentum),
-            None => return None,
-        };
+        let end = (edges == self.nodes.len()).then_some((self.end, self.final_momentum));
+        let node = self.nodes.get(edges).map(|node| (node.configuration, node.momentum));
+        let (configuration, momentum) = node.or(end)?;
         let Stepper { system, h, constants } = self.stepper;
         let t = time_after::<S>(self.time, *h, steps);
         let left = S::Scheme::left(At::new(system, constants, t), &configuration, &momentum);

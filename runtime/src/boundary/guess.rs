@@ -2,6 +2,7 @@
 
 use super::sweep::{Endpoints, Search};
 use crate::newton::Curvature;
+use crate::parameters::check_finite;
 use crate::scheme::Scheme;
 use crate::{Error, Real, Space, Variational};
 use nalgebra::SVector;
@@ -65,9 +66,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
         }
         self.close(T::from_ratio(1, 8));
         let gap = self.end();
-        if !(gap.distance.is_finite() && gap.along.is_finite()) {
-            return Err(Error::NotFinite { name: "the end of the guessed path" });
-        }
+        check_finite("the end of the guessed path", &[gap.distance, gap.along])?;
         if gap.is_orthogonal() { Err(gap.unreachable()) } else { Ok(()) }
     }
 

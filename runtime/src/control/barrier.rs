@@ -66,22 +66,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let weights = SVector::<T, C>::from_fn(|i, _| if is_violated(i) { self.slack[i].recip() } else { T::zero() });
         (sum, (bounds.by_place.tr_mul(&weights), bounds.by_input.tr_mul(&weights)))
     }
-
-    /// Takes the slacks of a roll-out of this fraction. Multipliers stay positive and near μ/s.
-    pub(super) fn accept_slacks(&mut self, fraction: T, barrier: T) {
-        let wide = T::EPSILON.sqrt().recip();
-        for i in 0..C {
-            let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.next_slack[i]);
-            let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
-            let central = barrier / moved;
-            let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
-            let most = central * wide;
-            let smaller = if next > most { most } else { next };
-            self.multipliers[i] = if next < least { least } else { smaller };
-            self.excess[i] *= T::one() - fraction;
-            self.slack[i] = moved;
-        }
-    }
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
@@ -126,6 +110,27 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// Multipliers μ/s for the slacks.
     pub fn begin(&mut self, barrier: T) {
         self.stages.iter_mut().for_each(|stage| stage.multipliers = stage.slack.map(|slack| barrier / slack));
+    }
+
+    /// Takes the plan that a roll-out with this fraction of the correction proposes, and that leads to `last`. Multipliers stay positive and near
+    /// μ/s.
+    pub fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
+        let wide = T::EPSILON.sqrt().recip();
+        for stage in self.stages.iter_mut() {
+            for i in 0..C {
+                let (z, slack, moved) = (stage.multipliers[i], stage.slack[i], stage.next_slack[i]);
+                let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
+                let central = barrier / moved;
+                let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
+                let most = central * wide;
+                let smaller = if next > most { most } else { next };
+                stage.multipliers[i] = if next < least { least } else { smaller };
+                stage.excess[i] *= T::one() - fraction;
+                stage.slack[i] = moved;
+            }
+            (stage.place, stage.input) = (stage.next_place, stage.next_input);
+        }
+        self.last = last;
     }
 
     /// Multipliers of the bounds from the correction that would come next, for a plan that needs none: slacks of active bounds, of

@@ -6,7 +6,6 @@ use super::sweep::{PlanSummary, Settings};
 use crate::Real;
 use crate::newton::{Curvature, Equilibrated, adapted};
 use crate::space::larger;
-use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 /// Directions that may lack curvature, as those of a symmetry do, while the curvature of steps is counted in full.
@@ -148,9 +147,11 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// From now on the gap is only priced, at first as much as closing it costs; its first `motions` entries are those of configurations.
     pub fn price_gap(&mut self, motions: usize) {
-        let largest = |range: Range<usize>| range.fold(T::zero(), |max, i| larger(max, self.stiffer[(i, i)]));
-        let prices = [0..motions, motions..D].map(|range| largest(range) * T::from_ratio(1, 8));
-        self.settings.gap_price = Some(SVector::from_fn(|i, _| prices[usize::from(i >= motions)]));
+        let diagonal = self.stiffer.diagonal();
+        let largest = |max, x: &T| larger(max, *x);
+        let by_motion = diagonal.iter().take(motions).fold(T::zero(), largest) * T::from_ratio(1, 8);
+        let by_momentum = diagonal.iter().skip(motions).fold(T::zero(), largest) * T::from_ratio(1, 8);
+        self.settings.gap_price = Some(SVector::from_fn(|i, _| if i < motions { by_motion } else { by_momentum }));
         self.settings.weight = SMatrix::from_element(T::zero());
     }
 

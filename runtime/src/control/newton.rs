@@ -6,6 +6,7 @@ use super::search::Descent;
 use super::sweep::{Plan, Problem, Settings};
 use super::{Optimum, barrier};
 use crate::newton::{Curvature, Equilibrated};
+use crate::parameters::check_finite;
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
@@ -42,9 +43,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let gramian = Equilibrated::of(&summary.gramian);
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(T::one());
-            if !summary.price.is_finite() {
-                return Err(Error::NotFinite { name: "the price of the plan" });
-            }
+            check_finite("the price of the plan", &summary.price)?;
             let verdict = now.judge(&summary, &gramian);
             if verdict == Verdict::Repeat {
                 continue;

@@ -13,8 +13,9 @@ use super::barrier::TO_BOUNDARY;
 use super::end::PlanEnd;
 use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
+use crate::parameters::check_finite;
 use crate::space::larger;
-use crate::{Controlled, Error, Real, Space};
+use crate::{Controlled, Error, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Roll-outs of one correction.
@@ -157,7 +158,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
         }
         self.last = x;
-        if x.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the end of the guessed plan" }) }
+        check_finite("the end of the guessed plan", &x)
     }
 
     /// Proposes the plan after `fraction` of the correction with the change δν of the multipliers of the target.
@@ -212,14 +213,5 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let barriers = barrier * logarithms + fraction * excess_price;
         let difference = price - descent.summary.price - barriers + penalties;
         Ok(Rolled { last: x, distance: end.distance, difference, allowed })
-    }
-
-    /// Takes the proposed plan, made with this fraction of the correction, that leads to `last`.
-    fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
-        for stage in self.stages.iter_mut() {
-            stage.accept_slacks(fraction, barrier);
-            (stage.place, stage.input) = (stage.next_place, stage.next_input);
-        }
-        self.last = last;
     }
 }

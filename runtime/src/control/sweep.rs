@@ -12,7 +12,7 @@
 //! for the bounds.
 
 use super::end::PlanEnd;
-use super::quadratic::{Fall, Policy, Quadratic, Value};
+use super::quadratic::{Fall, Policy, Value};
 use super::{Stage, Target};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
@@ -96,23 +96,23 @@ impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
     }
 
     #[inline]
-    fn count(&mut self, index: usize, price: T, model: &Quadratic<T, D, U>, policy: &Policy<T, D, U>) {
+    fn count(&mut self, index: usize, price: T, policy: &Policy<T, D, U>) {
+        let Policy { shift, by_multiplier, gradient: (_, by_input), input_multiplier, .. } = policy;
         self.price += price;
         self.magnitude += price.abs();
-        self.descent -= model.by_input.dot(&policy.shift);
-        self.residual = larger(self.residual, model.by_input.max_abs());
-        self.lack += model.input_multiplier.tr_mul(&policy.shift);
-        self.gramian -= model.input_multiplier.tr_mul(&policy.by_multiplier);
+        self.descent -= by_input.dot(shift);
+        self.residual = larger(self.residual, by_input.max_abs());
+        self.lack += input_multiplier.tr_mul(shift);
+        self.gramian -= input_multiplier.tr_mul(by_multiplier);
         self.negative += policy.negative;
         self.yielding += policy.yielding;
         if let Some(fall) = policy.fall
             && self.fall.is_none_or(|deepest| fall.curvature < deepest.curvature)
         {
-            let depth = -fall.curvature / fall.direction.dot(&(model.own * fall.direction));
-            self.fall = Some(Fall { stage: index, depth, ..fall });
+            self.fall = Some(Fall { stage: index, ..fall });
         }
         for j in 0..U {
-            self.reach[j] += model.input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
+            self.reach[j] += input_multiplier.row(j).iter().fold(T::zero(), |max, x| larger(max, x.abs()));
         }
     }
 }
@@ -153,21 +153,20 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
             let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
-            let (mut natural, mut violation) = (None, (SVector::zeros(), SVector::zeros()));
+            let mut bounded = None;
             if C > 0 {
-                natural = Some(step.input_curvature.diagonal());
+                let natural = step.input_curvature.diagonal();
                 let multipliers = stage.multipliers * settings.bend;
                 let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
                 let (violated, slopes) = stage.add_bounds(&mut step, &bounds, settings);
-                violation = slopes;
                 summary.violation += violated;
+                bounded = Some((natural, slopes));
             }
-            let model = Quadratic::of(&step, natural, &violation, &value);
-            let (policy, mut before) = model.eliminate(settings.curvature);
-            summary.count(index, step.price, &model, &policy);
+            let (policy, mut before) = Policy::of(&step, bounded, &value, settings.curvature);
+            summary.count(index, step.price, &policy);
             if settings.is_last {
                 // the costate of the plan as it is, without the correction that is round-off
-                before.costate = model.by_place;
+                before.costate = policy.gradient.0;
             }
             (stage.next_costate, stage.costate) = (value.costate, before.costate);
             (stage.shift, stage.gain, stage.by_multiplier) = (policy.shift, policy.gain, policy.by_multiplier);

@@ -115,27 +115,19 @@ impl<T: Real> Bracket<T> {
         // Steps of the secant that do not at least halve are not trusted.
         let half = T::from_ratio(1, 2);
         let most = before.map_or(T::zero(), |[last, _]| (h - last).abs() * half);
-        match secant {
-            Some(next) if next > short && next < long && (next - h).abs() <= most => next,
-            _ => (short + long) * half,
-        }
+        let is_trusted = |next: &T| *next > short && *next < long && (*next - h).abs() <= most;
+        secant.filter(is_trusted).unwrap_or((short + long) * half)
     }
 
     /// Along the secant, by at least an eighth and at most a factor two, as far as there are solutions.
     fn outwards(&self, h: T, is_short: bool, secant: Option<T>) -> T {
         let least = h * T::from_ratio(1, 8);
         let most = if is_short { h } else { h * T::from_ratio(1, 2) };
-        let wanted = match secant {
-            Some(next) if (next > h) == is_short => larger(least, (next - h).abs()),
-            _ => least,
-        };
+        let outer = secant.filter(|next| (*next > h) == is_short);
+        let wanted = outer.map_or(least, |next| larger(least, (next - h).abs()));
         let far = if wanted > most { most } else { wanted };
         let next = self.inside(if is_short { h + far } else { h - far });
-        match self.impossible {
-            Some(impossible) if !is_short && next <= impossible && impossible < h => {
-                (h + impossible) * T::from_ratio(1, 2)
-            }
-            _ => next,
-        }
+        let nearest = self.impossible.filter(|impossible| !is_short && next <= *impossible && *impossible < h);
+        nearest.map_or(next, |impossible| (h + impossible) * T::from_ratio(1, 2))
     }
 }
