@@ -13,7 +13,7 @@ mod summation;
 
 use crate::lift::Lift;
 use crate::run::Task;
-use clebsch::{F32x8, F64x4, Scalar};
+use clebsch::{F32x8, F64x4, Method, Scalar};
 use clebsch_tests::scenes::{centre, four, inertia, placed, principal, quaternion, turned, unit};
 use nalgebra::*;
 
@@ -53,15 +53,28 @@ macro_rules! sums {
     };
 }
 
-/// The systems of one form of code and one set of dials.
-macro_rules! forms {
-    ($task:ident, $($module:ident)*) => {$(
-        over! { $task, "", f64:
-            forms::$module::Top { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-            forms::$module::Pendulum { gravity: 9.81 }, unit(), 0.05;
-            forms::$module::Body4 { j_d: four() }, Matrix4::identity(), 0.05;
-        }
-    )*};
+/// The small systems by one method.
+fn by_method<M>(task: &impl Task, name: &str)
+where
+    M: Method<forms::Top<f64>> + Method<forms::Pendulum<f64>> + Method<forms::Body4<f64>>,
+{
+    let name = |system: &str| format!("forms_{name}_{system}");
+    let top = forms::Top { inertia: inertia(), weight: 1.3, center: centre() };
+    task.combination_by::<_, M>(&name("Top"), top, turned(), 0.05);
+    task.combination_by::<_, M>(&name("Pendulum"), forms::Pendulum { gravity: 9.81 }, unit(), 0.05);
+    task.combination_by::<_, M>(&name("Body4"), forms::Body4 { j_d: four() }, Matrix4::identity(), 0.05);
+}
+
+/// Some of them in lanes.
+fn methods_in_lanes(task: &impl Task) {
+    let number = |x: f64| <F64x4 as Scalar>::from_f64(x);
+    let inertia = Lift::lift(inertia(), number);
+    let top = forms::Top { inertia, weight: number(1.3), center: Lift::lift(centre(), number) };
+    let start = Lift::lift(turned(), number);
+    task.combination_by::<_, forms::Matrices>("forms_matrices_Top_lanes", top, start, number(0.05));
+    let body = forms::Body4 { j_d: Lift::lift(four(), number) };
+    let (start, name) = (Lift::lift(Matrix4::identity(), number), "forms_matrices_compensated_Body4_lanes");
+    task.combination_by::<_, forms::MatricesCompensated>(name, body, start, number(0.05));
 }
 
 pub fn all(task: &impl Task) {
@@ -100,12 +113,21 @@ pub fn all(task: &impl Task) {
         lanes::Satellite { inertia: inertia(), weight: 0.7 }, turned(), 0.05;
         lanes::Flyer { mass: 2.0, inertia: inertia(), arm: centre() }, (centre(), turned()), 0.02;
     }
-    forms!(task, unrolled matrices unrolled_compensated matrices_compensated matrices_first matrices_fourth matrices_fourth_compensated);
-    forms!(task, unrolled_sixteenth sixteenth_compensated loose_sixteenth exponential tolerant fixed_point iterated);
-    over! { task, "_lanes", F64x4:
-        forms::matrices::Top { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-        forms::matrices_compensated::Body4 { j_d: four() }, Matrix4::identity(), 0.05;
-    }
+    by_method::<forms::Unrolled>(task, "unrolled");
+    by_method::<forms::Matrices>(task, "matrices");
+    by_method::<forms::UnrolledCompensated>(task, "unrolled_compensated");
+    by_method::<forms::MatricesCompensated>(task, "matrices_compensated");
+    by_method::<forms::MatricesFirst>(task, "matrices_first");
+    by_method::<forms::MatricesFourth>(task, "matrices_fourth");
+    by_method::<forms::MatricesFourthCompensated>(task, "matrices_fourth_compensated");
+    by_method::<forms::UnrolledSixteenth>(task, "unrolled_sixteenth");
+    by_method::<forms::SixteenthCompensated>(task, "sixteenth_compensated");
+    by_method::<forms::LooseSixteenth>(task, "loose_sixteenth");
+    by_method::<forms::Exponential>(task, "exponential");
+    by_method::<forms::Tolerant>(task, "tolerant");
+    by_method::<forms::FixedPoint>(task, "fixed_point");
+    by_method::<forms::Iterated>(task, "iterated");
+    methods_in_lanes(task);
     orders(task);
     drifts(task);
 }

@@ -1,6 +1,6 @@
 //! The tasks of this benchmark and of that of `counts`: what is done with each system.
 
-use clebsch::{Clebsch, Conserves, Error, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, Conserves, Declared, Error, Method, Scalar, Space, State, Stepper};
 use clebsch_tests::oracle::bits::Bits;
 use std::cell::Cell;
 
@@ -20,24 +20,33 @@ pub trait Task {
     /// The trajectories of a system that differs from a fixture by its dials or its scalar.
     fn combination<S>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
     where
-        S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone;
+        S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone,
+    {
+        self.combination_by::<S, Declared>(name, system, q, h);
+    }
+
+    /// The trajectories of a system that is stepped by a method of its own.
+    fn combination_by<S, M>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
+    where
+        S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone,
+        M: Method<S>;
 }
 
 /// A system and where it starts.
-pub struct Start<S: Clebsch> {
-    pub stepper: Stepper<S>,
+pub struct Start<S: Clebsch, M: Method<S> = Declared> {
+    pub stepper: Stepper<S, M>,
     pub q: S::Configuration,
     pub mu: S::Momentum,
 }
 
-impl<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone> Start<S> {
+impl<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone, M: Method<S>> Start<S, M> {
     pub fn new(system: S, q: S::Configuration, h: S::Scalar) -> Self {
-        let stepper = system.into_stepper(h).expect("parameters");
+        let stepper = system.into_stepper_by::<M>(h).expect("parameters");
         let mu = stepper.project(&q, &uneven(1.0)).expect("a projection");
         Self { stepper, q, mu }
     }
 
-    pub fn state(&self) -> State<S> {
+    pub fn state(&self) -> State<S, M> {
         self.stepper.state(self.q, self.mu).expect("a state")
     }
 }
@@ -55,7 +64,11 @@ pub fn uneven<T: Scalar, V: Space<T>>(size: f64) -> V {
 
 /// The last of some steps.
 #[inline(never)]
-pub fn stepped<S: Clebsch>(stepper: &Stepper<S>, mut state: State<S>, steps: usize) -> Result<State<S>, Error> {
+pub fn stepped<S: Clebsch, M: Method<S>>(
+    stepper: &Stepper<S, M>,
+    mut state: State<S, M>,
+    steps: usize,
+) -> Result<State<S, M>, Error> {
     for _ in 0..steps {
         state = stepper.step(&state)?;
     }

@@ -2,7 +2,7 @@
 
 use crate::record::Record;
 use crate::run::{Start, Task, stepped, uneven};
-use clebsch::{Clebsch, CotangentState, Error, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, CotangentState, Error, Method, Scalar, Space, State, Stepper};
 use clebsch_tests::oracle::bits::Bits;
 use std::cell::RefCell;
 
@@ -50,21 +50,26 @@ impl Task for Recorder {
         formulas(self, name, &start, conserved);
     }
 
-    fn combination<S>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
+    fn combination_by<S, M>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
     where
         S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone,
+        M: Method<S>,
     {
-        trajectories(self, name, &Start::new(system, q, h));
+        trajectories(self, name, &Start::<S, M>::new(system, q, h));
     }
 }
 
 #[inline(never)]
-fn step<S: Clebsch>(stepper: &Stepper<S>, state: &State<S>) -> Result<State<S>, Error> {
+fn step<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, state: &State<S, M>) -> Result<State<S, M>, Error> {
     stepper.step(state)
 }
 
 /// (q, N), or the error in its place; whether it is one.
-fn put<S: Clebsch<Scalar: Scalar<Lane: Bits>>>(record: &Record, state: &Result<State<S>, Error>) -> bool {
+fn put<S, M>(record: &Record, state: &Result<State<S, M>, Error>) -> bool
+where
+    S: Clebsch<Scalar: Scalar<Lane: Bits>>,
+    M: Method<S>,
+{
     match state {
         Ok(state) => {
             record.add(state.configuration());
@@ -76,7 +81,11 @@ fn put<S: Clebsch<Scalar: Scalar<Lane: Bits>>>(record: &Record, state: &Result<S
 }
 
 /// Steps one by one and at once.
-fn trajectories<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone>(task: &Recorder, name: &str, start: &Start<S>) {
+fn trajectories<S, M>(task: &Recorder, name: &str, start: &Start<S, M>)
+where
+    S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone,
+    M: Method<S>,
+{
     let stepper = &start.stepper;
     task.quantity(name, "step", |record| {
         let mut state = start.state();

@@ -10,7 +10,7 @@ mod lift;
 #[path = "../bits/run.rs"]
 mod run;
 
-use clebsch::{Clebsch, Scalar, State, Stepper};
+use clebsch::{Clebsch, Method, Scalar, State, Stepper};
 use clebsch_tests::oracle::bits::Bits;
 use run::{Start, Task, stepped};
 
@@ -48,15 +48,16 @@ impl Task for Steps {
         self.combination(name, system, q, h);
     }
 
-    fn combination<S>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
+    fn combination_by<S, M>(&self, name: &str, system: S, q: S::Configuration, h: S::Scalar)
     where
         S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone,
+        M: Method<S>,
     {
         let Some(wanted) = &self.name else { return println!("{name}") };
         if wanted != name {
             return;
         }
-        let start = Start::new(system, q, h);
+        let start = Start::<S, M>::new(system, q, h);
         if std::hint::black_box(stepped(&start.stepper, start.state(), self.steps)).is_err() {
             eprintln!("{name}: a step fails");
         }
