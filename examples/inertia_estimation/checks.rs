@@ -4,7 +4,7 @@ use crate::Spacecraft;
 use crate::estimator::{Estimator, Predicted};
 use crate::measurement::{Measurements, Schedule};
 use crate::unknowns::{OF_INERTIA, Unknowns};
-use clebsch::Error;
+use clebsch::{Differentiated, Error};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::table::Table;
 use std::hint::black_box;
@@ -18,8 +18,8 @@ const LARGEST_STEP: f64 = 1e-4;
 const TIMED: u64 = 20_000;
 
 /// Claims the columns of the inertia, and that its scale is in none of them; both at the true values.
-pub fn claim<S: Spacecraft>(
-    estimator: &Estimator<S>,
+pub fn claim<M: Differentiated<Spacecraft, 3>>(
+    estimator: &Estimator<M>,
     measurements: &Measurements,
     schedule: &Schedule,
     truth: &Unknowns,
@@ -44,8 +44,8 @@ pub fn claim<S: Spacecraft>(
 }
 
 /// (f(x − 2s) − 8f(x − s) + 8f(x + s) − f(x + 2s))/12s, for s along one unknown.
-fn differences<S: Spacecraft>(
-    estimator: &Estimator<S>,
+fn differences<M: Differentiated<Spacecraft, 3>>(
+    estimator: &Estimator<M>,
     measurements: &Measurements,
     schedule: &Schedule,
     x: &Unknowns,
@@ -73,7 +73,11 @@ fn claim_scale(predicted: &Predicted, schedule: &Schedule, claims: &mut Claims) 
 ///
 /// # Errors
 /// What a step returns.
-pub fn cost<S: Spacecraft>(estimator: &Estimator<S>, truth: &Unknowns, step_size: f64) -> Result<Table<3>, Error> {
+pub fn cost<M: Differentiated<Spacecraft, 3>>(
+    estimator: &Estimator<M>,
+    truth: &Unknowns,
+    step_size: f64,
+) -> Result<Table<3>, Error> {
     let (stepper, start) = estimator.start(truth, step_size)?;
     let mut table = Table::new(["a step", "ns", "of a plain one"]);
     let mut plain = f64::NAN;

@@ -4,7 +4,7 @@ use crate::Spacecraft;
 use crate::measurement::Schedule;
 use crate::rotation::{inverse_right_jacobian, logarithm};
 use crate::unknowns::{COUNT, Chart, OF_INERTIA, Slopes, Unknowns, upper};
-use clebsch::{Error, Sensitivity, State, Stepper, Tangent};
+use clebsch::{Clebsch, Differentiated, Error, Sensitivity, State, Stepper, Tangent};
 use clebsch_examples::progress::Progress;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use std::marker::PhantomData;
@@ -16,7 +16,7 @@ pub const PRIOR: f64 = 0.1;
 
 /// What turns unknowns into predicted attitudes.
 #[derive(Clone, Copy, Debug)]
-pub struct Estimator<S> {
+pub struct Estimator<M> {
     /// What the unknowns mean.
     pub chart: Chart,
     /// Mean motion of the orbit, rad/s; known.
@@ -25,7 +25,7 @@ pub struct Estimator<S> {
     pub sigma: f64,
     /// What is known before anything is measured: the ratios of its inertia, with the standard deviation [`PRIOR`].
     guess: Unknowns,
-    system: PhantomData<S>,
+    method: PhantomData<M>,
 }
 
 /// Attitudes with their derivatives with respect to the unknowns, as motions of the body.
@@ -49,10 +49,10 @@ pub struct Scaling {
 /// The tangent map of a whole run, and its sensitivity to all quantities of the declaration.
 type Chained = (Tangent<f64, 3>, Sensitivity<f64, 3, 9>);
 
-impl<S: Spacecraft> Estimator<S> {
+impl<M: Differentiated<Spacecraft, 3>> Estimator<M> {
     /// For measurements with this standard deviation, radians, and a first guess.
     pub fn new(chart: Chart, mean_motion: f64, sigma: f64, guess: Unknowns) -> Self {
-        Self { chart, mean_motion, sigma, guess, system: PhantomData }
+        Self { chart, mean_motion, sigma, guess, method: PhantomData }
     }
 
     /// How far the inertia is from the first guess, in standard deviations.
@@ -64,9 +64,10 @@ impl<S: Spacecraft> Estimator<S> {
     ///
     /// # Errors
     /// What the stepper and the state refuse.
-    pub fn start(&self, x: &Unknowns, step_size: f64) -> Result<(Stepper<S>, State<S>), Error> {
+    pub fn start(&self, x: &Unknowns, step_size: f64) -> Result<(Stepper<Spacecraft, M>, State<Spacecraft, M>), Error> {
         let start = self.chart.start(x);
-        let stepper = S::new(start.inertia, self.mean_motion).into_stepper(step_size)?;
+        let stepper =
+            Spacecraft { inertia: start.inertia, mean_motion: self.mean_motion }.into_stepper_by::<M>(step_size)?;
         let state = stepper.state(start.attitude, start.inertia * start.spin)?;
         Ok((stepper, state))
     }
@@ -105,7 +106,7 @@ impl<S: Spacecraft> Estimator<S> {
         Some(predicted)
     }
 
-    fn note(&self, x: &Unknowns, state: &State<S>, (whole, of_quantities): &Chained, to: &mut Predicted) {
+    fn note(&self, x: &Unknowns, state: &State<Spacecraft, M>, (whole, of_quantities): &Chained, to: &mut Predicted) {
         // the inertia is the first field of the declaration, so its six entries are the first quantities
         let of_inertia: SMatrix<f64, 3, 6> = of_quantities.motion.fixed_columns::<6>(0).into();
         let (start, first) = (self.chart.start(x), self.chart.start_slopes(x));

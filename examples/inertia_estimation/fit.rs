@@ -4,6 +4,7 @@ use crate::Spacecraft;
 use crate::estimator::{Estimator, PRIOR};
 use crate::measurement::Schedule;
 use crate::unknowns::{COUNT, OF_INERTIA, Unknowns};
+use clebsch::Differentiated;
 use clebsch_examples::table::Table;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::Matrix3;
@@ -35,8 +36,8 @@ pub struct Fit {
 ///
 /// A wrong inertia turns the predicted body away from the measured one as time goes by, and residuals know angles only up to whole
 /// turns; so an arc may only be as long as the estimate is good, and each makes it better for the next.
-pub fn fit<S: Spacecraft>(
-    estimator: &Estimator<S>,
+pub fn fit<M: Differentiated<Spacecraft, 3>>(
+    estimator: &Estimator<M>,
     measured: &[Matrix3<f64>],
     schedule: &Schedule,
     start: Unknowns,
@@ -78,15 +79,15 @@ pub fn fit<S: Spacecraft>(
 }
 
 /// The least squares of one arc, as the optimiser asks for them.
-struct Arc<'a, S> {
-    estimator: &'a Estimator<S>,
+struct Arc<'a, M> {
+    estimator: &'a Estimator<M>,
     measured: &'a [Matrix3<f64>],
     schedule: Schedule,
     x: Unknowns,
     linearisations: Cell<u32>,
 }
 
-impl<S: Spacecraft> LeastSquaresProblem<f64, Dyn, Dyn> for Arc<'_, S> {
+impl<M: Differentiated<Spacecraft, 3>> LeastSquaresProblem<f64, Dyn, Dyn> for Arc<'_, M> {
     type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;

@@ -24,7 +24,7 @@ mod rotation;
 mod unknowns;
 
 use clap::Parser;
-use clebsch::{Clebsch, Sensitive};
+use clebsch::{Clebsch, Declared, Differentiated};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, count, finite_list, moments_of_inertia, parse, positive};
@@ -41,50 +41,30 @@ use unknowns::{Chart, Start, Unknowns};
 /// GM of the Earth, m³/s²; IERS Conventions (2010).
 const GRAVITATION: f64 = 3.986_004_418e14;
 
-/// Declares the body at one order, so that both orders are the same body.
-macro_rules! spacecraft {
-    ($name:ident, order = $order:tt) => {
-        /// A rigid body on a circular orbit, in the gradient of gravity.
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-                                    action         = |F: SO<3>, R: SO<3>| R * F,
-                                    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
-                                    discretization = moser_veselov,
-                                    potential      = |t, R| {
-                                        let phase = self.mean_motion * t;
-                                        let outwards = R.transpose() * Vector3::new(phase.cos(), phase.sin(), 0);
-                                        3 * self.mean_motion.powi(2) / 2 * outwards.dot(&(self.inertia * outwards))
-                                    },
-                                    order          = $order,
-                                    emit           = [tangent],
-                                )]
-        pub struct $name {
-            /// Inertia tensor about the centre of mass, body frame, kg·m².
-            #[clebsch(symmetric)]
-            pub inertia: Matrix3<f64>,
-            /// Mean motion of the orbit, rad/s.
-            pub mean_motion: f64,
-        }
-
-        impl Spacecraft for $name {
-            fn new(inertia: Matrix3<f64>, mean_motion: f64) -> Self {
-                Self { inertia, mean_motion }
-            }
-        }
-    };
+/// A rigid body on a circular orbit, in the gradient of gravity.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action         = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    discretization = moser_veselov,
+    potential      = |t, R| {
+        let phase = self.mean_motion * t;
+        let outwards = R.transpose() * Vector3::new(phase.cos(), phase.sin(), 0);
+        3 * self.mean_motion.powi(2) / 2 * outwards.dot(&(self.inertia * outwards))
+    },
+    emit           = [tangent],
+    method FirstOrder = (order = 1, discretization = moser_veselov),
+)]
+pub struct Spacecraft {
+    /// Inertia tensor about the centre of mass, body frame, kg·m².
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<f64>,
+    /// Mean motion of the orbit, rad/s.
+    pub mean_motion: f64,
 }
 
-/// What the scene needs of a declared spacecraft: the derivatives of its steps with respect to J₁₁, J₁₂, J₁₃, J₂₂, J₂₃, J₃₃, the mean
-/// motion, the step size and the time.
-pub trait Spacecraft:
-    Sensitive<3, 9> + Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>
-{
-    /// With this inertia, kg·m², on an orbit with this mean motion, rad/s.
-    fn new(inertia: Matrix3<f64>, mean_motion: f64) -> Self;
-}
-
-spacecraft!(KickedSpacecraft, order = 1);
-spacecraft!(SymmetricSpacecraft, order = 2);
+/// Drift, then kick.
+pub struct FirstOrder;
 
 const SCENE: Scene = Scene {
     name: "inertia_estimation",
@@ -154,8 +134,8 @@ impl Flags {
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
     conclude(match flags.run.order {
-        Order::First => run::<KickedSpacecraft>(&flags),
-        Order::Second => run::<SymmetricSpacecraft>(&flags),
+        Order::First => run::<FirstOrder>(&flags),
+        Order::Second => run::<Declared>(&flags),
     })
 }
 
@@ -167,13 +147,13 @@ fn guess(flags: &Flags, chart: &Chart, measured: &[Matrix3<f64>], schedule: &Sch
     chart.unknowns(&Start { inertia, attitude: measured[0], spin })
 }
 
-fn run<S: Spacecraft>(flags: &Flags) -> Result<Claims, Failure> {
+fn run<M: Differentiated<Spacecraft, 3>>(flags: &Flags) -> Result<Claims, Failure> {
     let (truth, schedule) = (flags.truth()?, Schedule::new(&flags.run, flags.measurements)?);
     let sigma = (flags.noise / 3600.0).to_radians();
     let measurements = Measurements::new(&truth, flags.mean_motion(), &schedule, sigma, flags.seed);
     let chart = Chart { trace: truth.inertia.trace(), anchor: measurements.measured[0] };
     let (start, truth) = (guess(flags, &chart, &measurements.measured, &schedule), chart.unknowns(&truth));
-    let estimator = Estimator::<S>::new(chart, flags.mean_motion(), sigma, start);
+    let estimator = Estimator::<M>::new(chart, flags.mean_motion(), sigma, start);
     estimator.start(&truth, flags.run.step_size)?;
     let fit = fit::fit(&estimator, &measurements.measured, &schedule, start);
     let estimate = fit.unknowns;
@@ -213,7 +193,11 @@ fn run<S: Spacecraft>(flags: &Flags) -> Result<Claims, Failure> {
 }
 
 /// The motion of the estimated body, as a file.
-fn write<S: Spacecraft>(flags: &Flags, estimator: &Estimator<S>, estimate: &Unknowns) -> Result<(), Failure> {
+fn write<M: Differentiated<Spacecraft, 3>>(
+    flags: &Flags,
+    estimator: &Estimator<M>,
+    estimate: &Unknowns,
+) -> Result<(), Failure> {
     let columns = ["R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33", "pi1", "pi2", "pi3"];
     let mut csv = Csv::create(&flags.run, &columns)?;
     let (stepper, start) = estimator.start(estimate, flags.run.step_size)?;

@@ -5,6 +5,7 @@ use crate::estimator::{Estimator, normal_equations};
 use crate::fit::Fit;
 use crate::measurement::{Measurements, Schedule};
 use crate::unknowns::{COUNT, OF_INERTIA, Slopes, Unknowns};
+use clebsch::Differentiated;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::table::Table;
 use nalgebra::{Matrix3, SMatrix};
@@ -40,8 +41,8 @@ struct Reading {
 
 impl Report {
     /// Of a fit, with its Jacobian there and at the truth.
-    pub fn new<S: Spacecraft>(
-        estimator: &Estimator<S>,
+    pub fn new<M: Differentiated<Spacecraft, 3>>(
+        estimator: &Estimator<M>,
         measurements: &Measurements,
         schedule: &Schedule,
         fit: Fit,

@@ -28,10 +28,11 @@ pub use declaration::Discretization;
 
 use crate::Flags;
 use crate::body::Body;
+use clebsch::{Declared, Differentiated};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::scene::{Failure, say};
-use declaration::{Cayley, Exponential, FreeBody, MoserVeselov};
+use declaration::{Cayley, Exponential, FreeBody};
 use problem::Problem;
 use row::Row;
 use shooting::Shot;
@@ -52,7 +53,7 @@ pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     let problem = Problem::new(flags, body)?;
     let mut claims = Claims::new();
     let slews = match flags.discretization {
-        Discretization::MoserVeselov => find::<MoserVeselov>(&problem, &mut claims)?,
+        Discretization::MoserVeselov => find::<Declared>(&problem, &mut claims)?,
         Discretization::Cayley => find::<Cayley>(&problem, &mut claims)?,
         Discretization::Exponential => find::<Exponential>(&problem, &mut claims)?,
     };
@@ -67,10 +68,10 @@ pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     Ok(claims)
 }
 
-fn find<S: FreeBody>(problem: &Problem, claims: &mut Claims) -> Result<Slews, Failure> {
+fn find<M: Differentiated<FreeBody, 3>>(problem: &Problem, claims: &mut Claims) -> Result<Slews, Failure> {
     let (degrees, Problem { steps, duration, euler, to, .. }) = (problem.turn.norm().to_degrees(), problem);
     say(format_args!("a turn by {degrees:.3}° at least action: {duration} s in {steps} steps\n"));
-    let ways = ways::follow::<S>(problem)?;
+    let ways = ways::follow::<M>(problem)?;
     say(ways::table(&ways));
     let aim = |way: Way| {
         let shot = Shot::aim(euler, to, &problem.scaled(&way.slew.momentum()));
@@ -80,7 +81,7 @@ fn find<S: FreeBody>(problem: &Problem, claims: &mut Claims) -> Result<Slews, Fa
     let known = || ways.iter().filter_map(|way| way.1);
     let largest = known().map(|shot| shot.action).fold(0.0, f64::max);
     let (shots, made) = census::take(euler, to, known(), largest);
-    let rows = shots.into_iter().map(|shot| Row::new::<S>(problem, shot, &ways)).collect::<Result<Vec<_>, _>>()?;
+    let rows = shots.into_iter().map(|shot| Row::new::<M>(problem, shot, &ways)).collect::<Result<Vec<_>, _>>()?;
     say(format_args!("all slews up to {largest:.3} J s that {made} shots of the continuous body find\n"));
     say(row::table(&rows));
     for (way, shot) in &ways {

@@ -1,7 +1,9 @@
 //! Where a throw arrives by the equations of motion, which know nothing of groups or steps.
 
 use crate::Flags;
-use crate::throw::{Pendulums, Way};
+use crate::SphericalPendulum;
+use crate::throw::Way;
+use clebsch::{Clebsch, Differentiated};
 use clebsch_examples::convergence::Convergence;
 use clebsch_examples::flags::Order;
 use clebsch_examples::reference;
@@ -21,13 +23,13 @@ pub fn launch(momentum: &Vector3<f64>, flags: &Flags, h: f64) -> Vector3<f64> {
 }
 
 /// By how much the throws found with steps of h, h/2 and h/4 miss the target: their velocities are off by O(h²).
-pub fn converge<S: Pendulums>(way: Way, flags: &Flags) -> Result<Convergence, Failure> {
+pub fn converge<M: Differentiated<SphericalPendulum, 3>>(way: Way, flags: &Flags) -> Result<Convergence, Failure> {
     let (from, to) = flags.ends();
     let mut reference = 0.0_f64;
     let mut missed = |part: u64| -> Result<f64, Failure> {
         let h = flags.run.step_size / part as f64;
-        let stepper = S::with_gravity(flags.gravity).into_stepper(h)?;
-        let (mut path, guess) = way.guess::<S>(flags, part)?;
+        let stepper = SphericalPendulum { gravity: flags.gravity }.into_stepper_by::<M>(h)?;
+        let (mut path, guess) = way.guess::<M>(flags, part)?;
         let extremal = stepper.boundary().solve(&from, &to, guess, &mut path)?;
         let arrival = fly(&from, &launch(extremal.momentum(), flags, h), flags);
         reference = reference.max(arrival.error);

@@ -12,14 +12,14 @@ mod throw;
 mod windings;
 
 use clap::Parser;
-use clebsch::{Clebsch, Error};
+use clebsch::{Clebsch, Declared, Differentiated, Error};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, finite, finite_list, parse};
 use clebsch_examples::scene::{Failure, conclude, say};
 use nalgebra::{Vector3, Vector4};
 use std::process::ExitCode;
-use throw::{Pendulums, Throw, Way};
+use throw::{Throw, Way};
 
 /// A free point on S², the chord of SO(3) as its cost.
 #[derive(Clebsch, Clone, Debug)]
@@ -41,34 +41,22 @@ pub struct Sphere2;
 )]
 pub struct Sphere3;
 
-/// Declares the pendulum at one order, so that both orders are the same pendulum.
-#[rustfmt::skip]
-macro_rules! spherical_pendulum {
-    ($name:ident, order = $order:tt) => {
-        /// A spherical pendulum of unit mass and length.
-        #[derive(Clebsch, Clone, Debug)]
-        #[clebsch(
-            action    = |F: SO<3>, q: Unit<Vector3>| F * q,
-            cost      = |h, F| (F - I).norm_squared() / (4 * h),
-            potential = |q| self.gravity * q.z,
-            order     = $order,
-            emit      = [boundary],
-        )]
-        pub struct $name {
-            /// g, m/s².
-            pub gravity: f64,
-        }
-
-        impl Pendulums for $name {
-            fn with_gravity(gravity: f64) -> Self {
-                Self { gravity }
-            }
-        }
-    };
+/// A spherical pendulum of unit mass and length.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    potential = |q| self.gravity * q.z,
+    emit      = [boundary],
+    method FirstOrder = (order = 1),
+)]
+pub struct SphericalPendulum {
+    /// g, m/s².
+    pub gravity: f64,
 }
 
-spherical_pendulum!(KickedPendulum, order = 1);
-spherical_pendulum!(SymmetricPendulum, order = 2);
+/// Drift, then kick.
+pub struct FirstOrder;
 
 const SCENE: Scene = Scene {
     name: "sphere_bvp",
@@ -108,12 +96,12 @@ impl Flags {
 fn main() -> ExitCode {
     let flags: Flags = parse(&SCENE);
     conclude(match flags.run.order {
-        Order::First => run::<KickedPendulum>(&flags),
-        Order::Second => run::<SymmetricPendulum>(&flags),
+        Order::First => run::<FirstOrder>(&flags),
+        Order::Second => run::<Declared>(&flags),
     })
 }
 
-fn run<S: Pendulums>(flags: &Flags) -> Result<Claims, Failure> {
+fn run<M: Differentiated<SphericalPendulum, 3>>(flags: &Flags) -> Result<Claims, Failure> {
     let (from, to) = flags.ends();
     if from == to {
         return Err(Failure::Flags("--from and --to: two different points are needed".to_owned()));
@@ -127,12 +115,12 @@ fn run<S: Pendulums>(flags: &Flags) -> Result<Claims, Failure> {
     windings::follow(Sphere2, (from, to), duration, &mut claims)?;
     windings::follow(Sphere3, ends, duration, &mut claims)?;
 
-    let short = Throw::find::<S>(Way::Short, flags)?;
-    let long = match Throw::find::<S>(Way::Long, flags) {
+    let short = Throw::find::<M>(Way::Short, flags)?;
+    let long = match Throw::find::<M>(Way::Long, flags) {
         Err(Failure::Start(Error::NoExtremal { .. })) => None,
         found => Some(found?),
     };
-    say(format_args!("throws with g = {} m/s²: {} steps, order {}\n", flags.gravity, flags.run.steps, S::ORDER));
+    say(format_args!("throws with g = {} m/s²: {} steps, order {}\n", flags.gravity, flags.run.steps, M::ORDER));
     say(throw::table(std::iter::once(&short).chain(&long)));
     short.claim(flags, &mut claims);
     throw::compare(&short, long.as_ref(), flags, &mut claims);

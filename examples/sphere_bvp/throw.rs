@@ -1,9 +1,9 @@
 //! How to throw the bob of a spherical pendulum so that it arrives: the two-point problem, checked by shooting.
 
-use crate::Flags;
 use crate::arrival::{converge, launch};
 use crate::great_circle::GreatCircle;
-use clebsch::{Clebsch, Guess, Node, Stepper, Variational};
+use crate::{Flags, SphericalPendulum};
+use clebsch::{Clebsch, Differentiated, Guess, Node, Stepper};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::Convergence;
 use clebsch_examples::flags::Order;
@@ -24,12 +24,6 @@ pub enum Way {
     Short,
     /// From the great circle the other way round, while gravity is switched on part by part.
     Long,
-}
-
-/// A pendulum for each gravity.
-pub trait Pendulums: Variational<3> + Clebsch<Scalar = f64, Configuration = Vector3<f64>> {
-    /// With g in m/s².
-    fn with_gravity(gravity: f64) -> Self;
 }
 
 /// One throw.
@@ -63,10 +57,14 @@ impl Way {
     ///
     /// # Errors
     /// Of the problems with less gravity.
-    pub fn guess<S: Pendulums>(self, flags: &Flags, part: u64) -> Result<(Vec<Node<S, 3>>, Guess<f64, 3>), Failure> {
+    pub fn guess<M: Differentiated<SphericalPendulum, 3>>(
+        self,
+        flags: &Flags,
+        part: u64,
+    ) -> Result<(Vec<Node<SphericalPendulum, 3>>, Guess<f64, 3>), Failure> {
         let (from, to) = flags.ends();
-        let pendulum = |gravity| -> Result<Stepper<S>, Failure> {
-            Ok(S::with_gravity(gravity).into_stepper(flags.run.step_size / part as f64)?)
+        let pendulum = |gravity| -> Result<Stepper<SphericalPendulum, M>, Failure> {
+            Ok(SphericalPendulum { gravity }.into_stepper_by::<M>(flags.run.step_size / part as f64)?)
         };
         let mut path = vec![pendulum(0.0)?.boundary().rest(&from); (flags.run.steps * part) as usize];
         if self == Self::Short {
@@ -85,10 +83,10 @@ impl Way {
 
 impl Throw {
     /// Solves, shoots, and measures the order.
-    pub fn find<S: Pendulums>(way: Way, flags: &Flags) -> Result<Self, Failure> {
+    pub fn find<M: Differentiated<SphericalPendulum, 3>>(way: Way, flags: &Flags) -> Result<Self, Failure> {
         let (run, (from, to)) = (&flags.run, flags.ends());
-        let stepper = S::with_gravity(flags.gravity).into_stepper(run.step_size)?;
-        let (mut path, guess) = way.guess::<S>(flags, 1)?;
+        let stepper = SphericalPendulum { gravity: flags.gravity }.into_stepper_by::<M>(run.step_size)?;
+        let (mut path, guess) = way.guess::<M>(flags, 1)?;
         let extremal = stepper.boundary().solve(&from, &to, guess, &mut path)?;
         let mut shot = 0.0_f64;
         let start = stepper.state(from, *extremal.momentum())?;
@@ -106,7 +104,7 @@ impl Throw {
             gap: extremal.gap(),
             residual: extremal.residual(),
             shot,
-            convergence: converge::<S>(way, flags)?,
+            convergence: converge::<M>(way, flags)?,
         })
     }
 

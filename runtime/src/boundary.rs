@@ -33,7 +33,7 @@ pub use several::Way;
 use crate::newton::{Bracket, Trial};
 use crate::parameters::check_finite;
 use crate::scheme::Scheme;
-use crate::{Clebsch, Clock, Error, Real, Scalar, Space, Stepper, Variational};
+use crate::{Clebsch, Clock, Declared, Differentiated, Error, Method, Real, Scalar, Space, Stepper, Variational};
 use core::iter::once;
 use core::ops::RangeInclusive;
 use num_traits::Zero;
@@ -41,12 +41,12 @@ use sweep::{Endpoints, Search};
 
 /// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
 #[derive(Debug)]
-pub struct Boundary<'a, S: Variational<M, Scalar: Real>, const M: usize> {
-    stepper: &'a Stepper<S>,
+pub struct Boundary<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
+    stepper: &'a Stepper<S, B>,
     time: S::Scalar,
 }
 
-impl<S: Clebsch> Stepper<S> {
+impl<S: Clebsch, B: Method<S>> Stepper<S, B> {
     /// Problems with fixed endpoints: given q_0 and q_N instead of q_0 and N_0.
     ///
     /// ```text
@@ -56,17 +56,21 @@ impl<S: Clebsch> Stepper<S> {
     /// ```
     /// Its paths are of steps of order 1 or 2; a composed step runs back in some of its parts, and does not compile here.
     #[inline]
-    pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M>
+    pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M, B>
     where
         S: Variational<M, Scalar: Real>,
+        B: Differentiated<S, M>,
     {
-        const { assert!(S::ORDER <= 2, "paths of least action are of steps of order 2: write `order = 2`") };
+        const { assert!(B::ORDER <= 2, "paths of least action are of steps of order 2: write `order = 2`") };
         Boundary { stepper: self, time: S::Scalar::zero() }
     }
 }
 
 /// Where the cost or the potential depends on the time.
-impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
+impl<S, B: Differentiated<S, M>, const M: usize> Boundary<'_, S, M, B>
+where
+    S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>, Scalar: Real>,
+{
     /// The same with paths that start at the time `t` instead of 0.
     ///
     /// # Errors
@@ -77,10 +81,10 @@ impl<S: Variational<M, Time = Clock<<S as Clebsch>::Scalar>, Scalar: Real>, cons
     }
 }
 
-impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
+impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> Boundary<'a, S, M, B> {
     /// The stepper.
     #[inline]
-    pub fn stepper(&self) -> &'a Stepper<S> {
+    pub fn stepper(&self) -> &'a Stepper<S, B> {
         self.stepper
     }
 
@@ -110,7 +114,7 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         target: &S::Configuration,
         guess: Guess<S::Scalar, M>,
         path: &'p mut [Node<S, M>],
-    ) -> Result<Extremal<'p, S, M>, Error>
+    ) -> Result<Extremal<'p, S, M, B>, Error>
     where
         'a: 'p,
     {
@@ -130,7 +134,7 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         start: &S::Configuration,
         guess: Guess<S::Scalar, M>,
         path: &'p mut [Node<S, M>],
-    ) -> Result<Extremal<'p, S, M>, Error>
+    ) -> Result<Extremal<'p, S, M, B>, Error>
     where
         'a: 'p,
     {
@@ -143,13 +147,13 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         target: Option<&S::Configuration>,
         guess: Guess<S::Scalar, M>,
         path: &'p mut [Node<S, M>],
-    ) -> Result<Extremal<'p, S, M>, Error>
+    ) -> Result<Extremal<'p, S, M, B>, Error>
     where
         'a: 'p,
     {
         self.check(start, &guess, path.len())?;
         let Stepper { system, h, constants } = self.stepper;
-        let problem = Endpoints { system, h: *h, constants, time: self.time, start, target };
+        let problem = Endpoints::<S, M, B> { system, h: *h, constants, time: self.time, start, target };
         let mut search = Search { problem, path, last: *start };
         let (summary, iterations) = search.newton(&guess)?;
         let end = search.last;
@@ -193,8 +197,8 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
         let mut guess = guess;
         let trial = |h| {
             let system = &self.stepper.system;
-            let constants = S::Scheme::constants(system, h)?;
-            let problem = Endpoints { system, h, constants: &constants, time: self.time, start, target };
+            let constants = B::Scheme::constants(system, h)?;
+            let problem = Endpoints::<S, M, B> { system, h, constants: &constants, time: self.time, start, target };
             let mut search = Search { problem, path, last: *start };
             let (_, sweeps) = search.newton(&guess)?;
             guess = Guess::Path;
@@ -210,7 +214,7 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
 
     /// Start and guess are finite, the start on the declared space, nodes those of whole steps.
     fn check(&self, start: &S::Configuration, guess: &Guess<S::Scalar, M>, nodes: usize) -> Result<(), Error> {
-        let per_step = S::EDGES.max(1);
+        let per_step = B::EDGES.max(1);
         if nodes == 0 || !nodes.is_multiple_of(per_step) {
             return Err(Error::PathLength { nodes, per_step });
         }
@@ -222,11 +226,11 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Boundary<'a, S, M> {
     }
 }
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
     /// Σ ℓd + φ of the path as it is, with another step size.
     fn sum_at(&self, h: T) -> Result<T, Error> {
         let system = self.problem.system;
-        let constants = S::Scheme::constants(system, h)?;
+        let constants = B::Scheme::constants(system, h)?;
         let problem = Endpoints { h, constants: &constants, ..self.problem };
         let ends = self.path.iter().skip(1).map(|node| &node.configuration).chain(once(&self.last));
         let price = system.endpoint(problem.time_of_end(self.path.len()), &self.last).price;

@@ -218,4 +218,4 @@ pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
-pub use variational::{Carried, Edge, Momenta, Sensitive, Variational};
+pub use variational::{Carried, Differentiated, Edge, Momenta, Sensitive, Variational};

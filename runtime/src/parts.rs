@@ -274,11 +274,11 @@ pub trait Varied<const M: usize>: Parts {
 }
 
 /// Substep K, differentiated: the discrete Lagrangian of an edge from q to `next` = Φ_F(q), F = I + D, with its derivatives along M directions.
-pub trait VariedSubstep<const K: usize, const M: usize>: Substep<K> + Varied<M> {
+pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declared>: Substep<K, B> + Varied<M> {
     /// ℓd with both Legendre transforms.
     fn momenta(
         &self,
-        c: &C<Self>,
+        c: &B::Constants,
         t: T<Self>,
         q: &Q<Self>,
         d: &F<Self>,
@@ -287,12 +287,20 @@ pub trait VariedSubstep<const K: usize, const M: usize>: Substep<K> + Varied<M> 
     ) -> Momenta<T<Self>, M>;
 
     /// The same with their derivatives along the motions of both ends.
-    fn edge(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, d: &F<Self>, next: &Q<Self>, u: &U<Self>) -> Edge<T<Self>, M>;
+    fn edge(
+        &self,
+        c: &B::Constants,
+        t: T<Self>,
+        q: &Q<Self>,
+        d: &F<Self>,
+        next: &Q<Self>,
+        u: &U<Self>,
+    ) -> Edge<T<Self>, M>;
 
     /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
     fn carried(
         &self,
-        c: &C<Self>,
+        c: &B::Constants,
         t: T<Self>,
         q: &Q<Self>,
         d: &F<Self>,
@@ -301,5 +309,13 @@ pub trait VariedSubstep<const K: usize, const M: usize>: Substep<K> + Varied<M> 
     ) -> Carried<T<Self>, M>;
 
     /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
-    fn slopes(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, d: &F<Self>, next: &Q<Self>, u: &U<Self>) -> Self::Slopes;
+    fn slopes(
+        &self,
+        c: &B::Constants,
+        t: T<Self>,
+        q: &Q<Self>,
+        d: &F<Self>,
+        next: &Q<Self>,
+        u: &U<Self>,
+    ) -> Self::Slopes;
 }

@@ -2,7 +2,8 @@
 
 use crate::linear::divided;
 use crate::scheme::Scheme;
-use crate::{Carried, Clebsch, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
+use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges};
+use crate::{Carried, Clebsch, Differentiated, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
 use nalgebra::{SMatrix, SVector};
 
 /// A variation of a state: the motion η of q ↦ Φ_{exp η}(q), in the basis of 𝔤, and the change ν of the momentum.
@@ -145,9 +146,10 @@ struct Passed<S: Clebsch, const M: usize> {
 }
 
 #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
-impl<S, T: Scalar, const M: usize> Stepper<S>
+impl<S, B, T: Scalar, const M: usize> Stepper<S, B>
 where
     S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
+    B: Differentiated<S, M>,
 {
     /// One step with its derivative with respect to the state: (q⁺, N⁺) and the tangent map there.
     ///
@@ -156,7 +158,7 @@ where
     ///
     /// # Errors
     /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
-    pub fn step_tangent(&self, state: &State<S>) -> Result<(State<S>, Tangent<T, M>), Error> {
+    pub fn step_tangent(&self, state: &State<S, B>) -> Result<(State<S, B>, Tangent<T, M>), Error> {
         self.step_tangent_with(state, &S::Input::origin())
     }
 
@@ -164,7 +166,7 @@ where
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent), and [`Error::NotFinite`] where the input is not.
-    pub fn step_tangent_with(&self, state: &State<S>, u: &S::Input) -> Result<(State<S>, Tangent<T, M>), Error> {
+    pub fn step_tangent_with(&self, state: &State<S, B>, u: &S::Input) -> Result<(State<S, B>, Tangent<T, M>), Error> {
         let (q, mu, tangent) = self.pass_all(state, u, |_, _, _| {})?;
         Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
     }
@@ -172,13 +174,13 @@ where
     /// (q⁺, N⁺), edge by edge, with the tangent map. `seen` is told each edge with its number and the configuration where it starts.
     fn pass_all(
         &self,
-        state: &State<S>,
+        state: &State<S, B>,
         u: &S::Input,
         mut seen: impl FnMut(usize, &S::Configuration, &Passed<S, M>),
     ) -> Result<(S::Configuration, SVector<T, M>, Tangent<T, M>), Error> {
         let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let mut tangent = Tangent::identity();
-        for number in 0..S::EDGES {
+        for number in 0..B::EDGES {
             let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(|error| self.told(state, u, error))?;
             seen(number, &q, &passed);
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
@@ -198,10 +200,9 @@ where
         if !u.is_finite() {
             return Err(Error::NotFinite { name: "the input" });
         }
-        let (system, constants) = (&self.system, &self.constants);
-        let increment = system.drift(constants, number, t, q, mu, u)?;
-        let next = system.advance(q, &increment);
-        let edge = system.carried(constants, number, t, q, &increment, &next, u);
+        let increment = B::Scheme::visit(self.at(t), number, Drift(q, mu, u))?;
+        let next = S::advance(&self.system, q, &increment);
+        let edge = B::Scheme::visit(self.at(t), number, AtFixedElement((q, &increment, &next, u)));
         let Some(tangent) = of_edge(&edge) else {
             let is_finite = edge.before_by_end.is_finite();
             let step_size = self.step_size().to_f64();
@@ -210,18 +211,18 @@ where
         Ok(Passed { increment, next, edge, tangent })
     }
 
-    fn stepped(&self, state: &State<S>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S>, Error> {
+    fn stepped(&self, state: &State<S, B>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S, B>, Error> {
         let time = state.time.after_step(self.step_size());
         // of the same size, but at another configuration: what does not depend on either stays
-        let left = S::Scheme::left_after(self.at(time.now()), &q, &mu, &state.left);
-        let held = S::Scheme::held(&q, &mu);
+        let left = B::Scheme::left_after(self.at(time.now()), &q, &mu, &state.left);
+        let held = B::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
     }
 
     /// The error of an edge as that of the step that it is a part of.
     #[cold]
-    fn told(&self, state: &State<S>, u: &S::Input, error: Error) -> Error {
+    fn told(&self, state: &State<S, B>, u: &S::Input, error: Error) -> Error {
         if T::LANES == 1 { self.refusal(state, u, 0, error) } else { error }
     }
 
@@ -232,8 +233,8 @@ where
     /// As [`step_tangent`](Self::step_tangent).
     pub fn step_sensitivity<const P: usize>(
         &self,
-        state: &State<S>,
-    ) -> Result<(State<S>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+        state: &State<S, B>,
+    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
     where
         S: Sensitive<M, P>,
     {
@@ -246,17 +247,21 @@ where
     /// As [`step_tangent_with`](Self::step_tangent_with).
     pub fn step_sensitivity_with<const P: usize>(
         &self,
-        state: &State<S>,
+        state: &State<S, B>,
         u: &S::Input,
-    ) -> Result<(State<S>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
     where
         S: Sensitive<M, P>,
     {
         let mut sensitivity = Sensitivity::zero();
         let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
-            let slopes = self.system.edge_slopes(&self.constants, number, state.time.now(), q, increment, next, u);
-            let motion = -times(&tangent.motion_by_momentum, &slopes.0);
-            let of_edge = Sensitivity { motion, momentum: slopes.1 + times(&edge.after_by_end, &motion) };
+            let at = self.at(state.time.now());
+            let (before, after) = B::Scheme::visit(at, number, ByQuantities((q, increment, next, u)));
+            let columns = (S::STEP_SIZE, S::TIME);
+            let [before, after] =
+                [before, after].map(|slopes| B::Scheme::slopes_of_step(at.constants, number, slopes, columns));
+            let motion = -times(&tangent.motion_by_momentum, &before);
+            let of_edge = Sensitivity { motion, momentum: after + times(&edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(tangent, &of_edge);
         })?;
         if !(sensitivity.motion, sensitivity.momentum).is_finite() {

@@ -4,7 +4,7 @@ use crate::parts::Varied;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, FirstDerivatives, SecondDerivatives};
 use crate::scheme::{At, Constants};
 use crate::steered::no_endpoint;
-use crate::{Clebsch, EndpointExpansion, Error};
+use crate::{Clebsch, EndpointExpansion, Error, Method};
 use nalgebra::{SMatrix, SVector};
 
 /// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
@@ -118,6 +118,18 @@ pub trait Variational<const M: usize>:
     /// Gᵀ(target − q) = J(q, target − q), which vanishes where no motion of q along its orbit comes nearer to `target` to first order.
     fn approach(&self, q: &Self::Configuration, target: &Self::Configuration) -> Self::Momentum;
 }
+
+/// A method of a [`Variational`] system: all methods of a declaration with `emit = [tangent]` or `emit = [boundary]`.
+#[diagnostic::on_unimplemented(
+    message = "the steps by the method `{Self}` have no derivatives",
+    note = "write `emit = [boundary]` or `emit = [tangent]` in the declaration; methods of order 16 and splittings have no derivatives"
+)]
+pub trait Differentiated<S: Clebsch + ?Sized, const M: usize>: Method<S, Scheme: Edges<S, M, Self>> {
+    /// The number of edges in a step, as [`Variational::EDGES`].
+    const EDGES: usize = <Self::Scheme as Edges<S, M, Self>>::EDGES;
+}
+
+impl<S: Clebsch + ?Sized, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
 
 /// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of the vertex where it starts and η′ of the
 /// one where it ends.

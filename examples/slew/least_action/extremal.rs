@@ -3,7 +3,7 @@
 use super::declaration::FreeBody;
 use super::problem::Problem;
 use crate::attitude::turn;
-use clebsch::{Guess, Node, Stepper};
+use clebsch::{Differentiated, Guess, Node, Stepper};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::round_off;
 use clebsch_examples::scene::Failure;
@@ -42,11 +42,11 @@ impl Slew {
     ///
     /// # Errors
     /// What solving returns.
-    pub fn solve<S: FreeBody>(
+    pub fn solve<M: Differentiated<FreeBody, 3>>(
         problem: &Problem,
-        stepper: &Stepper<S>,
+        stepper: &Stepper<FreeBody, M>,
         guess: Guess<f64, 3>,
-        nodes: &mut [Node<S, 3>],
+        nodes: &mut [Node<FreeBody, 3>],
     ) -> Result<Self, Failure> {
         let extremal = stepper.boundary().solve(&problem.from, &problem.to, guess, nodes)?;
         let path: Vec<_> = extremal.states().map(|state| state.into_parts()).collect();
@@ -73,7 +73,7 @@ impl Slew {
     }
 
     /// Follows the stepper from (R_0, π_0), and from (R_0, P_0) with the costate P_0 = R_0 π̂_0/2 that has this momentum.
-    fn shoot<S: FreeBody>(&mut self, stepper: &Stepper<S>) -> Result<(), Failure> {
+    fn shoot<M: Differentiated<FreeBody, 3>>(&mut self, stepper: &Stepper<FreeBody, M>) -> Result<(), Failure> {
         let (attitude, momentum) = self.path[0];
         let (size, in_space) = (momentum.norm(), attitude * momentum);
         let matrix: Matrix3<f64> = stepper.momentum_matrix(&momentum);

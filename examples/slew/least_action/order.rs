@@ -1,9 +1,10 @@
 //! The order of three discretizations.
 
-use super::declaration::{Cayley, Discretization, Exponential, FreeBody, MoserVeselov};
+use super::declaration::{Cayley, Discretization, Exponential, FreeBody};
 use super::problem::Problem;
 use super::row::{converge, refine};
 use super::shooting::Shot;
+use clebsch::{Declared, Differentiated};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::Convergence;
 use clebsch_examples::flags::Order;
@@ -18,7 +19,7 @@ pub fn compare(problem: &Problem, shot: &Shot, claims: &mut Claims) -> Result<()
     let mut table = Table::new(["discretization", "off with h", "h/2", "h/4 / rad", "order"]);
     for discretization in Discretization::ALL {
         let convergence = match discretization {
-            Discretization::MoserVeselov => of::<MoserVeselov>(problem, shot)?,
+            Discretization::MoserVeselov => of::<Declared>(problem, shot)?,
             Discretization::Cayley => of::<Cayley>(problem, shot)?,
             Discretization::Exponential => of::<Exponential>(problem, shot)?,
         };
@@ -38,6 +39,6 @@ pub fn compare(problem: &Problem, shot: &Shot, claims: &mut Claims) -> Result<()
     Ok(())
 }
 
-fn of<S: FreeBody>(problem: &Problem, shot: &Shot) -> Result<Option<Convergence>, Failure> {
-    Ok(converge(problem, shot, &refine::<S>(problem, shot)?))
+fn of<M: Differentiated<FreeBody, 3>>(problem: &Problem, shot: &Shot) -> Result<Option<Convergence>, Failure> {
+    Ok(converge(problem, shot, &refine::<M>(problem, shot)?))
 }

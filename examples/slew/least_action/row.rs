@@ -7,6 +7,7 @@ use super::problem::Problem;
 use super::shooting::Shot;
 use super::trace::trace;
 use super::ways::Way;
+use clebsch::Differentiated;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::convergence::Convergence;
 use clebsch_examples::flags::Order;
@@ -36,8 +37,12 @@ impl Row {
     ///
     /// # Errors
     /// What solving returns.
-    pub fn new<S: FreeBody>(problem: &Problem, shot: Shot, ways: &[(Way, Option<Shot>)]) -> Result<Self, Failure> {
-        let slews = refine::<S>(problem, &shot)?;
+    pub fn new<M: Differentiated<FreeBody, 3>>(
+        problem: &Problem,
+        shot: Shot,
+        ways: &[(Way, Option<Shot>)],
+    ) -> Result<Self, Failure> {
+        let slews = refine::<M>(problem, &shot)?;
         let convergence = converge(problem, &shot, &slews);
         let leads = |way: &&(Way, Option<Shot>)| way.1.is_some_and(|found| is_same(&found, &shot));
         let guesses = ways.iter().filter(leads).map(|way| way.0.name).collect();
@@ -66,8 +71,8 @@ impl Row {
 ///
 /// # Errors
 /// What solving returns.
-pub fn refine<S: FreeBody>(problem: &Problem, shot: &Shot) -> Result<[Option<Slew>; 3], Failure> {
-    Ok([trace::<S>(problem, shot, 1)?, trace::<S>(problem, shot, 2)?, trace::<S>(problem, shot, 4)?])
+pub fn refine<M: Differentiated<FreeBody, 3>>(problem: &Problem, shot: &Shot) -> Result<[Option<Slew>; 3], Failure> {
+    Ok([trace::<M>(problem, shot, 1)?, trace::<M>(problem, shot, 2)?, trace::<M>(problem, shot, 4)?])
 }
 
 /// How far the attitudes of slews with h, h/2 and h/4 are from the continuous ones, at most.

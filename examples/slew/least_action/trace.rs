@@ -4,7 +4,7 @@ use super::declaration::FreeBody;
 use super::extremal::Slew;
 use super::problem::Problem;
 use super::shooting::Shot;
-use clebsch::{Error, Guess};
+use clebsch::{Clebsch, Differentiated, Error, Guess};
 use clebsch_examples::scene::Failure;
 
 /// The extremal of N · `finer` steps beside `shot`; `None` where there is none.
@@ -13,9 +13,13 @@ use clebsch_examples::scene::Failure;
 ///
 /// # Errors
 /// What solving returns.
-pub fn trace<S: FreeBody>(problem: &Problem, shot: &Shot, finer: u64) -> Result<Option<Slew>, Failure> {
+pub fn trace<M: Differentiated<FreeBody, 3>>(
+    problem: &Problem,
+    shot: &Shot,
+    finer: u64,
+) -> Result<Option<Slew>, Failure> {
     let steps = problem.steps * finer;
-    let stepper = S::with_inertia(problem.body.inertia).into_stepper(problem.duration / steps as f64)?;
+    let stepper = FreeBody { inertia: problem.body.inertia }.into_stepper_by::<M>(problem.duration / steps as f64)?;
     let boundary = stepper.boundary();
     let mut nodes = vec![boundary.rest(&problem.from); steps as usize];
     let way = shot.path(&problem.euler, steps);

@@ -3,7 +3,7 @@
 use super::declaration::FreeBody;
 use super::extremal::Slew;
 use super::problem::Problem;
-use clebsch::{Error, Guess};
+use clebsch::{Clebsch, Differentiated, Error, Guess};
 use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 
@@ -27,8 +27,9 @@ pub struct Way {
 ///
 /// # Errors
 /// What solving returns.
-pub fn follow<S: FreeBody>(problem: &Problem) -> Result<Vec<Way>, Failure> {
-    let stepper = S::with_inertia(problem.body.inertia).into_stepper(problem.duration / problem.steps as f64)?;
+pub fn follow<M: Differentiated<FreeBody, 3>>(problem: &Problem) -> Result<Vec<Way>, Failure> {
+    let stepper =
+        FreeBody { inertia: problem.body.inertia }.into_stepper_by::<M>(problem.duration / problem.steps as f64)?;
     let mut nodes = vec![stepper.boundary().rest(&problem.from); problem.steps as usize];
     let mut ways = Vec::new();
     for (name, turns) in WAYS {

@@ -83,10 +83,20 @@ fn program<'g>(
         steered => return Ok(steered),
     };
     let diagnostics = Diagnostics::new();
-    // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
-    let graphs = std::iter::successors(Some(graph), |graph| Some(graph.another())).skip(1);
-    for (method, graph) in declaration.methods.iter().zip(graphs) {
-        let found = program_of_steps(graph, &declaration.by(method), stage);
+    let mut graph = graph;
+    for method in &declaration.methods {
+        // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
+        let mut steps = |declaration: &Declaration| {
+            graph = graph.another();
+            program_of_steps(graph, declaration, stage)
+        };
+        let by_method = declaration.by(method);
+        let found = match steps(&by_method) {
+            Ok(found) if program.has_the_same_quantities(&found) => Ok(found),
+            // not all steps have derivatives: a method may do without those that the declaration asks for
+            _ if declaration.dials.emit.variations() => steps(&by_method.without_variations()),
+            found => found,
+        };
         match found.and_then(|steps| MethodProgram::new(&method.name, steps, &program)) {
             Ok(found) => program.methods.push(found),
             Err(errors) => errors.into_vec().into_iter().for_each(|error| diagnostics.push(error)),

@@ -13,11 +13,18 @@ pub struct MethodProgram<'g> {
     pub program: MechanicsProgram<'g>,
 }
 
-impl MechanicsProgram<'_> {
+impl<'g> MechanicsProgram<'g> {
     /// The text of `DERIVATION` of a method.
     pub(crate) fn derivation_by(&self, name: &Ident) -> String {
         let system = self.formulas.model.item.ident.to_string();
         self.derivation().replacen(&system, &format!("{system} by {name}"), 1)
+    }
+
+    /// Whether the steps of another program of the system are differentiated with respect to the same quantities.
+    pub(crate) fn has_the_same_quantities(&self, other: &Program<'g>) -> bool {
+        let Program::Mechanics(other) = other else { return false };
+        let [these, others] = [&self.formulas, &other.formulas].map(|formulas| &formulas.quantities);
+        these.iter().map(|quantity| &quantity.name).eq(others.iter().map(|quantity| &quantity.name))
     }
 }
 

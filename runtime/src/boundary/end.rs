@@ -3,7 +3,7 @@
 use super::sweep::Endpoints;
 use crate::newton::{arc_per_chord, is_reached, shortest};
 use crate::space::larger;
-use crate::{Error, Real, Space, Variational};
+use crate::{Differentiated, Error, Real, Space, Variational};
 use nalgebra::{SMatrix, SVector};
 
 /// What is known where a path ends.
@@ -27,7 +27,7 @@ pub(super) struct PathEnd<T, const M: usize> {
     pub curvature: Option<SMatrix<T, M, M>>,
 }
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Endpoints<'_, S, M, B> {
     /// The end of a path of so many edges at `q`. Where it may end anywhere, all motions are free, and there is no gap.
     ///
     /// The kernel is of eigenvalues below √ε of the largest.

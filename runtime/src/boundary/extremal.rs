@@ -4,7 +4,7 @@ use super::pivot::Feedback;
 use super::sweep::time_after;
 use crate::fields::{copied, debug, getters};
 use crate::scheme::{At, Scheme};
-use crate::{Clebsch, Real, Space, State, Stepper, Time, Variational};
+use crate::{Clebsch, Declared, Differentiated, Real, Space, State, Stepper, Time, Variational};
 use core::iter::FusedIterator;
 use nalgebra::{SMatrix, SVector};
 
@@ -61,8 +61,8 @@ copied!(Node<S, M> where [S: Clebsch, const M: usize]: configuration, increment,
 
 /// A path between fixed endpoints on which the action is critical, solved to round-off by
 /// [`Boundary::solve`](crate::Boundary::solve). The nodes that it was solved in hold the path itself.
-pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize> {
-    pub(super) stepper: &'a Stepper<S>,
+pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
+    pub(super) stepper: &'a Stepper<S, B>,
     pub(super) nodes: &'a [Node<S, M>],
     pub(super) time: S::Scalar,
     pub(super) action: S::Scalar,
@@ -74,7 +74,7 @@ pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize> {
     pub(super) final_momentum: SVector<S::Scalar, M>,
 }
 
-impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
+impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> Extremal<'a, S, M, B> {
     getters! {
         /// The action Σ ℓd, in the unit of ℓd: J·s.
         copy action: S::Scalar;
@@ -102,43 +102,46 @@ impl<'a, S: Variational<M, Scalar: Real>, const M: usize> Extremal<'a, S, M> {
     }
 
     /// The states (q, N) at the starts of all steps and at the end, N + 1 of them; a stepper can go on from each.
-    pub fn states(&self) -> States<'_, 'a, S, M> {
+    pub fn states(&self) -> States<'_, 'a, S, M, B> {
         States { extremal: self, next: 0 }
     }
 
     /// The state after so many steps.
-    fn state(&self, steps: usize) -> Option<State<S>> {
-        let edges = steps.checked_mul(S::EDGES.max(1))?;
+    fn state(&self, steps: usize) -> Option<State<S, B>> {
+        let edges = steps.checked_mul(B::EDGES.max(1))?;
         let end = (edges == self.nodes.len()).then_some((self.end, self.final_momentum));
         let node = self.nodes.get(edges).map(|node| (node.configuration, node.momentum));
         let (configuration, momentum) = node.or(end)?;
         let Stepper { system, h, constants } = self.stepper;
         let t = time_after::<S>(self.time, *h, steps);
-        let left = S::Scheme::left(At::new(system, constants, t), &configuration, &momentum);
-        let held = S::Scheme::held(&configuration, &momentum);
+        let left = B::Scheme::left(At::new(system, constants, t), &configuration, &momentum);
+        let held = B::Scheme::held(&configuration, &momentum);
         Some(State { time: S::Time::at(t), configuration, held, left, h: *h })
     }
 }
 
 // without the path, which is long
-debug!(Extremal<'_, S, M> where [S: Variational<M, Scalar: Real>, const M: usize]:
+debug!(Extremal<'_, S, M, B> where [S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize]:
     action, iterations, residual, gap, negative);
 
 /// The states of an [`Extremal`].
 #[derive(Debug)]
-pub struct States<'e, 'a, S: Variational<M, Scalar: Real>, const M: usize> {
-    extremal: &'e Extremal<'a, S, M>,
+pub struct States<'e, 'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
+    extremal: &'e Extremal<'a, S, M, B>,
     next: usize,
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Iterator for States<'_, '_, S, M> {
-    type Item = State<S>;
+impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> Iterator for States<'_, '_, S, M, B> {
+    type Item = State<S, B>;
 
-    fn next(&mut self) -> Option<State<S>> {
+    fn next(&mut self) -> Option<State<S, B>> {
         let state = self.extremal.state(self.next)?;
         self.next += 1;
         Some(state)
     }
 }
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> FusedIterator for States<'_, '_, S, M> {}
+impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> FusedIterator
+    for States<'_, '_, S, M, B>
+{
+}

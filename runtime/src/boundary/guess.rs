@@ -4,7 +4,7 @@ use super::sweep::{Endpoints, Search};
 use crate::newton::Curvature;
 use crate::parameters::check_finite;
 use crate::scheme::Scheme;
-use crate::{Error, Real, Space, Variational};
+use crate::{Differentiated, Error, Real, Space, Variational};
 use nalgebra::SVector;
 
 /// Where the search for an extremal starts. Extremals between two endpoints are not unique: the guess selects.
@@ -33,7 +33,7 @@ const CORRECTIONS: usize = 3;
 /// The motions of the vertices of a coarse path, q_0 first.
 type Motions<T, const M: usize> = [SVector<T, M>; COARSE + 1];
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
     /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
     pub fn prepare(&mut self, guess: &Guess<T, M>) -> Result<(), Error> {
         let start = match guess {
             Guess::Geodesic => Some(Space::origin()),
-            Guess::Velocity(velocity) => Some(velocity * (self.problem.h / T::from_f64(S::EDGES.max(1) as f64))),
+            Guess::Velocity(velocity) => Some(velocity * (self.problem.h / T::from_f64(B::EDGES.max(1) as f64))),
             Guess::Path => None,
         };
         let mut motions = None;
@@ -122,7 +122,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
         let ratio = T::from_f64(self.path.len() as f64) / T::from_f64(COARSE as f64);
         let path = self.path.get_mut(..COARSE).filter(|_| ratio >= T::from_f64((MANY / COARSE) as f64))?;
         let h = self.problem.h * ratio;
-        let constants = S::Scheme::constants(self.problem.system, h).ok()?;
+        let constants = B::Scheme::constants(self.problem.system, h).ok()?;
         let problem = Endpoints { h, constants: &constants, ..self.problem };
         let mut few = Search { problem, path, last: self.last };
         let eta = few.constant(eta * ratio);

@@ -4,7 +4,7 @@ use super::guess::Guess;
 use super::sweep::Search;
 use super::vertex::PathSummary;
 use crate::newton::{Curvature, adapted};
-use crate::{Error, Real, Variational};
+use crate::{Differentiated, Error, Real, Variational};
 
 /// Backward sweeps of which one solution may make use.
 const SWEEPS: u32 = 200;
@@ -73,7 +73,7 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
     }
 }
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
     /// The critical point of the action near the guess, and the number of sweeps.
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is

@@ -2,7 +2,7 @@
 
 use super::{Boundary, Guess, Node};
 use crate::space::larger;
-use crate::{Error, Real, Scalar, Variational};
+use crate::{Differentiated, Error, Real, Scalar, Variational};
 use core::mem::swap;
 use nalgebra::SVector;
 use num_traits::{One, Zero};
@@ -27,7 +27,7 @@ const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]
 /// Momenta that differ by less, relative to their size, are those of one extremal.
 const APART: f64 = 1e-6;
 
-impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
+impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> Boundary<'_, S, M, B> {
     /// Extremals from `start` to `target` in order of their action, at most K: the shortest way, and what is found from velocities
     /// along each direction of the algebra and between each two, both ways, through one to seven quarters of a turn in the time of the path.
     ///
@@ -60,7 +60,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Boundary<'_, S, M> {
             }
         };
         look(Guess::Geodesic);
-        let steps = S::Scalar::from_f64((nodes / S::EDGES.max(1)) as f64);
+        let steps = S::Scalar::from_f64((nodes / B::EDGES.max(1)) as f64);
         let quarter = S::Scalar::PI * S::Scalar::from_ratio(1, 2) / (self.stepper.h * steps);
         for angle in QUARTERS {
             let length = S::Scalar::from_f64(angle) * quarter;

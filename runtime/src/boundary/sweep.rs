@@ -16,16 +16,17 @@ use super::end::PathEnd;
 use super::pivot::Solution;
 use super::vertex::PathSummary;
 use crate::newton::Curvature;
-use crate::scheme::Constants;
+use crate::scheme::edges::{Edges, FirstDerivatives, SecondDerivatives};
+use crate::scheme::{At, Constants};
 use crate::space::larger;
-use crate::{Clebsch, Edge, Momenta, Real, Scalar, Space, Variational};
+use crate::{Clebsch, Declared, Differentiated, Edge, Momenta, Real, Scalar, Space, Variational};
 use nalgebra::SVector;
 
 /// Fixed endpoints for a system and a step size.
-pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize> {
+pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
     pub system: &'a S,
     pub h: S::Scalar,
-    pub constants: &'a Constants<S>,
+    pub constants: &'a Constants<S, B>,
     /// The time of the start.
     pub time: S::Scalar,
     pub start: &'a S::Configuration,
@@ -34,35 +35,38 @@ pub(super) struct Endpoints<'a, S: Variational<M, Scalar: Real>, const M: usize>
 }
 
 /// A path from the start, on the way from a guess to an extremal.
-pub(super) struct Search<'a, S: Variational<M, Scalar: Real>, const M: usize> {
-    pub problem: Endpoints<'a, S, M>,
+pub(super) struct Search<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
+    pub problem: Endpoints<'a, S, M, B>,
     pub path: &'a mut [Node<S, M>],
     /// q_N
     pub last: S::Configuration,
 }
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Endpoints<'_, S, M, B> {
     pub fn time_of_end(&self, edges: usize) -> T {
         // the price of the end may depend on the time where nothing else does
-        self.time + T::from_f64((edges / S::EDGES.max(1)) as f64) * self.h
+        self.time + T::from_f64((edges / B::EDGES.max(1)) as f64) * self.h
     }
 
     #[inline(always)]
     fn edge(&self, index: usize, node: &Node<S, M>, next: &S::Configuration) -> Edge<T, M> {
         let (t, edge) = self.place(index);
-        self.system.edge(self.constants, edge, t, &node.configuration, &node.increment, next, &S::Input::origin())
+        let (q, d) = (&node.configuration, &node.increment);
+        let u = S::Input::origin();
+        B::Scheme::visit(At::new(self.system, self.constants, t), edge, SecondDerivatives((q, d, next, &u)))
     }
 
     #[inline]
     pub fn momenta(&self, k: usize, q: &S::Configuration, d: &S::Element, next: &S::Configuration) -> Momenta<T, M> {
         let (t, edge) = self.place(k);
-        self.system.momenta(self.constants, edge, t, q, d, next, &S::Input::origin())
+        let u = S::Input::origin();
+        B::Scheme::visit(At::new(self.system, self.constants, t), edge, FirstDerivatives((q, d, next, &u)))
     }
 
     /// The time at which the step of an edge starts, and the number of the edge in it.
     #[inline]
     fn place(&self, index: usize) -> (T, usize) {
-        let per_step = S::EDGES.max(1);
+        let per_step = B::EDGES.max(1);
         (time_after::<S>(self.time, self.h, index / per_step), index % per_step)
     }
 
@@ -83,7 +87,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Endpoints<'_, S, M>
     }
 }
 
-impl<T: Real, S: Variational<M, Scalar = T>, const M: usize> Search<'_, S, M> {
+impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
     /// What is known where the path ends.
     #[inline]
     pub fn end(&self) -> PathEnd<T, M> {

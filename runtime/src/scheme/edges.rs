@@ -5,17 +5,17 @@ use super::great_circle::GreatCircle;
 use super::sequence::{CarryKick, InSequence};
 use super::substep::solve_before_kick;
 use super::{At, AtOf, Scheme, adjoint_pair, free_motion, kick_drift_kick};
-use crate::parts::{F, Mu, Q, Substep, U, Varied, VariedSubstep};
-use crate::{Carried, Clebsch, Declared, Edge, Error, Momenta};
+use crate::parts::{F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
+use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta};
 use nalgebra::SMatrix;
 
 /// A scheme whose steps have edges.
-pub trait Edges<S: Clebsch + ?Sized, const M: usize>: Scheme<S> {
+pub trait Edges<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared>: Scheme<S, B> {
     /// How many.
     const EDGES: usize;
 
     /// What is asked for at an edge of the step.
-    fn visit<V: Visit<S, M>>(at: AtOf<'_, S, Self>, edge: usize, visit: V) -> V::Output;
+    fn visit<V: Visit<S, M, B>>(at: AtOf<'_, S, Self, B>, edge: usize, visit: V) -> V::Output;
 
     /// The slopes of an edge along h and t of the whole step, in the columns that are told.
     #[inline(always)]
@@ -30,14 +30,14 @@ pub trait Edges<S: Clebsch + ?Sized, const M: usize>: Scheme<S> {
 }
 
 /// What is asked for at an edge.
-pub trait Visit<S: Clebsch + ?Sized, const M: usize> {
+pub trait Visit<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared> {
     /// The answer.
     type Output;
 
     /// The answer at substep K.
-    fn at<const K: usize>(self, at: At<'_, S>) -> Self::Output
+    fn at<const K: usize>(self, at: At<'_, S, B>) -> Self::Output
     where
-        S: VariedSubstep<K, M>;
+        S: VariedSubstep<K, M, B>;
 }
 
 /// q, F − I, q⁺ and u: the ends of an edge, and the input of its forces.
@@ -46,16 +46,16 @@ pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
 /// The increment of the group element with the momentum μ at q, of q, μ and u.
 pub struct Drift<'a, S: Clebsch + ?Sized>(pub &'a Q<S>, pub &'a Mu<S>, pub &'a U<S>);
 
-impl<S: Clebsch + ?Sized, const M: usize> Visit<S, M> for Drift<'_, S> {
+impl<S: Clebsch + ?Sized, B: Method<S>, const M: usize> Visit<S, M, B> for Drift<'_, S> {
     type Output = Result<F<S>, Error>;
 
     #[inline(always)]
-    fn at<const K: usize>(self, at: At<'_, S>) -> Self::Output
+    fn at<const K: usize>(self, at: At<'_, S, B>) -> Self::Output
     where
-        S: VariedSubstep<K, M>,
+        S: VariedSubstep<K, M, B>,
     {
-        let x = solve_before_kick::<S, Declared, K>(at, self.0, self.1, self.2)?;
-        Ok(at.system.increment(&x))
+        let x = solve_before_kick::<S, B, K>(at, self.0, self.1, self.2)?;
+        Ok(Parts::<B>::increment(at.system, &x))
     }
 }
 
@@ -65,13 +65,13 @@ macro_rules! asked {
         #[doc = $doc]
         pub struct $name<'a, S: Clebsch + ?Sized>(pub Ends<'a, S>);
 
-        impl<S: $bound $(<$m>)? + ?Sized, const M: usize> Visit<S, M> for $name<'_, S> {
+        impl<S: $bound $(<$m>)? + ?Sized, B: Method<S>, const M: usize> Visit<S, M, B> for $name<'_, S> {
             type Output = $output;
 
             #[inline(always)]
-            fn at<const K: usize>(self, at: At<'_, S>) -> Self::Output
+            fn at<const K: usize>(self, at: At<'_, S, B>) -> Self::Output
             where
-                S: VariedSubstep<K, M>,
+                S: VariedSubstep<K, M, B>,
             {
                 let (q, d, next, u) = self.0;
                 at.system.$method(at.constants, at.t, q, d, next, u)
@@ -90,14 +90,14 @@ asked! {
 /// Schemes with one edge.
 macro_rules! one_edge {
     ($([$($generics:tt)*] $scheme:ty;)*) => { $(
-        impl<S: VariedSubstep<0, M>, $($generics)* const M: usize> Edges<S, M> for $scheme
+        impl<S: VariedSubstep<0, M, B>, B: Method<S>, $($generics)* const M: usize> Edges<S, M, B> for $scheme
         where
-            Self: Scheme<S, Constants = S::Constants>,
+            Self: Scheme<S, B, Constants = B::Constants>,
         {
             const EDGES: usize = 1;
 
             #[inline(always)]
-            fn visit<V: Visit<S, M>>(at: At<'_, S>, _: usize, visit: V) -> V::Output {
+            fn visit<V: Visit<S, M, B>>(at: At<'_, S, B>, _: usize, visit: V) -> V::Output {
                 visit.at::<0>(at)
             }
         }
@@ -110,22 +110,25 @@ one_edge! {
     [C,] GreatCircle<C>;
 }
 
-impl<S: VariedSubstep<0, M> + VariedSubstep<1, M> + Substep<2>, C: CarryKick<S, Declared>, const M: usize> Edges<S, M>
-    for InSequence<adjoint_pair::Order<C>>
+impl<S, B: Method<S>, C: CarryKick<S, B>, const M: usize> Edges<S, M, B> for InSequence<adjoint_pair::Order<C>>
+where
+    S: VariedSubstep<0, M, B> + VariedSubstep<1, M, B> + Substep<2, B>,
 {
     const EDGES: usize = 2;
 
     #[inline(always)]
-    fn visit<V: Visit<S, M>>(at: At<'_, S>, edge: usize, visit: V) -> V::Output {
+    fn visit<V: Visit<S, M, B>>(at: At<'_, S, B>, edge: usize, visit: V) -> V::Output {
         if edge == 0 { visit.at::<0>(at) } else { visit.at::<1>(at) }
     }
 }
 
-impl<S: Clebsch, I: Edges<S, M>, Z: Sizes<K>, const K: usize, const M: usize> Edges<S, M> for Composed<I, Z, K> {
+impl<S: Clebsch, B: Method<S>, I: Edges<S, M, B>, Z: Sizes<K>, const K: usize, const M: usize> Edges<S, M, B>
+    for Composed<I, Z, K>
+{
     const EDGES: usize = (2 * K - 1) * I::EDGES;
 
     #[inline(always)]
-    fn visit<V: Visit<S, M>>(at: AtOf<'_, S, Self>, edge: usize, visit: V) -> V::Output {
+    fn visit<V: Visit<S, M, B>>(at: AtOf<'_, S, Self, B>, edge: usize, visit: V) -> V::Output {
         let stage = at.constants.stage(edge / I::EDGES);
         I::visit(At::new(at.system, stage.constants, at.t + stage.start), edge % I::EDGES, visit)
     }

@@ -11,8 +11,9 @@ impl<'g> Emitter<'_, 'g> {
         let blocks = self.program.methods.iter().map(|method| {
             let emitter = Emitter::of_method(self.program, method);
             let (constants, method) = (emitter.constants_type(), emitter.implementation_of_method(&method.name));
-            let (parts, equations, velocity) = (emitter.parts(), emitter.equations(), emitter.velocity());
-            quote!(const _: () = { #constants #method #parts #equations #velocity };)
+            let (edges, parts) = (emitter.edges(), emitter.parts());
+            let (equations, velocity) = (emitter.equations(), emitter.velocity());
+            quote!(const _: () = { #constants #method #edges #parts #equations #velocity };)
         });
         blocks.collect()
     }

@@ -16,13 +16,21 @@ impl Emitter<'_, '_> {
         if !self.model.has_variations() {
             return TokenStream::new();
         }
-        let (krate, private, dimension) = (&self.paths.krate, &self.paths.private, size(self.dimension()));
+        let (krate, dimension) = (&self.paths.krate, size(self.dimension()));
         let motions = self.functions(VARIATIONAL, (0, 0), &[], |function, kernel| self.motion_of(function, kernel));
         let variational = self.target.derived(Some(quote!(#krate::Variational<#dimension>)), motions);
         let slopes = self.paths.matrix_of_any_shape(self.dimension(), self.formulas.quantities.len());
         let slopes = if self.is_sensitive() { quote!((#slopes, #slopes)) } else { quote!(()) };
         let varied = self.implementation("Varied", std::slice::from_ref(&dimension), quote!(type Slopes = #slopes;));
-        let edges = (0..self.formulas.stepped).map(|index| {
+        let edges = self.edges();
+        quote!(#variational #varied #edges)
+    }
+
+    /// The implementations of `VariedSubstep` for each edge of a step, where derivatives are asked for.
+    pub(super) fn edges(&self) -> TokenStream {
+        let edges = if self.model.has_variations() { self.formulas.stepped } else { 0 };
+        let (private, dimension) = (&self.paths.private, size(self.dimension()));
+        let edges = (0..edges).map(|index| {
             let slopes = match self.program.find(Id::EdgeSlopes(index)) {
                 Some(_) => quote!(<Self as #private::Varied<#dimension>>::Slopes),
                 None => quote!(()),
@@ -31,7 +39,7 @@ impl Emitter<'_, '_> {
             let functions = self.functions(EDGE, (index, 0), &words, |function, kernel| self.edge(function, kernel));
             self.implementation("VariedSubstep", &[size(index), dimension.clone()], functions)
         });
-        quote!(#variational #varied #(#edges)*)
+        edges.collect()
     }
 
     /// Whether derivatives with respect to what is fixed during a step are asked for.
@@ -122,7 +130,9 @@ impl Emitter<'_, '_> {
             let constant = format_ident!("{constant}");
             Some(quote!(const #constant: #private::Option<::core::primitive::usize> = #private::Some(#column);))
         };
-        let columns = self.formulas.stages().map(|_| {
+        let methods = self.program.methods.iter().map(|method| &method.program.formulas);
+        let is_composed = methods.chain([self.formulas]).any(|formulas| formulas.stages().is_some());
+        let columns = is_composed.then(|| {
             let (size, time) = (column("STEP_SIZE", "h"), column("TIME", "t"));
             quote!(#size #time)
         });

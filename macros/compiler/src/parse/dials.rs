@@ -229,9 +229,9 @@ impl Emit {
         (!words.is_empty()).then(|| format!("[{words}]"))
     }
 
-    /// What is emitted of a method beside the integrator: what says which system is stepped.
+    /// What is emitted of a method beside the integrator: what says which system is stepped, and derivatives of its steps.
     pub(super) fn of_method(self) -> Emit {
-        Emit { momentum: self.momentum, ..Emit::default() }
+        Emit { generated: false, latex: false, ..self }
     }
 
     /// Whether discrete Lagrangians are differentiated twice.

@@ -5,7 +5,7 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseBuffer, ParseStream};
 use syn::{Token, parenthesized};
 
-use super::dials::Dials;
+use super::dials::{Dials, Emit};
 use super::keys::{KEYS, Keys};
 use super::spelling::listed;
 use super::{Declaration, attribute};
@@ -98,7 +98,7 @@ pub(super) fn checked(system: &Ident, keys: Vec<MethodKeys>, diagnostics: &Diagn
 }
 
 impl Declaration {
-    /// The same system with the dials of a method. What is not of steps alone is emitted for the declared dials.
+    /// The same system with the dials of a method.
     pub(crate) fn by(&self, method: &DeclaredMethod) -> Declaration {
         let system = &self.dials;
         let dials = Dials {
@@ -109,5 +109,11 @@ impl Declaration {
             ..method.dials.clone()
         };
         Declaration { dials, control: None, endpoint: None, methods: Vec::new(), ..self.clone() }
+    }
+
+    /// The same system without derivatives of its steps.
+    pub(crate) fn without_variations(mut self) -> Declaration {
+        self.dials.emit = Emit { tangent: false, boundary: false, ..self.dials.emit };
+        self
     }
 }

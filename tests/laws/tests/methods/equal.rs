@@ -8,7 +8,7 @@ use crate::systems::{driven, free, pendulum, sphere, top};
 const STEPS: usize = 100;
 
 /// Debug prints show every bit of a number.
-fn print(value: impl std::fmt::Debug) -> String {
+pub fn print(value: impl std::fmt::Debug) -> String {
     format!("{value:?}")
 }
 
@@ -69,7 +69,7 @@ macro_rules! assert_equal {
     })* };
 }
 
-fn attitude() -> Matrix3<f64> {
+pub fn attitude() -> Matrix3<f64> {
     *nalgebra::Rotation3::from_euler_angles(0.3, 1.1, -0.4).matrix()
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(missing_docs)]
 
+mod derivatives;
 mod equal;
 mod states;
 mod systems;

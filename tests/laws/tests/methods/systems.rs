@@ -74,6 +74,27 @@ both_ways! {
         Second { order = 2 }
         Eighth { order = 8 }
     ]
+    /// A pendulum whose steps are differentiated, by each method.
+    varied {
+        action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+        cost      = |h, F| (F - I).norm_squared() / (4 * h),
+        potential = |q| self.gravity * q.z,
+        emit      = [boundary, tangent]
+    } { gravity: f64 } [
+        First { order = 1 }
+        Second { order = 2 }
+    ]
+    /// The same of a top, whose step is implicit.
+    varied_top {
+        action     = |F: SO<3>, R: SO<3>| R * F,
+        lagrangian = |omega| omega.dot(&(nalgebra::Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+        potential  = |R| self.weight * (R * self.center).z,
+        emit       = [tangent]
+    } { moments: nalgebra::Vector3<f64>, weight: f64, center: nalgebra::Vector3<f64> } [
+        First { order = 1, discretization = moser_veselov }
+        Charted { discretization = exponential }
+        Fourth { order = 4, discretization = moser_veselov }
+    ]
     /// A point on a large sphere, in (q, w).
     sphere {
         action    = |F: SO<9>, q: Unit<SVector<9>>| F * q,

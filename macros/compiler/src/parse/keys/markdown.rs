@@ -12,7 +12,7 @@ pub fn keys_as_markdown() -> String {
         "{table}
 `method NAME = (dial = value, …)` declares a further way to step the same system. `NAME` is a unit struct of yours. There may be any number of methods.
 The dials of a method are {}. One that a method does not name has its default, whatever the declaration says.
-`emit = [tangent]`, `[boundary]` and `effort` are of the steps with the declared dials.
+`emit = [tangent]` and `[boundary]` serve every method whose steps can be differentiated. `effort` is of the steps with the declared dials.
 ",
         dials.join(", ")
     )
