@@ -2,7 +2,7 @@
 
 use proc_macro2::Ident;
 
-use crate::diagnostic::{Diagnostics, error};
+use crate::diagnostic::{Diagnostics, bail};
 use crate::lower::{MechanicsProgram, Program};
 
 /// A further way to step the system of a program.
@@ -44,15 +44,11 @@ impl<'g> MethodProgram<'g> {
             program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.clone()).collect()
         };
         let conserved = of(&program);
-        match of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
-            None => Ok(MethodProgram { name: name.clone(), program: *program }),
-            Some(lost) => {
-                let error = error!(name.span(), "the method `{name}` does not conserve the momentum `{lost}`");
-                let error = error.help("write another `discretization` for it, or declare another struct");
-                Err(error
-                    .note("the steps with the declared dials do, and what is conserved is said for the system")
-                    .into())
-            }
+        if let Some(lost) = of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
+            bail!(name, "the method `{name}` does not conserve the momentum `{lost}`";
+                help "write another `discretization` for it, or declare another struct";
+                note "the steps with the declared dials do, and what is conserved is said for the system");
         }
+        Ok(MethodProgram { name: name.clone(), program: *program })
     }
 }

@@ -21,9 +21,7 @@ pub(super) struct Action<'a, 'g> {
 /// How a factor acts.
 #[derive(Copy, Clone)]
 pub(super) struct Law {
-    /// Its side.
     pub side: Side,
-    /// Whether it moves anything.
     pub moves: bool,
 }
 
@@ -108,7 +106,6 @@ impl<'g> Action<'_, 'g> {
         }
     }
 
-    /// The sides on which a factor's composition law holds.
     fn sides(&self, index: usize, diagnostics: &Diagnostics) -> Option<Sides> {
         let Factor { group, symbol, .. } = &self.factors[index];
         let points = self.points();

@@ -85,6 +85,11 @@ impl<'d, 'g> Arguments<'d, 'g> {
         Matched::new(self.names, closure, slots, diagnostics)
     }
 
+    /// The names in a closure that introduces none.
+    pub fn scope_of(&self, closure: &'d Closure, slots: &'static [Slot], diagnostics: &Diagnostics) -> Scope<'g> {
+        self.scope(&self.matched(closure, slots, diagnostics), &[], diagnostics)
+    }
+
     /// The scope in which arguments have the values of their slots, and what is left out has a reason.
     pub fn scope(
         &self,

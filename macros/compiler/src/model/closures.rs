@@ -4,16 +4,16 @@ use clebsch_symbolic::{Expr, Graph, Shape};
 use syn::{BinOp, Expr as Syntax, Stmt};
 
 use super::arguments::Arguments;
-use super::chart::without_cayley_map;
 use super::elaborate::{Context, Elaborator};
+use super::groups::without_cayley_map;
 use super::leaves::{leaves, new_value_of};
 use super::power::Term;
 use super::scope::Scope;
 use super::sites;
 use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
+use super::typed::{Typed, Velocity};
 use super::value::{Each, Value};
-use super::velocity::Velocity;
-use super::{Configuration, Discretization, Factor, Kinetic, Layout, Spans, Written};
+use super::{Discretization, Factor, Kinetic, Spans, Written};
 use crate::diagnostic::{Location, error, refuse, report};
 use crate::parse::{self, Closure, Declaration, spell};
 
@@ -22,161 +22,133 @@ pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<
     closure.map_or(Some(None), |closure| read(closure).map(Some))
 }
 
-/// Φ_F(q), leaf by leaf.
-pub(super) fn action<'g>(
-    context: &mut Context<'_, 'g>,
-    declaration: &Declaration,
-    arguments: &Arguments<'_, 'g>,
-    structure: &Layout,
-    configurations: Option<&[Configuration<'g>]>,
-) -> Option<Vec<Expr<'g>>> {
-    let Closure { key, body, .. } = &declaration.action;
-    let scope = arguments.action_scope(&context.diagnostics);
-    let value = context.value(&declaration.action, scope)?;
-    let value = of_site(context, body, value)?;
-    let is = new_value_of(arguments.names.configuration);
-    leaves((key, body), &value, structure, configurations?, &is, &context.diagnostics)
+/// What closures over the arguments of the action are read with.
+pub(super) struct Closures<'a, 'c, 'g> {
+    pub context: &'a mut Context<'c, 'g>,
+    pub declaration: &'a Declaration,
+    pub arguments: &'a Arguments<'a, 'g>,
+    pub typed: &'a Typed<'g>,
 }
 
-/// What the action of a power gives for each site; any other value as it is.
-fn of_site<'g>(context: &Context<'_, 'g>, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
-    let Some(power) = &context.power else { return Some(value) };
-    match value {
-        Value::Sequence(range, each) if range == (context.graph.integer(0), power.count) => Some(*each),
-        other => {
-            let is = other.describe();
-            refuse!(context.diagnostics, tail(body).0, "the action gives {is}, but it has to give a value for each site";
-                help "write `(0..{}).map(|i| …)`", power.name)
+impl<'g> Closures<'_, '_, 'g> {
+    /// Φ_F(q), leaf by leaf.
+    pub fn action(&mut self) -> Option<Vec<Expr<'g>>> {
+        let Closure { key, body, .. } = &self.declaration.action;
+        let scope = self.arguments.action_scope(&self.context.diagnostics);
+        let value = self.context.value(&self.declaration.action, scope)?;
+        let value = self.of_site(body, value)?;
+        let is = new_value_of(self.arguments.names.configuration);
+        let configurations = self.typed.configurations.as_deref()?;
+        leaves((key, body), &value, &self.typed.configuration, configurations, &is, &self.context.diagnostics)
+    }
+
+    /// What the action of a power gives for each site; any other value as it is.
+    fn of_site(&self, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
+        let Some(power) = &self.context.power else { return Some(value) };
+        match value {
+            Value::Sequence(range, each) if range == (self.context.graph.integer(0), power.count) => Some(*each),
+            other => {
+                let (place, is) = (tail(body).0, other.describe());
+                refuse!(self.context.diagnostics, place, "the action gives {is}, but it has to give a value for each site";
+                    help "write `(0..{}).map(|i| …)`", power.name)
+            }
         }
     }
-}
 
-/// The cost, or the Lagrangian with its velocity.
-pub(super) fn kinetic<'g>(
-    context: &mut Context<'_, 'g>,
-    declaration: &Declaration,
-    arguments: &Arguments<'_, 'g>,
-    structure: &Layout,
-    factors: Option<&[Factor<'g>]>,
-) -> Option<Kinetic<'g>> {
-    match &declaration.kinetic {
-        parse::Kinetic::Cost(closure) => cost(context, closure, arguments, factors),
-        parse::Kinetic::Lagrangian(closure) => {
-            let chosen = declaration.dials.discretization.as_ref();
-            let discretization =
-                chosen.map_or_else(|| default_discretization(context.graph, factors), |chosen| chosen.value);
-            let (energy, velocities, name) = lagrangian(context, closure, arguments, structure, factors)?;
-            Some(Kinetic::Lagrangian { energy, velocities, name, discretization })
-        }
-        // what inputs move is read with them
-        parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
-    }
-}
-
-/// The Cayley map where it stays in every factor: projected, it grows beyond use. The exponential elsewhere.
-pub(super) fn default_discretization(graph: &Graph, factors: Option<&[Factor<'_>]>) -> Discretization {
-    if factors.is_some_and(|factors| without_cayley_map(graph, factors).is_some()) {
-        Discretization::Exponential
-    } else {
-        Discretization::Cayley
-    }
-}
-
-fn cost<'g>(
-    context: &mut Context<'_, 'g>,
-    closure: &Closure,
-    arguments: &Arguments<'_, 'g>,
-    factors: Option<&[Factor<'g>]>,
-) -> Option<Kinetic<'g>> {
-    let matched = arguments.matched(closure, COST, &context.diagnostics);
-    let scope = arguments.scope(&matched, &[], &context.diagnostics);
-    let cost = scalar(context, closure, scope, "a discrete Lagrangian is a scalar")?;
-    for Factor { name, group, .. } in factors?.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
-        let example = if group.is_translation() {
-            format!("self.mass * {name}.norm_squared() / (2 * h)")
-        } else {
-            format!("self.mass * ({name} - I).norm_squared() / (4 * h)")
-        };
-        report!(context.diagnostics, tail(&closure.body).0, "the cost does not depend on `{name}`";
-            help "add the kinetic energy of `{name}`, as in `{example}`";
-            note "the momentum of `{name}` is the derivative of the cost, and cannot be inverted where that is 0");
-    }
-    Some(Kinetic::Cost(cost))
-}
-
-/// The Lagrangian with the symbols of its velocity and the user's name for it.
-fn lagrangian<'g>(
-    context: &mut Context<'_, 'g>,
-    closure: &Closure,
-    arguments: &Arguments<'_, 'g>,
-    structure: &Layout,
-    factors: Option<&[Factor<'g>]>,
-) -> Option<(Expr<'g>, Vec<Expr<'g>>, String)> {
-    let graph = context.graph;
-    let matched = arguments.matched(closure, LAGRANGIAN, &context.diagnostics);
-    let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
-    let velocity = factors
-        .zip(pattern)
-        .and_then(|(factors, pattern)| Velocity { graph, factors }.of(pattern, structure, &context.diagnostics));
-    let (value, velocities) = velocity.unzip();
-    let is_power = context.power.is_some();
-    let value = value.map(|own| if is_power { Value::PerSite(Each::Motion, Box::new(own)) } else { own });
-    let mut scope = arguments.scope(&matched, &[(Slot::Velocity, value)], &context.diagnostics);
-    if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
-        scope.set_velocities(velocities, factors);
-    }
-    let energy = scalar(context, closure, scope, "a Lagrangian is a scalar")?;
-    let (velocities, factors, pattern) = (velocities?, factors?, pattern?);
-    let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
-    if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
-        let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
-        let place = tail(&closure.body).0;
-        refuse!(context.diagnostics, place, "the lagrangian does not depend on the velocity `{velocity}`{of}";
-            help "add the kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`");
-    }
-    Some((energy, velocities, pattern.spell()))
-}
-
-/// V(t, q); an opaque one is known by the name of its method alone.
-pub(super) fn potential<'g>(
-    context: &mut Context<'_, 'g>,
-    declaration: &Declaration,
-    arguments: &Arguments<'_, 'g>,
-    configurations: Option<&[Configuration<'g>]>,
-) -> Option<Expr<'g>> {
-    match declaration.potential.as_ref()? {
-        parse::Potential::Closure(closure) => {
-            let matched = arguments.matched(closure, POTENTIAL, &context.diagnostics);
-            let scope = arguments.scope(&matched, &[], &context.diagnostics);
-            scalar(context, closure, scope, "an energy is a scalar")
-        }
-        parse::Potential::Opaque(opaque) => {
-            let time = opaque.takes_time.then_some(arguments.time);
-            let points = configurations?.iter().map(|leaf| leaf.symbol);
-            let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
-            let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-            Some(context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
+    /// The cost, or the Lagrangian with its velocity.
+    pub fn kinetic(&mut self) -> Option<Kinetic<'g>> {
+        match &self.declaration.kinetic {
+            parse::Kinetic::Cost(closure) => self.cost(closure).map(Kinetic::Cost),
+            parse::Kinetic::Lagrangian(closure) => self.lagrangian(closure),
+            // what inputs move is read with them
+            parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
         }
     }
+
+    fn cost(&mut self, closure: &Closure) -> Option<Expr<'g>> {
+        let scope = self.arguments.scope_of(closure, COST, &self.context.diagnostics);
+        let cost = scalar(self.context, closure, scope, "a discrete Lagrangian is a scalar")?;
+        let factors = self.typed.factors.as_deref()?;
+        for Factor { name, group, .. } in factors.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
+            let example = if group.is_translation() {
+                format!("self.mass * {name}.norm_squared() / (2 * h)")
+            } else {
+                format!("self.mass * ({name} - I).norm_squared() / (4 * h)")
+            };
+            report!(self.context.diagnostics, tail(&closure.body).0, "the cost does not depend on `{name}`";
+                help "add the kinetic energy of `{name}`, as in `{example}`";
+                note "the momentum of `{name}` is the derivative of the cost, and cannot be inverted where that is 0");
+        }
+        Some(cost)
+    }
+
+    fn lagrangian(&mut self, closure: &Closure) -> Option<Kinetic<'g>> {
+        let (graph, factors) = (self.context.graph, self.typed.factors.as_deref());
+        let diagnostics = &self.context.diagnostics;
+        let matched = self.arguments.matched(closure, LAGRANGIAN, diagnostics);
+        let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
+        let velocity = factors
+            .zip(pattern)
+            .and_then(|(factors, pattern)| Velocity { graph, factors }.of(pattern, &self.typed.element, diagnostics));
+        let (value, velocities) = velocity.unzip();
+        let is_power = self.context.power.is_some();
+        let value = value.map(|own| if is_power { Value::PerSite(Each::Motion, Box::new(own)) } else { own });
+        let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, value)], diagnostics);
+        if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
+            scope.set_velocities(velocities, factors);
+        }
+        let energy = scalar(self.context, closure, scope, "a Lagrangian is a scalar")?;
+        let (velocities, factors, pattern) = (velocities?, factors?, pattern?);
+        let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
+        if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
+            let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
+            let place = tail(&closure.body).0;
+            refuse!(self.context.diagnostics, place, "the lagrangian does not depend on the velocity `{velocity}`{of}";
+                help "add the kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`");
+        }
+        let discretization = chosen_discretization(graph, self.declaration, factors);
+        Some(Kinetic::Lagrangian { energy, velocities, name: pattern.spell(), discretization })
+    }
+
+    /// V(t, q); an opaque one is known by the name of its method alone.
+    pub fn potential(&mut self) -> Option<Expr<'g>> {
+        match self.declaration.potential.as_ref()? {
+            parse::Potential::Closure(closure) => {
+                let scope = self.arguments.scope_of(closure, POTENTIAL, &self.context.diagnostics);
+                scalar(self.context, closure, scope, "an energy is a scalar")
+            }
+            parse::Potential::Opaque(opaque) => {
+                let time = opaque.takes_time.then_some(self.arguments.time);
+                let points = self.typed.configurations.as_deref()?.iter().map(|leaf| leaf.symbol);
+                let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
+                let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+                Some(self.context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
+            }
+        }
+    }
+
+    /// The terms of the potential of a power; one with an error has none.
+    pub fn potential_of_power(&mut self) -> Option<Vec<Term<'g>>> {
+        // by construction: an opaque potential has been refused
+        let closure = self.declaration.potential.as_ref()?.closure()?;
+        let scope = self.arguments.scope_of(closure, POTENTIAL, &self.context.diagnostics);
+        let value = self.context.value(closure, scope)?;
+        if value.terms().is_none() {
+            let (place, is) = (tail(&closure.body).0, value.describe());
+            report!(self.context.diagnostics, place, "the potential is {is}, but an energy is a scalar";
+                help "add what sites have, as in `(0..N).map(|i| …).sum()`");
+        }
+        value.terms()
+    }
 }
 
-/// The terms of the potential of a power; one with an error has none.
-pub(super) fn potential_of_power<'g>(
-    context: &mut Context<'_, 'g>,
-    declaration: &Declaration,
-    arguments: &Arguments<'_, 'g>,
-) -> Option<Vec<Term<'g>>> {
-    // by construction: an opaque potential has been refused
-    let closure = declaration.potential.as_ref()?.closure()?;
-    let matched = arguments.matched(closure, POTENTIAL, &context.diagnostics);
-    let scope = arguments.scope(&matched, &[], &context.diagnostics);
-    let value = context.value(closure, scope)?;
-    if value.terms().is_none() {
-        let (place, is) = (tail(&closure.body).0, value.describe());
-        report!(context.diagnostics, place, "the potential is {is}, but an energy is a scalar";
-            help "add what sites have, as in `(0..N).map(|i| …).sum()`");
+/// The dial; else the Cayley map where it stays in every factor, as it grows beyond use where it is projected, and the exponential elsewhere.
+pub(super) fn chosen_discretization(graph: &Graph, declaration: &Declaration, factors: &[Factor]) -> Discretization {
+    match &declaration.dials.discretization {
+        Some(chosen) => chosen.value,
+        None if without_cayley_map(graph, factors).is_some() => Discretization::Exponential,
+        None => Discretization::Cayley,
     }
-    value.terms()
 }
 
 /// The value of a closure that has to give a scalar.
@@ -253,13 +225,11 @@ pub(super) fn tail(body: &Syntax) -> (Location, &Syntax) {
     }
 }
 
-/// The bodies as they were written.
 pub(super) fn spans(declaration: &Declaration) -> Spans {
     let order = declaration.dials.order.as_ref().map(|order| order.span);
     Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), order }
 }
 
-/// A closure's body as it was written.
 pub(super) fn written(closure: &Closure) -> Written {
     Written { place: Location::of(&closure.body), text: spell(&closure.body), arguments: closure.spell_head() }
 }

@@ -21,9 +21,7 @@ use crate::parse::{Declaration, Field, spell_type};
 pub(super) struct Fields<'g> {
     /// Each field by name; `None` if no closure reads it, or if its type has an error that was reported.
     known: BTreeMap<String, Option<Value<'g>>>,
-    /// The fields that are read.
     pub parameters: Vec<Parameter<'g>>,
-    /// The scalar of the system.
     pub scalar: ScalarType,
 }
 
@@ -43,7 +41,6 @@ impl<'g> Fields<'g> {
         self.parameters.iter().map(|parameter| parameter.leaves.len()).sum()
     }
 
-    /// The names of all fields.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.known.keys().map(String::as_str)
     }
@@ -52,12 +49,9 @@ impl<'g> Fields<'g> {
 /// The type of a field that is read.
 struct FieldType<'t> {
     structure: Layout,
-    leaves: usize,
     shape: Shape,
     is_scalar: bool,
     scalar: Option<&'t Type>,
-    /// Whether there is one for each site of a power.
-    per_site: bool,
 }
 
 /// Reads the fields that closures use, and settles the scalar of the system.
@@ -89,8 +83,8 @@ pub(super) fn read<'g>(
             scalar.meet(written, &format!("`{name}`"), diagnostics);
         }
         let parameter = ty.and_then(|ty| {
-            let ty = FieldType { per_site: entry.is_some(), ..ty };
-            diagnostics.take(parameter(graph, field, ty, first_use, leaf_count))
+            let parameter = diagnostics.take(parameter(graph, field, ty, first_use, leaf_count))?;
+            Some(Parameter { per_site: entry.is_some(), ..parameter })
         });
         let value = parameter.as_ref().map(|parameter| {
             let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
@@ -111,13 +105,13 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
         Type::Array(array) => {
             let element = field_type(&array.elem, generics)?;
             let length = size(&array.len, generics).map_err(Some)?;
-            let leaves = length * element.leaves;
-            let numbers = leaves * element.shape.len();
+            let leaves = element.structure.leaves();
+            let numbers = length * leaves * element.shape.len();
             if numbers > ENTRIES {
                 bail!(ty, "`{}` has {numbers} numbers, more than {ENTRIES}", spell_type(ty); note "{GROWS}");
             }
-            let parts = (0..length).map(|i| element.structure.shifted(i * element.leaves)).collect();
-            Ok(FieldType { structure: Layout::Array(parts), leaves, ..element })
+            let parts = (0..length).map(|i| element.structure.shifted(i * leaves)).collect();
+            Ok(FieldType { structure: Layout::Array(parts), ..element })
         }
         Type::Group(group) => field_type(&group.elem, generics),
         Type::Paren(paren) => field_type(&paren.elem, generics),
@@ -129,7 +123,7 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
                 let found = vectors(ty, generics).ok_or(None)?.map_err(Some)?;
                 (found.shape, found.scalar)
             };
-            Ok(FieldType { structure: Layout::Leaf(0), leaves: 1, shape, is_scalar, scalar, per_site: false })
+            Ok(FieldType { structure: Layout::Leaf(0), shape, is_scalar, scalar })
         }
     }
 }
@@ -188,7 +182,7 @@ fn parameter<'g>(
         name: symbol_name,
         first_use,
         promise,
-        per_site: ty.per_site,
+        per_site: false,
         structure: ty.structure,
         leaves,
     })

@@ -8,9 +8,8 @@ use super::features::{self, Feature, Found};
 use super::leaves::leaves;
 use super::slots::{FORCE, Slot};
 use super::spaces::read_spaces;
-use super::typed::{self, ActedSystem};
+use super::typed::{self, ActedSystem, Velocity};
 use super::value::Value;
-use super::velocity::Velocity;
 use super::{Configuration, Factor, Force, Layout, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Argument, Closure, Declaration, spell};
@@ -29,44 +28,9 @@ pub(super) struct Input<'g> {
 }
 
 impl<'g> Input<'g> {
-    /// What it is in a closure.
     pub fn value(&self) -> Value<'g> {
         typed::value_of(&self.structure, &self.leaves)
     }
-}
-
-/// Reads both closures; `None` if one has an error, which was reported.
-pub(super) fn read<'g>(
-    context: &mut Context<'_, 'g>,
-    system: &ActedSystem<'_, 'g>,
-    declaration: &Declaration,
-) -> Option<Forces<'g>> {
-    let of_group = optional(declaration.force.as_ref(), |closure| one(context, system, closure));
-    let on_leaves = optional(declaration.force_on.as_ref(), |closure| one(context, system, closure));
-    let takes_input = |force: &Option<Option<ReadForce<'g>>>| force.iter().flatten().any(|read| read.input.is_some());
-    if let Some(closure) = declaration.force_on.as_ref().filter(|_| takes_input(&of_group) && takes_input(&on_leaves)) {
-        refuse!(context.diagnostics, closure.head, "both `force` and `force_on` take an input";
-            help "let one of the two take the whole input, as a tuple where it has parts";
-            note "a step has one input, `stepper.step_with(&state, &input)`");
-    }
-    let (of_group, on_leaves) = of_group.zip(on_leaves)?;
-    let mut all = of_group.iter().chain(&on_leaves);
-    let velocities = all.clone().next().map(|read| read.velocities.clone());
-    let none = Input { structure: Layout::Tuple(Vec::new()), leaves: Vec::new() };
-    let input = all.find_map(|read| read.input.clone()).unwrap_or(none);
-    // both closures speak of one velocity, each under its own name
-    let renamed = |read: &ReadForce<'g>| -> Vec<Expr<'g>> {
-        let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
-        read.value.iter().map(|part| part.substitute(&names)).collect()
-    };
-    let closures = declaration.force.iter().chain(&declaration.force_on);
-    let force = velocities.clone().map(|velocities| Force {
-        of_group: of_group.as_ref().map(renamed),
-        on_configuration: on_leaves.as_ref().map(renamed),
-        velocities,
-        written: closures.map(written).collect(),
-    });
-    Some(Forces { force, input })
 }
 
 /// A closure that has been read.
@@ -76,75 +40,101 @@ struct ReadForce<'g> {
     input: Option<Input<'g>>,
 }
 
-fn one<'g>(context: &mut Context<'_, 'g>, system: &ActedSystem<'_, 'g>, closure: &Closure) -> Option<ReadForce<'g>> {
-    let matched = system.arguments.matched(closure, FORCE, &context.diagnostics);
-    let velocity = Velocity { graph: context.graph, factors: system.factors };
-    let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
-    let named = optional(pattern, |pattern| velocity.of(pattern, system.element, &context.diagnostics))?;
-    let (value, velocities) = named.unzip();
-    let velocities = velocities.unwrap_or_else(|| velocity.unnamed());
-    let input = optional(matched.argument(Slot::Input), |argument| read_input(context, system, argument))?;
-    let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Input::value))];
-    let mut scope = system.arguments.scope(&matched, &introduced, &context.diagnostics);
-    scope.set_velocities(&velocities, system.factors);
-    let value = context.value(closure, scope)?;
-    let value = if closure.key == "force" {
-        components(context, system, closure, &value)?
-    } else {
-        let is = format!("a covector at `{}`, which has its shape", system.arguments.names.configuration.spell());
-        let place = (&closure.key, &closure.body);
-        leaves(place, &value, system.configuration, system.configurations, &is, &context.diagnostics)?
-    };
-    Some(ReadForce { value, velocities, input })
-}
-
-/// The leaves of a typed argument: spaces of vectors.
-pub(super) fn read_input<'g>(
-    context: &Context<'_, 'g>,
-    system: &ActedSystem<'_, 'g>,
-    argument: &Argument,
-) -> Option<Input<'g>> {
-    let diagnostics = &context.diagnostics;
-    let product = read_spaces(argument.ty.as_ref()?, system.names, diagnostics)?;
-    if let Some((_, ty)) =
-        product.leaves.iter().find(|(leaf, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion)
-    {
-        refuse!(diagnostics, *ty, "an input is made of vectors and matrices";
-            help "write `u: Vector3`, or a tuple of such, `(torque, thrust): (Vector3, Vector1)`";
-            note "forces are linear spaces: sums and multiples of inputs are inputs");
-    }
-    let leaves = typed::leaves(context.graph, &argument.pattern, &product, Role::Input, diagnostics)?;
-    Some(Input { structure: product.structure, leaves })
-}
-
-/// The components of each factor: a vector, or a tuple with a vector for each block of its algebra, `(torque, force)` on SE(3).
-pub(super) fn components<'g>(
-    context: &Context<'_, 'g>,
-    system: &ActedSystem<'_, 'g>,
-    closure: &Closure,
-    value: &Value<'g>,
-) -> Option<Vec<Expr<'g>>> {
-    let leaf = |value: &Value<'g>, k: usize| {
-        let factor = &system.factors[k];
-        let shape = Shape::vector(factor.group.dimension());
-        let vector = match value {
-            Value::Matrix(expr) => Some(*expr).filter(|expr| expr.shape() == shape),
-            Value::Tuple(values) => stacked(context, factor, values),
-            _ => None,
+impl<'g> ActedSystem<'_, 'g> {
+    /// Reads both closures; `None` if one has an error, which was reported.
+    pub fn forces(&self, context: &mut Context<'_, 'g>, declaration: &Declaration) -> Option<Forces<'g>> {
+        let of_group = optional(declaration.force.as_ref(), |closure| self.force(context, closure));
+        let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(context, closure));
+        let takes_input =
+            |force: &Option<Option<ReadForce<'g>>>| force.iter().flatten().any(|read| read.input.is_some());
+        if let Some(closure) =
+            declaration.force_on.as_ref().filter(|_| takes_input(&of_group) && takes_input(&on_leaves))
+        {
+            refuse!(context.diagnostics, closure.head, "both `force` and `force_on` take an input";
+                help "let one of the two take the whole input, as a tuple where it has parts";
+                note "a step has one input, `stepper.step_with(&state, &input)`");
+        }
+        let (of_group, on_leaves) = of_group.zip(on_leaves)?;
+        let mut all = of_group.iter().chain(&on_leaves);
+        let velocities = all.clone().next().map(|read| read.velocities.clone());
+        let none = Input { structure: Layout::Tuple(Vec::new()), leaves: Vec::new() };
+        let input = all.find_map(|read| read.input.clone()).unwrap_or(none);
+        // both closures speak of one velocity, each under its own name
+        let renamed = |read: &ReadForce<'g>| -> Vec<Expr<'g>> {
+            let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
+            read.value.iter().map(|part| part.substitute(&names)).collect()
         };
-        vector.ok_or_else(|| format!("{shape} for `{}`", factor.name))
-    };
-    let (found, needed) = match value.leaves(system.element, &leaf) {
-        Ok(components) => return Some(components),
-        Err(misfit) => misfit,
-    };
-    let (gives, has, is) = if closure.key == "controls" {
-        ("the controls give", "they have", "a velocity in the group: it has the components of its Lie algebra")
-    } else {
-        ("the force gives", "it has", "a covector of the group: it has the components of the momentum")
-    };
-    refuse!(context.diagnostics, tail(&closure.body).0, "{gives} {found}, but {has} to give {needed}";
-        note "`{}` is {is}", shortened(&spell(&closure.body)))
+        let closures = declaration.force.iter().chain(&declaration.force_on);
+        let force = velocities.clone().map(|velocities| Force {
+            of_group: of_group.as_ref().map(renamed),
+            on_configuration: on_leaves.as_ref().map(renamed),
+            velocities,
+            written: closures.map(written).collect(),
+        });
+        Some(Forces { force, input })
+    }
+
+    fn force(&self, context: &mut Context<'_, 'g>, closure: &Closure) -> Option<ReadForce<'g>> {
+        let matched = self.arguments.matched(closure, FORCE, &context.diagnostics);
+        let velocity = Velocity { graph: context.graph, factors: self.factors };
+        let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
+        let named = optional(pattern, |pattern| velocity.of(pattern, self.element, &context.diagnostics))?;
+        let (value, velocities) = named.unzip();
+        let velocities = velocities.unwrap_or_else(|| velocity.unnamed());
+        let input = optional(matched.argument(Slot::Input), |argument| self.read_input(context, argument))?;
+        let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Input::value))];
+        let mut scope = self.arguments.scope(&matched, &introduced, &context.diagnostics);
+        scope.set_velocities(&velocities, self.factors);
+        let value = context.value(closure, scope)?;
+        let value = if closure.key == "force" {
+            self.components(context, closure, &value)?
+        } else {
+            let is = format!("a covector at `{}`, which has its shape", self.arguments.names.configuration.spell());
+            let place = (&closure.key, &closure.body);
+            leaves(place, &value, self.configuration, self.configurations, &is, &context.diagnostics)?
+        };
+        Some(ReadForce { value, velocities, input })
+    }
+
+    /// The leaves of a typed argument: spaces of vectors.
+    pub fn read_input(&self, context: &Context<'_, 'g>, argument: &Argument) -> Option<Input<'g>> {
+        let diagnostics = &context.diagnostics;
+        let product = read_spaces(argument.ty.as_ref()?, self.names, diagnostics)?;
+        if let Some((_, ty)) =
+            product.leaves.iter().find(|(leaf, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion)
+        {
+            refuse!(diagnostics, *ty, "an input is made of vectors and matrices";
+                help "write `u: Vector3`, or a tuple of such, `(torque, thrust): (Vector3, Vector1)`";
+                note "forces are linear spaces: sums and multiples of inputs are inputs");
+        }
+        let leaves = typed::leaves(context.graph, &argument.pattern, &product, Role::Input, diagnostics)?;
+        Some(Input { structure: product.structure, leaves })
+    }
+
+    /// The components of each factor: a vector, or a tuple with a vector for each block of its algebra, `(torque, force)` on SE(3).
+    pub fn components(&self, context: &Context<'_, 'g>, closure: &Closure, value: &Value<'g>) -> Option<Vec<Expr<'g>>> {
+        let leaf = |value: &Value<'g>, k: usize| {
+            let factor = &self.factors[k];
+            let shape = Shape::vector(factor.group.dimension());
+            let vector = match value {
+                Value::Matrix(expr) => Some(*expr).filter(|expr| expr.shape() == shape),
+                Value::Tuple(values) => stacked(context, factor, values),
+                _ => None,
+            };
+            vector.ok_or_else(|| format!("{shape} for `{}`", factor.name))
+        };
+        let (found, needed) = match value.leaves(self.element, &leaf) {
+            Ok(components) => return Some(components),
+            Err(misfit) => misfit,
+        };
+        let (gives, has, is) = if closure.key == "controls" {
+            ("the controls give", "they have", "a velocity in the group: it has the components of its Lie algebra")
+        } else {
+            ("the force gives", "it has", "a covector of the group: it has the components of the momentum")
+        };
+        refuse!(context.diagnostics, tail(&closure.body).0, "{gives} {found}, but {has} to give {needed}";
+            note "`{}` is {is}", shortened(&spell(&closure.body)))
+    }
 }
 
 /// One vector from those of the blocks.

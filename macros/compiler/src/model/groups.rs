@@ -1,15 +1,15 @@
 //! The groups by name, built in and declared.
 
-use clebsch_symbolic::Group;
+use clebsch_symbolic::{Graph, Group};
 use syn::{GenericArgument, Generics, PathSegment, Type};
 
 use super::declared::DeclaredGroups;
 use super::features::{self, Feature, Found};
 use super::sizes::{GROWS, LARGEST, size_argument};
 use super::vectors::{arguments, last_name, last_segment, named_shape};
-use super::{Configuration, Factor, LeafSpace};
-use crate::diagnostic::{Diagnostic, Location, bail, error, nearest};
-use crate::parse::{Declaration, listed, spell_type};
+use super::{ChartChoice, Configuration, Factor, LeafSpace};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest};
+use crate::parse::{Declaration, Dials, listed, spell_type};
 
 /// What the names in types refer to.
 #[derive(Copy, Clone)]
@@ -144,6 +144,21 @@ pub(super) fn check_large(
     let Some(symmetry) = declaration.symmetries.first() else { return Ok(()) };
     let offered = Found::at(Location::of(&symmetry.body)).named(text);
     Err(features::refusal((Feature::Symmetry, offered), (Feature::LargeGroup, Found::somewhere())))
+}
+
+/// The chart that is chosen has to stay in the group.
+pub(super) fn check_chart(graph: &Graph, dials: &Dials, factors: &[Factor], diagnostics: &Diagnostics) {
+    let Some(chosen) = dials.chart.as_ref().filter(|chosen| chosen.value == ChartChoice::Cayley) else { return };
+    if let Some(factor) = without_cayley_map(graph, factors) {
+        let beside = Found::somewhere().named(factor.group.name(graph));
+        let chosen = Found::at(chosen.span);
+        diagnostics.push(features::refusal((Feature::CayleyChart, chosen), (Feature::NoCayleyMap, beside)));
+    }
+}
+
+/// The first factor whose group Cayley's map leaves.
+pub(super) fn without_cayley_map<'f, 'g>(graph: &Graph, factors: &'f [Factor<'g>]) -> Option<&'f Factor<'g>> {
+    factors.iter().find(|factor| !factor.group.is_translation() && !factor.group.has_cayley_chart(graph))
 }
 
 /// The error for a type that is no group, where a group is expected.

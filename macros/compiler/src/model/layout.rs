@@ -16,9 +16,14 @@ pub enum Layout {
 impl Layout {
     /// The number of leaves.
     pub fn leaves(&self) -> usize {
+        self.numbers().len()
+    }
+
+    /// The numbers of the leaves, in order.
+    pub(super) fn numbers(&self) -> Vec<usize> {
         match self {
-            Layout::Leaf(_) => 1,
-            Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().map(Layout::leaves).sum(),
+            Layout::Leaf(leaf) => vec![*leaf],
+            Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().flat_map(Layout::numbers).collect(),
         }
     }
 

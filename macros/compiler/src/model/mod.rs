@@ -4,7 +4,6 @@ mod access;
 mod action_errors;
 mod action_laws;
 mod arguments;
-mod chart;
 mod closures;
 mod control;
 mod declared;
@@ -34,7 +33,6 @@ mod typed;
 mod types;
 mod value;
 mod vectors;
-mod velocity;
 
 pub use crate::parse::dials::*;
 pub use crate::parse::{Located, Opaque};
@@ -53,7 +51,7 @@ use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 use self::action_laws::{Action, Law};
 use self::arguments::Arguments;
-use self::closures::optional;
+use self::closures::{Closures, optional};
 use self::declared::DeclaredGroups;
 use self::elaborate::Context;
 use self::forces::Forces;
@@ -104,7 +102,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, diagnostics, .. } = context;
     declared.check_used(&diagnostics);
-    chart::check(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
+    groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
     // by construction: what is missing has an error, and there were none
     let (Some(formulas), Some(mut factors), Some(configurations)) = (formulas, typed.factors, typed.configurations)
@@ -191,12 +189,13 @@ impl<'g> ClosureValues<'g> {
         names: GroupNames,
     ) -> Option<ClosureValues<'g>> {
         let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
-        let action = closures::action(context, declaration, arguments, &typed.configuration, configurations);
-        let kinetic = closures::kinetic(context, declaration, arguments, &typed.element, factors);
-        let (potential, terms) = if context.power.is_some() {
-            (None, closures::potential_of_power(context, declaration, arguments).unwrap_or_default())
+        let mut closures = Closures { context, declaration, arguments, typed };
+        let action = closures.action();
+        let kinetic = closures.kinetic();
+        let (potential, terms) = if closures.context.power.is_some() {
+            (None, closures.potential_of_power().unwrap_or_default())
         } else {
-            (closures::potential(context, declaration, arguments, configurations), Vec::new())
+            (closures.potential(), Vec::new())
         };
         let (action, factors, configurations) = (action?, factors?, configurations?);
         let (graph, closure) = (context.graph, &declaration.action);
@@ -204,20 +203,18 @@ impl<'g> ClosureValues<'g> {
         let laws = action_laws::check(&acting, &context.diagnostics);
         let (element, configuration) = (&typed.element, &typed.configuration);
         let system = ActedSystem { arguments, names, element, factors, configuration, configurations, action: &action };
-        let symmetries = symmetries::read(context, &system, &declaration.symmetries);
+        let symmetries = system.symmetries(context, &declaration.symmetries);
         forces::check_dials(declaration, &context.diagnostics);
-        let endpoint =
-            optional(declaration.endpoint.as_ref(), |closure| control::endpoint(context, arguments, closure));
-        let forces = forces::read(context, &system, declaration);
-        let (mover, forces) = match control::motion(context, &system, declaration) {
+        let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(context, closure));
+        let forces = system.forces(context, declaration);
+        let (mover, forces) = match system.motion(context, declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), Some(Forces { force: None, input })),
             // what moves has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
             None => (kinetic.map(Mover::Momenta), forces),
         };
         let forces = forces?;
-        let choose = |control| control::read(context, arguments, control, &forces.input);
-        let control = optional(declaration.control.as_ref(), choose)?;
+        let control = optional(declaration.control.as_ref(), |control| system.choice(context, control, &forces.input))?;
         Some(ClosureValues {
             action,
             laws: laws?,

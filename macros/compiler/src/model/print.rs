@@ -7,7 +7,7 @@ use clebsch_symbolic::Expr;
 use super::scalar::spell_scalar;
 use super::{
     Configuration, Factor, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
-    Promise, Side, Steered, System,
+    Side, Steered, System,
 };
 
 impl fmt::Display for Model<'_> {
@@ -103,12 +103,7 @@ impl fmt::Display for Parameter<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for leaf in &self.leaves {
             let shape = if leaf.is_scalar { "scalar".to_string() } else { leaf.shape.to_string() };
-            let promise = match self.promise {
-                None => "",
-                Some(Promise::Symmetric) => ", symmetric",
-                Some(Promise::Diagonal) => ", diagonal",
-                Some(Promise::Unit) => ", unit",
-            };
+            let promise = self.promise.map(|promise| format!(", {promise}")).unwrap_or_default();
             writeln!(f, "  parameter {}: {shape}{promise}", leaf.symbol)?;
         }
         Ok(())

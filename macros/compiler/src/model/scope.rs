@@ -118,7 +118,6 @@ impl<'g> Scope<'g> {
         self.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone())
     }
 
-    /// All names.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(|(name, _)| name.as_str())
     }

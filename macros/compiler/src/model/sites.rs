@@ -13,13 +13,10 @@ use crate::parse::{Closure, Declaration, Potential};
 
 /// What closures need to know of a power, and what they find.
 pub(super) struct Sites<'g> {
-    /// The name of N.
     pub name: String,
-    /// The symbol N.
     pub count: Expr<'g>,
     /// How the configuration of a site nests, and its leaves.
     configuration: (Layout, Vec<Configuration<'g>>),
-    /// The configuration's name.
     pattern: String,
     /// What the sums around the expression that is read run through, the outermost first.
     pub ranges: Vec<(Expr<'g>, Expr<'g>)>,

@@ -6,7 +6,6 @@ use super::scope::check_reserved;
 use crate::diagnostic::{Diagnostic, Diagnostics, error, report};
 use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
 
-/// What an argument stands for.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(super) enum Slot {
     Time,
@@ -22,23 +21,15 @@ pub(super) enum Slot {
     Chosen,
 }
 
-/// The arguments of a cost, in order.
+// the arguments of each closure, in order; the price is of a step
 pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
-/// The arguments of a Lagrangian, in order.
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
-/// The arguments of a potential, in order.
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
-/// The arguments of a force, in order.
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
-/// The arguments of controls, in order.
 pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
-/// The arguments of dynamics, in order.
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
-/// The arguments of the price of a step, in order.
 pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
-/// The arguments of bounds, in order.
 pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
-/// The arguments of an offered symmetry, in order.
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The names that the closures of a declaration share.
@@ -150,13 +141,11 @@ impl<'d> Matched<'d> {
         self.slots.iter().copied().find(|slot| !self.has(*slot))
     }
 
-    /// The argument that takes a slot.
     pub fn argument(&self, slot: Slot) -> Option<&'d Argument> {
         let position = self.taken.iter().position(|taken| *taken == Some(slot))?;
         Some(&self.closure.arguments[position])
     }
 
-    /// All arguments.
     pub fn arguments(&self) -> impl Iterator<Item = (&'d Argument, Option<Slot>)> {
         self.closure.arguments.iter().zip(self.taken.iter().copied())
     }

@@ -159,7 +159,6 @@ fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
     )
 }
 
-/// Where a type begins.
 pub(super) fn span_of(ty: &Type) -> Span {
     Location::of(ty).start()
 }

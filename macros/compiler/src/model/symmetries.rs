@@ -17,16 +17,12 @@ use super::{Access, Configuration, Factor, OfferedSymmetry, Side};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
 
-/// All symmetries of a declaration.
-pub(super) fn read<'g>(
-    context: &mut Context<'_, 'g>,
-    system: &ActedSystem<'_, 'g>,
-    closures: &[Closure],
-) -> Vec<OfferedSymmetry<'g>> {
-    closures.iter().enumerate().filter_map(|(index, closure)| system.symmetry(context, closure, index)).collect()
-}
-
 impl<'g> ActedSystem<'_, 'g> {
+    /// All symmetries of a declaration.
+    pub fn symmetries(&self, context: &mut Context<'_, 'g>, closures: &[Closure]) -> Vec<OfferedSymmetry<'g>> {
+        closures.iter().enumerate().filter_map(|(index, closure)| self.symmetry(context, closure, index)).collect()
+    }
+
     /// Reads and checks one symmetry.
     fn symmetry(&self, context: &mut Context<'_, 'g>, closure: &Closure, index: usize) -> Option<OfferedSymmetry<'g>> {
         let matched = self.arguments.matched(closure, SYMMETRY, &context.diagnostics);

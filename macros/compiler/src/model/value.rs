@@ -5,7 +5,6 @@ use clebsch_symbolic::{Expr, Shape};
 use super::Layout;
 use super::power::Term;
 
-/// The value of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Value<'g> {
     /// A matrix; scalars are 1×1.
@@ -24,7 +23,6 @@ pub(super) enum Value<'g> {
     Wrapped(Expr<'g>),
     /// A value for each index of a range.
     Sequence((Expr<'g>, Expr<'g>), Box<Value<'g>>),
-    /// A sum over sites.
     Sum(Vec<Term<'g>>),
 }
 
@@ -64,7 +62,6 @@ impl<'g> Value<'g> {
         }
     }
 
-    /// The matrix, if it is one.
     pub fn matrix(&self) -> Option<Expr<'g>> {
         match self {
             Value::Matrix(expr) => Some(*expr),
@@ -86,7 +83,6 @@ impl<'g> Value<'g> {
         }
     }
 
-    /// The shape, if it is known.
     pub fn shape(&self) -> Option<Shape> {
         self.matrix().map(Expr::shape)
     }

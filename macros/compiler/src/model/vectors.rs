@@ -10,7 +10,6 @@ use crate::parse::spell_type;
 /// The largest n for which `VectorN` and `MatrixN` have names.
 const NAMED: usize = 6;
 
-/// A vector or matrix type.
 pub(super) struct Vectors<'t> {
     pub shape: Shape,
     /// The scalar, if it is written.

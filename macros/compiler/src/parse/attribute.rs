@@ -11,24 +11,24 @@ use super::{groups, methods, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, nearest, report};
 
 /// Reads all attributes of the struct as one.
-pub(super) fn read(input: &DeriveInput, diagnostics: &Diagnostics) -> Keys {
-    let mut keys = Keys::default();
+pub(super) fn read<'d>(input: &DeriveInput, diagnostics: &'d Diagnostics) -> Keys<'d> {
+    let mut keys = Keys::new(diagnostics);
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("clebsch")) {
-        read_attribute(attribute, &mut keys, diagnostics);
+        read_attribute(attribute, &mut keys);
     }
     keys
 }
 
-fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &Diagnostics) {
+fn read_attribute(attribute: &Attribute, keys: &mut Keys) {
     let Meta::List(list) = &attribute.meta else {
-        report!(diagnostics, attribute, "the declaration stands in parentheses";
+        report!(keys.diagnostics, attribute, "the declaration stands in parentheses";
             help "write `#[clebsch(action = …, cost = …, potential = …)]`");
         return;
     };
     let items = |stream: ParseStream| {
         while !stream.is_empty() {
-            if let Err(error) = read_item(stream, keys, diagnostics) {
-                diagnostics.push(error);
+            if let Err(error) = read_item(stream, keys) {
+                keys.diagnostics.push(error);
                 skip_to_next_item(stream);
             }
         }
@@ -39,13 +39,13 @@ fn read_attribute(attribute: &Attribute, keys: &mut Keys, diagnostics: &Diagnost
 }
 
 /// `key = value` and the comma after it; after an error the rest of the item is still to be skipped.
-fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &Diagnostics) -> Result<(), Diagnostic> {
+fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
     if is_named(&key) {
         // there may be several
         keys.give(&key);
         let read = if key == "group" { groups::read } else { methods::read };
-        read(&key, stream, keys, diagnostics)?;
+        read(&key, stream, keys)?;
         return end_of_item(&key, stream);
     }
     let Some(found) = find(&key) else {
@@ -54,17 +54,11 @@ fn read_item(stream: ParseStream, keys: &mut Keys, diagnostics: &Diagnostics) ->
         let help = similar.unwrap_or_else(|| format!("the keys are {}", listed(known)));
         bail!(&key, "unknown key `{key}`"; help "{help}");
     };
-    read_value(&key, found, stream, keys, diagnostics)
+    read_value(&key, found, stream, keys)
 }
 
 /// What follows on a key that takes one value, and the comma after it.
-pub(super) fn read_value(
-    key: &Ident,
-    found: &Key,
-    stream: ParseStream,
-    keys: &mut Keys,
-    diagnostics: &Diagnostics,
-) -> Result<(), Diagnostic> {
+pub(super) fn read_value(key: &Ident, found: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     if !keys.give(key) {
         bail!(key, "`{key}` is given twice"; help "remove one of the two");
     }
@@ -74,7 +68,7 @@ pub(super) fn read_value(
     if stream.parse::<Token![=]>().is_err() {
         bail!(key, "the key `{key}` has no value"; help "write `{key} = {}`", found.example);
     }
-    values::read(key, found, stream, keys, diagnostics)?;
+    values::read(key, found, stream, keys)?;
     end_of_item(key, stream)
 }
 

@@ -6,7 +6,7 @@ use syn::spanned::Spanned;
 use syn::{Expr, ExprClosure, Pat, ReturnType, Type};
 
 use super::spell_type;
-use super::spelling::{joined, spell, spell_pattern, tokens};
+use super::spelling::{joined, spell, tokens};
 use crate::diagnostic::{Diagnostics, Location, refuse};
 
 /// A closure of the declaration.
@@ -81,10 +81,8 @@ impl Argument {
 
     /// The text of the argument.
     pub fn spell(&self) -> String {
-        match &self.ty {
-            Some(ty) => format!("{}: {}", spell_pattern(&self.pattern), spell_type(ty)),
-            None => spell_pattern(&self.pattern),
-        }
+        let ty = self.ty.as_ref().map(|ty| format!(": {}", spell_type(ty))).unwrap_or_default();
+        self.pattern.spell() + &ty
     }
 }
 
@@ -139,6 +137,9 @@ impl Pattern {
 
     /// The text of the pattern.
     pub fn spell(&self) -> String {
-        spell_pattern(self)
+        match self {
+            Pattern::Name(ident) => ident.to_string(),
+            Pattern::Tuple(parts, _) => format!("({})", joined(parts.iter().map(Pattern::spell))),
+        }
     }
 }

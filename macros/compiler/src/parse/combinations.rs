@@ -2,18 +2,17 @@
 
 use proc_macro2::Span;
 
-use super::Order;
 use super::keys::{KEYS, Key, Keys};
-use crate::diagnostic::Diagnostics;
+use super::{Closure, Order};
 use crate::model::features::{self, Feature, Found};
 
 /// Reports all combinations of keys that the table of features refuses.
-pub(super) fn check(keys: &Keys, diagnostics: &Diagnostics) {
+pub(super) fn check(keys: &Keys) {
     let refuse = |of_steps: &Keys, of_system: fn(Feature) -> bool| {
         let place = |feature| if of_system(feature) { None } else { place(keys, of_steps, feature) };
         let found = |feature| place(feature).map(|place| named(of_steps, Found::at(place)));
-        features::refusals(found).into_iter().for_each(|error| diagnostics.push(error));
-        diagnostics.is_empty()
+        keys.diagnostics.extend(features::refusals(found));
+        keys.diagnostics.is_empty()
     };
     // what is wrong with the system is said once
     if refuse(keys, |_| false) {
@@ -42,15 +41,16 @@ fn named(of_steps: &Keys, found: Found) -> Found {
 /// Where a key was given, or a value of one. What a method takes stands in `of_steps`.
 fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
     let (dials, emit) = (&of_steps.dials, &keys.dials.emit);
+    let readable = |name| keys.closures.get(name).map(|closure: &Closure| closure.key.span());
     let emitted = |asked: bool| keys.place_of("emit").filter(|_| asked);
     let order =
         |fits: fn(Order) -> bool| dials.order.as_ref().filter(|order| fits(order.value)).map(|order| order.span);
     match feature {
-        Feature::Controls => keys.controls.as_ref().map(|closure| closure.key.span()),
-        Feature::Dynamics => keys.dynamics.as_ref().map(|closure| closure.key.span()),
+        Feature::Controls => readable("controls"),
+        Feature::Dynamics => readable("dynamics"),
         // where inputs move the configuration it is their price
-        Feature::Cost if keys.controls.is_some() || keys.dynamics.is_some() => None,
-        Feature::Cost => keys.cost.as_ref().map(|closure| closure.key.span()),
+        Feature::Cost if readable("controls").or_else(|| readable("dynamics")).is_some() => None,
+        Feature::Cost => readable("cost"),
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
         Feature::Tangent => emitted(emit.tangent),

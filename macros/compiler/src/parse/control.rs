@@ -6,7 +6,7 @@ use syn::{Expr, ExprLit, GenericArgument, Lit, PathArguments, Type, parse_quote,
 
 use super::keys::Keys;
 use super::{Argument, Closure, Kinetic, Pattern};
-use crate::diagnostic::{Diagnostics, Location, refuse, report};
+use crate::diagnostic::{Location, refuse, report};
 
 /// What a choice of inputs costs, and what it is bound by.
 #[derive(Clone)]
@@ -25,35 +25,35 @@ pub(super) struct Motion {
 }
 
 /// Takes the keys that say what is steered, and with them action and cost where inputs, not momenta, move the configuration.
-pub(super) fn read(keys: &mut Keys, diagnostics: &Diagnostics) -> Option<Motion> {
-    let bounds = keys.bounds.take();
-    let Some(motion) = keys.controls.take().or_else(|| keys.dynamics.take()) else {
-        let control = control_of_forces(keys, bounds, diagnostics);
-        return control.map(|control| Motion { action: keys.action.take(), kinetic: None, control: Some(control) });
+pub(super) fn read(keys: &mut Keys) -> Option<Motion> {
+    let bounds = keys.take("bounds");
+    let Some(motion) = keys.take("controls").or_else(|| keys.take("dynamics")) else {
+        let control = control_of_forces(keys, bounds);
+        return control.map(|control| Motion { action: keys.take("action"), kinetic: None, control: Some(control) });
     };
-    let price = keys.cost.take();
+    let price = keys.take("cost");
     if price.is_none() && !keys.was_given("cost") {
         let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
-        report!(diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
+        report!(keys.diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
             help "write `cost = |h, {input}| h * {input}.norm_squared() / 2`");
     }
     let (action, kinetic) = if motion.key == "controls" {
-        (keys.action.take(), Some(Kinetic::Controls(motion)))
+        (keys.take("action"), Some(Kinetic::Controls(motion)))
     } else {
-        moved(keys, motion, diagnostics).map(|(action, dynamics)| (action, Kinetic::Dynamics(dynamics))).unzip()
+        moved(keys, motion).map(|(action, dynamics)| (action, Kinetic::Dynamics(dynamics))).unzip()
     };
     let control = price.map(|price| Choice { price, bounds });
     Some(Motion { action, kinetic, control })
 }
 
-fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &Diagnostics) -> Option<Choice> {
-    let Some(price) = keys.effort.take() else {
+fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>) -> Option<Choice> {
+    let Some(price) = keys.take("effort") else {
         let bounds = bounds.filter(|_| !keys.was_given("effort"))?;
-        refuse!(diagnostics, &bounds.key, "`{}` without anything to choose", bounds.key;
+        refuse!(keys.diagnostics, &bounds.key, "`{}` without anything to choose", bounds.key;
             help "add `effort = |u| u.norm_squared() / 2` to a force with an input, or `controls`, or `dynamics`");
     };
     if !keys.was_given("force") && !keys.was_given("force_on") {
-        report!(diagnostics, &price.key, "there is an effort, but no force that takes an input";
+        report!(keys.diagnostics, &price.key, "there is an effort, but no force that takes an input";
             help "write `force = |omega, torque: Vector3| torque`";
             note "the effort is the price of the inputs of the force");
     }
@@ -61,28 +61,28 @@ fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>, diagnostics: &Dia
 }
 
 /// The end has a price where something is chosen that leads there.
-pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>, diagnostics: &Diagnostics) {
+pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>) {
     let chosen = control.is_some() || keys.dials.emit.boundary || keys.was_given("effort");
-    if let Some(endpoint) = keys.endpoint.as_ref().filter(|_| !chosen) {
-        report!(diagnostics, &endpoint.key, "`endpoint` without anything to choose";
+    if let Some(endpoint) = keys.closures.get("endpoint").filter(|_| !chosen) {
+        report!(keys.diagnostics, &endpoint.key, "`endpoint` without anything to choose";
             help "add `emit = [boundary]` for paths of least action to a free end, or `effort`, `controls` or `dynamics` for inputs");
     }
 }
 
 /// The translations that `dynamics` are made of: the action x ↦ x + a, and the closure without the type of x.
-fn moved(keys: &mut Keys, mut dynamics: Closure, diagnostics: &Diagnostics) -> Option<(Closure, Closure)> {
+fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<(Closure, Closure)> {
     // an action beside it has been refused
-    keys.action.take().is_none().then_some(())?;
+    keys.take("action").is_none().then_some(())?;
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).collect();
     let &[state, _] = typed.as_slice() else {
-        refuse!(diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
+        refuse!(keys.diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
             help "write `dynamics = {example}`");
     };
     let ty = dynamics.arguments[state].ty.take()?;
     let pattern = dynamics.arguments[state].pattern.clone();
     let (Some(mut size), Pattern::Name(name)) = (length(&ty), &pattern) else {
-        refuse!(diagnostics, &ty, "dynamics move one vector";
+        refuse!(keys.diagnostics, &ty, "dynamics move one vector";
             help "write `dynamics = {example}`, with all of the configuration in one vector");
     };
     // what is wrong with the size is so where it was written

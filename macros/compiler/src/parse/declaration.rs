@@ -119,35 +119,32 @@ impl Kinetic {
 }
 
 /// Puts the declaration together, or says what is missing or too much.
-pub(super) fn assemble(
-    input: &DeriveInput,
-    mut keys: Keys,
-    fields: Vec<Field>,
-    diagnostics: Diagnostics,
-) -> Result<Declaration, Diagnostics> {
-    combinations::check(&keys, &diagnostics);
-    let steered = control::read(&mut keys, &diagnostics);
+pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) -> Result<Declaration, Diagnostics> {
+    let diagnostics = keys.diagnostics;
+    combinations::check(&keys);
+    let steered = control::read(&mut keys);
     // a closure that was given and could not be read has its own error
-    let given = |name: &str| keys.was_given(name);
     let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
-    let moved_by_inputs = given("controls") || given("dynamics");
-    if !given("action") && !given("dynamics") && !nothing_readable {
+    let moved_by_inputs = keys.was_given("controls") || keys.was_given("dynamics");
+    if !keys.was_given("action") && !keys.was_given("dynamics") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));
-    } else if !nothing_readable && !moved_by_inputs && !given("cost") && !given("lagrangian") {
+    } else if !nothing_readable && !moved_by_inputs && !keys.was_given("cost") && !keys.was_given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
-    let lagrangian = keys.lagrangian.take().map(Kinetic::Lagrangian);
-    let kinetic = keys.cost.take().map(Kinetic::Cost).or(lagrangian);
+    let lagrangian = keys.take("lagrangian").map(Kinetic::Lagrangian);
+    let kinetic = keys.take("cost").map(Kinetic::Cost).or(lagrangian);
     let (action, kinetic, control) = match steered {
         Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
-        None => (keys.action.take(), kinetic, None),
+        None => (keys.take("action"), kinetic, None),
     };
-    control::check_endpoint(&keys, control.as_ref(), &diagnostics);
-    let Keys { endpoint, potential, force, force_on, symmetries, groups, dials, methods, .. } = keys;
-    let methods = methods::checked(&input.ident, methods, &diagnostics);
-    diagnostics.propagate(())?;
+    control::check_endpoint(&keys, control.as_ref());
+    let [force, force_on, endpoint] = ["force", "force_on", "endpoint"].map(|name| keys.take(name));
+    let Keys { potential, symmetries, groups, dials, methods, .. } = keys;
+    let methods = methods::checked(&input.ident, methods, diagnostics);
     // by construction: what is missing has an error
-    let (Some(action), Some(kinetic)) = (action, kinetic) else { return Err(Diagnostics::new()) };
+    let (true, Some(action), Some(kinetic)) = (diagnostics.is_empty(), action, kinetic) else {
+        return Err(diagnostics.clone());
+    };
     Ok(Declaration {
         ident: input.ident.clone(),
         vis: input.vis.clone(),

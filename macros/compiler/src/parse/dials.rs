@@ -145,15 +145,16 @@ words! {
     }
 }
 
-/// A promise about the values of a field, which the stepper checks and simplification uses.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Promise {
-    /// Aᵀ = A.
-    Symmetric,
-    /// Zero off the diagonal.
-    Diagonal,
-    /// |v| = 1.
-    Unit,
+words! {
+    /// A promise about the values of a field, which the stepper checks and simplification uses.
+    Promise {
+        /// Aᵀ = A.
+        Symmetric "symmetric",
+        /// Zero off the diagonal.
+        Diagonal "diagonal",
+        /// |v| = 1.
+        Unit "unit",
+    }
 }
 
 /// The order of accuracy: where the potential is placed in a step, and of how many steps it is composed; or collocation.
@@ -173,7 +174,6 @@ pub enum Order {
     Sixteenth = 16,
 }
 
-/// All orders.
 const ORDERS: [Order; 6] = [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
 
 impl Order {
@@ -242,7 +242,6 @@ impl Emit {
 
 /// The numbers of dials.
 impl Reader<'_, '_> {
-    /// An order.
     pub fn order(self, dial: &mut Option<Located<Order>>) -> Result<(), Diagnostic> {
         let value = |literal: &LitInt| {
             let number: u32 = literal.base10_parse().ok()?;

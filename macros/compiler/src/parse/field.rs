@@ -5,7 +5,7 @@ use syn::ext::IdentExt;
 use syn::punctuated::Punctuated;
 use syn::{Index, Member, Token, Type};
 
-use super::dials::Promise;
+use super::dials::{Promise, Word};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, report};
 
 /// A field of the user's struct.
@@ -29,10 +29,6 @@ impl Field {
     }
 }
 
-/// The promises by name.
-const PROMISES: [(&str, Promise); 3] =
-    [("symmetric", Promise::Symmetric), ("diagonal", Promise::Diagonal), ("unit", Promise::Unit)];
-
 /// Reads a field and its `#[clebsch(…)]`.
 pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &Diagnostics) -> Field {
     let member = match &field.ident {
@@ -47,7 +43,7 @@ pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &Diagnostic
             continue;
         };
         for name in names {
-            match PROMISES.iter().find(|(word, _)| name == word) {
+            match Promise::WORDS.iter().find(|(word, _)| name == word) {
                 None => diagnostics.push(unknown(&name)),
                 Some(_) if promise.is_some() => {
                     report!(diagnostics, &name, "`{name}` is a second promise on this field";
@@ -61,7 +57,7 @@ pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &Diagnostic
 }
 
 fn unknown(name: &Ident) -> Diagnostic {
-    let similar = nearest(&name.to_string(), PROMISES.iter().map(|&(word, _)| word));
+    let similar = nearest(&name.to_string(), Promise::WORDS.iter().map(|&(word, _)| word));
     error!(name, "unknown promise `{name}` on a field")
         .maybe_help(similar.map(|similar| format!("write `#[clebsch({similar})]`")))
         .note("the promises are `symmetric`, `diagonal` and `unit`; the keys of a system stand on the struct")

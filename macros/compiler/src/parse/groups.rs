@@ -7,7 +7,7 @@ use syn::{Expr, ExprClosure, Token};
 
 use super::keys::Keys;
 use super::{Closure, values};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail};
+use crate::diagnostic::{Diagnostic, Location, bail};
 
 /// A group of the user's own.
 #[derive(Clone)]
@@ -28,12 +28,7 @@ pub enum Definition {
 }
 
 /// Reads what follows on the word `group`.
-pub(super) fn read(
-    word: &Ident,
-    stream: ParseStream,
-    keys: &mut Keys,
-    diagnostics: &Diagnostics,
-) -> Result<(), Diagnostic> {
+pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a group of one's own has a name";
             help "write `group Lorentz = |F: Matrix4| …`, and `F: Lorentz` in the action");
@@ -44,7 +39,7 @@ pub(super) fn read(
     let is_defined = stream.parse::<Token![=]>().is_ok();
     if is_defined && values::is_closure(stream) {
         let closure: ExprClosure = stream.parse()?;
-        if let Some(closure) = Closure::read(word, closure, diagnostics) {
+        if let Some(closure) = Closure::read(word, closure, keys.diagnostics) {
             keys.groups.push(DeclaredGroup { name, definition: Definition::Equation(Box::new(closure)) });
         }
         return Ok(());

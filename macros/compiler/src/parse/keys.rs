@@ -2,6 +2,8 @@
 
 mod markdown;
 
+use std::collections::BTreeMap;
+
 pub use markdown::keys_as_markdown;
 use proc_macro2::{Ident, Span};
 
@@ -9,7 +11,7 @@ use super::dials::{Dials, EMITTED};
 use super::methods::MethodKeys;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// A value and where it was written.
 #[derive(Clone, Debug)]
@@ -29,7 +31,6 @@ impl<T> Located<T> {
 
 /// A key: what can stand on the left of `=`.
 pub(super) struct Key {
-    /// The word.
     pub name: &'static str,
     /// How its value is read.
     pub kind: Kind,
@@ -46,8 +47,8 @@ pub(super) struct Key {
 /// How the value of a key is read.
 #[derive(Copy, Clone)]
 pub(super) enum Kind {
-    /// A closure, and where it is put.
-    Closure(fn(&mut Keys) -> &mut Option<Closure>),
+    /// A closure.
+    Closure,
     /// A closure, or two methods of the struct.
     Potential,
     /// A closure, or a list of them.
@@ -69,18 +70,18 @@ const ITERATED: &str = "implicit momentum equations";
 /// All keys: the name, how the value is read, an example, the default, and what the key belongs to.
 #[rustfmt::skip]
 pub(super) const KEYS: [Key; 27] = [
-    closure("action", |keys| &mut keys.action, "|F: SO<3>, R: SO<3>| …", "", "every declaration but `dynamics`"),
-    closure("cost", |keys| &mut keys.cost, "|h, F| …", "", "mechanics, or the price of a step of inputs"),
-    closure("lagrangian", |keys| &mut keys.lagrangian, "|omega| …", "", MECHANICS),
+    key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "", "every declaration but `dynamics`"),
+    key("cost", Kind::Closure, "|h, F| …", "", "mechanics, or the price of a step of inputs"),
+    key("lagrangian", Kind::Closure, "|omega| …", "", MECHANICS),
     key("potential", Kind::Potential, "|q| …", "none", MECHANICS),
     key("symmetry", Symmetry, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS),
-    closure("force", |keys| &mut keys.force, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS),
-    closure("force_on", |keys| &mut keys.force_on, "|x, thrust: Vector3| thrust", "none", MECHANICS),
-    closure("controls", |keys| &mut keys.controls, "|u: Vector2| vector![u.x, u.y, 0]", "", STEERED),
-    closure("dynamics", |keys| &mut keys.dynamics, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", STEERED),
-    closure("effort", |keys| &mut keys.effort, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
-    closure("bounds", |keys| &mut keys.bounds, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
-    closure("endpoint", |keys| &mut keys.endpoint, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
+    key("force", Kind::Closure, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS),
+    key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS),
+    key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", STEERED),
+    key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", STEERED),
+    key("effort", Kind::Closure, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
+    key("bounds", Kind::Closure, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
+    key("endpoint", Kind::Closure, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
     dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
     dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
     dial("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
@@ -105,16 +106,6 @@ const fn key(name: &'static str, kind: Kind, example: &'static str, default: &'s
 /// A dial of a method.
 const fn dial(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
     Key { name, kind, example, default, of, of_method: true }
-}
-
-const fn closure(
-    name: &'static str,
-    place: fn(&mut Keys) -> &mut Option<Closure>,
-    example: &'static str,
-    default: &'static str,
-    of: &'static str,
-) -> Key {
-    key(name, Kind::Closure(place), example, default, of)
 }
 
 /// A value as it is written, where it was given.
@@ -150,28 +141,34 @@ impl Dials {
     }
 }
 
-/// All keys that were given.
-#[derive(Default)]
-pub(super) struct Keys {
-    pub action: Option<Closure>,
-    pub cost: Option<Closure>,
-    pub lagrangian: Option<Closure>,
+/// All keys that were given, and the errors of reading them.
+pub(super) struct Keys<'d> {
+    pub diagnostics: &'d Diagnostics,
+    /// Those that are closures, by name.
+    pub closures: BTreeMap<&'static str, Closure>,
     pub potential: Option<Potential>,
-    pub force: Option<Closure>,
-    pub force_on: Option<Closure>,
-    pub controls: Option<Closure>,
-    pub dynamics: Option<Closure>,
-    pub effort: Option<Closure>,
-    pub bounds: Option<Closure>,
-    pub endpoint: Option<Closure>,
     pub symmetries: Vec<Closure>,
     pub groups: Vec<DeclaredGroup>,
-    pub methods: Vec<MethodKeys>,
+    pub methods: Vec<MethodKeys<'d>>,
     pub dials: Dials,
     given: Vec<(String, Span)>,
 }
 
-impl Keys {
+impl<'d> Keys<'d> {
+    /// No keys yet.
+    pub fn new(diagnostics: &'d Diagnostics) -> Keys<'d> {
+        Keys {
+            diagnostics,
+            closures: BTreeMap::new(),
+            potential: None,
+            symmetries: Vec::new(),
+            groups: Vec::new(),
+            methods: Vec::new(),
+            dials: Dials::default(),
+            given: Vec::new(),
+        }
+    }
+
     /// Notes that a key was given; `false` if it was given before.
     pub fn give(&mut self, key: &Ident) -> bool {
         let name = key.to_string();
@@ -185,12 +182,15 @@ impl Keys {
         self.place_of(name).is_some()
     }
 
-    /// Where a key was given.
     pub fn place_of(&self, name: &str) -> Option<Span> {
         self.given.iter().find(|(given, _)| given == name).map(|(_, span)| *span)
     }
 
-    /// Whether no key was given.
+    /// Takes a closure that could be read.
+    pub fn take(&mut self, name: &str) -> Option<Closure> {
+        self.closures.remove(name)
+    }
+
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
     }

@@ -21,18 +21,13 @@ pub struct DeclaredMethod {
 }
 
 /// A method with its keys, and where each was given.
-pub(super) struct MethodKeys {
+pub(super) struct MethodKeys<'d> {
     pub name: Ident,
-    pub keys: Keys,
+    pub keys: Keys<'d>,
 }
 
 /// Reads what follows on the word `method`.
-pub(super) fn read(
-    word: &Ident,
-    stream: ParseStream,
-    keys: &mut Keys,
-    diagnostics: &Diagnostics,
-) -> Result<(), Diagnostic> {
+pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a method has a name, that of a unit struct";
             help "write `struct Fine;` beside the system, and `method Fine = (order = 6)`");
@@ -47,13 +42,13 @@ pub(super) fn read(
     }
     let content = parenthesis(stream)?;
     if content.is_empty() {
-        report!(diagnostics, &name, "the method `{name}` has no dials";
+        report!(keys.diagnostics, &name, "the method `{name}` has no dials";
             help "write `method {name} = (order = 6)`; a method takes {}", listed(dials()));
     }
-    let mut own = Keys::default();
+    let mut own = Keys::new(keys.diagnostics);
     while !content.is_empty() {
-        if let Err(error) = read_dial(&content, &mut own, diagnostics) {
-            diagnostics.push(error);
+        if let Err(error) = read_dial(&content, &mut own) {
+            keys.diagnostics.push(error);
             attribute::skip_to_next_item(&content);
         }
     }
@@ -61,7 +56,6 @@ pub(super) fn read(
     Ok(())
 }
 
-/// What is in parentheses.
 fn parenthesis<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
     let content;
     parenthesized!(content in stream);
@@ -69,10 +63,10 @@ fn parenthesis<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
 }
 
 /// `dial = value` and the comma after it.
-fn read_dial(stream: ParseStream, keys: &mut Keys, diagnostics: &Diagnostics) -> Result<(), Diagnostic> {
+fn read_dial(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
     match KEYS.iter().find(|known| key == known.name) {
-        Some(found) if found.of_method => attribute::read_value(&key, found, stream, keys, diagnostics),
+        Some(found) if found.of_method => attribute::read_value(&key, found, stream, keys),
         None if !attribute::is_named(&key) => {
             let similar = nearest(&key.to_string(), dials()).map(|dial| format!("write `{dial}`"));
             let help = similar.unwrap_or_else(|| format!("a method takes {}", listed(dials())));

@@ -29,7 +29,7 @@ pub(crate) use spelling::{joined, listed, tokens as spell_tokens};
 pub use spelling::{spell, spell_type};
 
 use proc_macro2::TokenStream;
-use syn::{Data, DeriveInput, Fields};
+use syn::{Data, DeriveInput};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 
@@ -44,16 +44,13 @@ pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
     };
     let diagnostics = Diagnostics::new();
     let keys = attribute::read(&input, &diagnostics);
-    let fields = read_fields(fields, &diagnostics);
-    declaration::assemble(&input, keys, fields, diagnostics)
+    let fields = fields.iter().enumerate();
+    let fields = fields.map(|(position, field)| field::read(position, field, &diagnostics)).collect();
+    declaration::assemble(&input, keys, fields)
 }
 
 fn no_struct(place: Location, what: &str) -> Diagnostics {
     error!(place, "`Clebsch` can only be derived for a struct, and this is {what}";
         note "the fields of the struct are the parameters of the system")
     .into()
-}
-
-fn read_fields(fields: &Fields, diagnostics: &Diagnostics) -> Vec<Field> {
-    fields.iter().enumerate().map(|(position, field)| field::read(position, field, diagnostics)).collect()
 }

@@ -36,7 +36,7 @@ impl fmt::Display for Declaration {
             writeln!(f, "  method {} = ({dials})", method.name)?;
         }
         for field in &self.fields {
-            let promise = field.promise.map(|(promise, _)| format!(", {promise:?}").to_lowercase()).unwrap_or_default();
+            let promise = field.promise.map(|(promise, _)| format!(", {promise}")).unwrap_or_default();
             writeln!(f, "  field {}: {}{promise}", field.name(), spell_type(&field.ty))?;
         }
         Ok(())

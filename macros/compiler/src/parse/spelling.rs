@@ -4,8 +4,6 @@ use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{Block, Expr, RangeLimits, Stmt, Type};
 
-use super::Pattern;
-
 /// Parts within parts that are spelled: messages are read by people, and chains of operators are deeper than a stack.
 const LEVELS: usize = 100;
 
@@ -90,14 +88,6 @@ pub fn spell_type(ty: &Type) -> String {
         Type::Tuple(tuple) => format!("({})", joined(tuple.elems.iter().map(spell_type))),
         Type::Group(group) => spell_type(&group.elem),
         other => tokens(other),
-    }
-}
-
-/// The text of a pattern.
-pub(crate) fn spell_pattern(pattern: &Pattern) -> String {
-    match pattern {
-        Pattern::Name(ident) => ident.to_string(),
-        Pattern::Tuple(parts, _) => format!("({})", joined(parts.iter().map(spell_pattern))),
     }
 }
 

@@ -15,17 +15,11 @@ use super::{Closure, Potential, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, refuse};
 
 /// Reads the value of a key and puts it in its place.
-pub(super) fn read(
-    name: &Ident,
-    key: &Key,
-    stream: ParseStream,
-    keys: &mut Keys,
-    diagnostics: &Diagnostics,
-) -> Result<(), Diagnostic> {
-    let mut reader = Reader { name, example: key.example, stream, diagnostics };
+pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
+    let mut reader = Reader { name, example: key.example, stream, diagnostics: keys.diagnostics };
     match key.kind {
-        Kind::Closure(_) if opaque::comes_next(stream) => return Err(only_potentials_are_opaque(name, stream)),
-        Kind::Closure(place) => *place(keys) = reader.closure(stream)?,
+        Kind::Closure if opaque::comes_next(stream) => return Err(only_potentials_are_opaque(name, stream)),
+        Kind::Closure => keys.closures.extend(reader.closure(stream)?.map(|closure| (key.name, closure))),
         Kind::Potential if opaque::comes_next(stream) => {
             keys.potential = Some(Potential::Opaque(opaque::read(stream)?));
         }
@@ -116,13 +110,11 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A type by its name.
     pub fn ident(self, dial: &mut Option<Ident>) -> Result<(), Diagnostic> {
         *dial = Some(self.stream.call(Ident::parse_any).map_err(|_| self.expected(self.stream, "a type"))?);
         Ok(())
     }
 
-    /// A path.
     pub fn path(self, dial: &mut Option<Path>) -> Result<(), Diagnostic> {
         *dial = Some(self.stream.call(Path::parse_mod_style).map_err(|_| self.expected(self.stream, "a path"))?);
         Ok(())
@@ -140,7 +132,6 @@ fn only_potentials_are_opaque(key: &Ident, stream: ParseStream) -> Diagnostic {
         note "a step needs second derivatives of it, and two methods give a value and a gradient")
 }
 
-/// What is in brackets.
 fn bracket<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
     let content;
     bracketed!(content in stream);

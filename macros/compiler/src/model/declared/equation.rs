@@ -50,7 +50,6 @@ fn size(name: &str, closure: &Closure) -> Result<usize, Diagnostics> {
     }
 }
 
-/// The scope with the matrix alone.
 fn scope<'g>(pattern: &Pattern, symbol: Expr<'g>) -> Result<Scope<'g>, Diagnostics> {
     let diagnostics = Diagnostics::new();
     let mut scope = empty_scope();
@@ -207,13 +206,11 @@ impl<'g> GroupEquation<'_, 'g> {
             note "near the identity they move along E = {along}, but {f} = exp(s*E) leaves them at order s^{order}")
     }
 
-    /// All expressions as one.
     fn joined(&self, expressions: &[Expr<'g>]) -> Expr<'g> {
         if let [single] = expressions {
             return *single;
         }
-        let of_one = |expr: &Expr<'g>| expr.shape().positions().map(|(i, j)| expr.entry(i, j)).collect::<Vec<_>>();
-        let entries: Vec<Expr<'g>> = expressions.iter().flat_map(of_one).collect();
+        let entries = follow::entries(expressions);
         self.graph.stack(Shape::vector(entries.len()), entries)
     }
 }

@@ -48,25 +48,22 @@ pub(super) fn leaves_at<'g>(expressions: &[Expr<'g>], symbol: Expr<'g>, directio
 
 /// The rank of the derivative at a general matrix, decided over a prime field.
 pub(super) fn general_rank<'g>(expressions: &[Expr<'g>], symbol: Expr<'g>) -> usize {
-    let derivatives: Vec<Expr<'g>> = symbol
-        .shape()
-        .positions()
-        .map(|(i, j)| {
-            let direction = symbol.graph().unit(symbol.shape(), i, j);
-            let entries: Vec<Expr<'g>> = expressions
-                .iter()
-                .flat_map(|expr| {
-                    let moved = expr.differential(&[(symbol, direction)]);
-                    moved.shape().positions().map(move |(i, j)| moved.entry(i, j)).collect::<Vec<_>>()
-                })
-                .collect();
-            let shape = Shape::new(1, entries.len());
-            symbol.graph().stack(shape, entries)
-        })
-        .collect();
+    let along = |(i, j): (usize, usize)| {
+        let direction = symbol.graph().unit(symbol.shape(), i, j);
+        let moved: Vec<_> = expressions.iter().map(|expr| expr.differential(&[(symbol, direction)])).collect();
+        let entries = entries(&moved);
+        symbol.graph().stack(Shape::new(1, entries.len()), entries)
+    };
+    let derivatives: Vec<Expr<'g>> = symbol.shape().positions().map(along).collect();
     let shape = Shape::new(derivatives.len(), derivatives[0].shape().columns);
     let entries = shape.positions().map(|(i, j)| derivatives[i].entry(0, j)).collect();
     clebsch_symbolic::identity::rank(symbol.graph().stack(shape, entries))
+}
+
+/// All entries of expressions, one after the other.
+pub(super) fn entries<'g>(expressions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let of_one = |expr: &Expr<'g>| expr.shape().positions().map(|(i, j)| expr.entry(i, j)).collect::<Vec<_>>();
+    expressions.iter().flat_map(of_one).collect()
 }
 
 type Follow = Series<Residue, ORDER>;

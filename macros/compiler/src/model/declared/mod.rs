@@ -27,21 +27,18 @@ use crate::parse::{DeclaredGroup, Definition, joined};
 /// The largest matrices of a declared group, whose Lie algebra is found at compile time.
 const LARGEST: usize = 10;
 
-/// A declared group.
 struct Known {
     name: Ident,
     group: Group,
     used: Cell<bool>,
 }
 
-/// The declared groups by name.
 #[derive(Default)]
 pub(super) struct DeclaredGroups {
     known: Vec<Known>,
 }
 
 impl DeclaredGroups {
-    /// Reads all groups.
     pub fn read(graph: &Graph, groups: &[DeclaredGroup], diagnostics: &Diagnostics) -> DeclaredGroups {
         let mut known = Vec::new();
         for declared in groups {
@@ -52,14 +49,12 @@ impl DeclaredGroups {
         DeclaredGroups { known }
     }
 
-    /// The group of a name.
     pub fn find(&self, name: &Ident) -> Option<Group> {
         let found = self.known.iter().find(|known| known.name.unraw() == name.unraw())?;
         found.used.set(true);
         Some(found.group)
     }
 
-    /// All names.
     pub fn names(&self) -> impl Iterator<Item = String> {
         self.known.iter().map(|known| known.name.unraw().to_string())
     }

@@ -4,13 +4,11 @@ use clebsch_symbolic::{Expr, Rational, Shape};
 use quote::ToTokens;
 use syn::{Expr as Syntax, ExprField, ExprIndex, Index, Member};
 
-use super::super::value::Value;
 use super::operators::parenthesized;
-use super::{Elaborator, Growth};
+use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{error, nearest, refuse};
 use crate::parse::{listed, spell};
 
-/// Components by name.
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -129,7 +127,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 }
 
-/// Whether an expression is `self`.
 pub(super) fn is_self(syntax: &Syntax) -> bool {
     match syntax {
         Syntax::Path(path) => path.path.is_ident("self"),

@@ -3,13 +3,11 @@
 use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
 use super::super::scope::Binding;
-use super::super::value::Value;
-use super::{Elaborator, shortened};
+use super::{Elaborator, Value, shortened};
 use crate::diagnostic::{error, refuse, report};
 use crate::parse::{Pattern, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// The value of a block.
     pub(super) fn block(&mut self, block: &Block) -> Option<Value<'g>> {
         self.with_names(|this| this.statements(block))
     }

@@ -3,12 +3,11 @@
 use clebsch_symbolic::{Expr, Function, Rational, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall};
 
-use super::super::value::Value;
 use super::access::{is_self, strip};
 use super::operators::parenthesized;
 use super::quaternions::is_of_quaternions;
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
-use super::{Elaborator, Growth, open_identity, shortened};
+use super::{Elaborator, Growth, Value, open_identity, shortened};
 use crate::diagnostic::{Diagnostic, error, nearest, refuse};
 use crate::parse::{listed, spell};
 

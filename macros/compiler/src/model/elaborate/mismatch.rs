@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
-use super::super::value::Value;
+use super::Value;
 use super::operators::parenthesized;
 use crate::diagnostic::{Diagnostic, error};
 use crate::parse::spell;

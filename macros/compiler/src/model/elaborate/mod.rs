@@ -3,8 +3,6 @@
 mod access;
 mod block;
 mod constructors;
-mod literals;
-mod macros;
 mod methods;
 mod mismatch;
 mod names;
@@ -169,7 +167,6 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         }
     }
 
-    /// The value as a matrix.
     fn matrix(&mut self, syntax: &Syntax) -> Option<Expr<'g>> {
         let value = self.elaborate(syntax)?;
         self.as_matrix(syntax, value)
@@ -199,7 +196,6 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         }
     }
 
-    /// The value as a scalar.
     fn scalar(&mut self, syntax: &Syntax) -> Option<Expr<'g>> {
         let expr = self.matrix(syntax)?;
         if !expr.shape().is_scalar() {

@@ -1,14 +1,16 @@
-//! GroupNames: arguments, `let`s, `I`, `PI`, constants of the user's crate.
+//! Names and numbers: arguments, `let`s, `I`, `PI`, constants of the user's crate, and literals, which are exact rationals.
 
-use clebsch_symbolic::{Property, Role, Shape};
+use clebsch_symbolic::{Property, Rational, Role, Shape, integer, rational};
 use syn::ext::IdentExt;
-use syn::{ExprPath, Ident, Path};
+use syn::{ExprLit, ExprPath, Ident, Lit, Path};
 
 use super::super::Constant;
-use super::super::value::Value;
-use super::Elaborator;
+use super::{Elaborator, Value};
 use crate::diagnostic::{error, nearest, refuse};
 use crate::parse::{listed, spell_tokens};
+
+/// Digits of a literal, and the size of its decimal exponent: f64 ends at 1e308.
+const DIGITS: usize = 400;
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
@@ -77,6 +79,23 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         nearest(name, fields).map(|similar| format!("a field with a similar name exists: `self.{similar}`"))
     }
+
+    pub(super) fn literal(&mut self, literal: &ExprLit) -> Option<Value<'g>> {
+        let (digits, suffix) = match &literal.lit {
+            Lit::Int(number) => (number.base10_digits(), number.suffix()),
+            Lit::Float(number) => (number.base10_digits(), number.suffix()),
+            other => refuse!(self, other, "the only literals are numbers"; help "remove it"),
+        };
+        if !suffix.is_empty() {
+            refuse!(self, literal, "the suffix `{suffix}` has no meaning here";
+                help "write `{digits}`";
+                note "numbers are exact; the scalar of the system is that of its fields");
+        }
+        let Some(value) = decimal(digits) else {
+            refuse!(self, literal, "this number is beyond the range of `f64`"; help "choose units in which it is smaller");
+        };
+        Some(Value::Matrix(self.graph().number(value)))
+    }
 }
 
 /// `std::f64::consts::PI` and the like.
@@ -88,4 +107,24 @@ fn is_pi(path: &Path) -> bool {
 /// A single name is a constant if it is written like one: `GRAVITY`, `G0`.
 fn is_constant_name(name: &str) -> bool {
     name.len() > 1 && name.starts_with(|c: char| c.is_ascii_uppercase()) && !name.contains(|c: char| c.is_lowercase())
+}
+
+/// The exact value of a decimal number, `6.67e-11`.
+pub(super) fn decimal(text: &str) -> Option<Rational> {
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i64>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let exponent = exponent.checked_sub(fraction.len() as i64)?;
+    if mantissa.len() > DIGITS || exponent.unsigned_abs() > 2 * DIGITS as u64 {
+        return None;
+    }
+    let ten = integer(10);
+    let mut value = integer(0);
+    for digit in whole.chars().chain(fraction.chars()) {
+        value = value * &ten + integer(i64::from(digit.to_digit(10)?));
+    }
+    let step = if exponent < 0 { rational(1, 10) } else { ten };
+    Some((0..exponent.unsigned_abs()).fold(value, |value, _| value * &step))
 }

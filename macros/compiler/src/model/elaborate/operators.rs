@@ -3,13 +3,11 @@
 use clebsch_symbolic::{Expr, Group, Rational, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
-use super::super::value::Value;
 use super::mismatch::{no_product, point_moved, unequal_shapes};
-use super::{Elaborator, Growth};
+use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::{spell, spell_tokens};
 
-/// The operators of closures.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(super) enum Operator {
     Add,

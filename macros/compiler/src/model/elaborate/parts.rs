@@ -3,9 +3,8 @@
 use clebsch_symbolic::{Expr, Group, Shape};
 use syn::{BinOp, Expr as Syntax, ExprMethodCall, GenericArgument};
 
-use super::super::value::Value;
 use super::tables::Part;
-use super::{Elaborator, Growth};
+use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, refuse};
 use crate::parse::spell;
 

@@ -3,10 +3,9 @@
 use clebsch_symbolic::{Expr, Function, Group, Rational, Shape, integer, rational};
 use syn::ExprMethodCall;
 
-use super::super::value::Value;
 use super::methods::no_real_value;
 use super::operators::parenthesized;
-use super::{Elaborator, Growth};
+use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{error, refuse};
 use crate::parse::spell;
 

@@ -4,9 +4,8 @@ use clebsch_symbolic::{Expr, Shape};
 use syn::{ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
 
 use super::super::quaternion as algebra;
-use super::super::value::Value;
 use super::operators::{Operator, division_by_zero, parenthesized};
-use super::{Elaborator, Growth};
+use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, nearest, refuse};
 use crate::parse::{listed, spell};
 
@@ -124,7 +123,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
         self.refuse(error.maybe_help(help).note("its coordinates are `.i`, `.j`, `.k` and `.w`, the scalar part"))
     }
 
-    /// A method of a quaternion.
     pub(super) fn quaternion_method(&mut self, call: &ExprMethodCall, q: Expr<'g>) -> Option<Value<'g>> {
         let name = call.method.to_string();
         if name == "dot" && call.args.len() == 1 {

@@ -3,8 +3,7 @@
 use proc_macro2::Span;
 use syn::Expr as Syntax;
 
-use super::super::value::Value;
-use super::Elaborator;
+use super::{Elaborator, Value};
 use crate::diagnostic::{Location, error};
 use crate::parse::spell;
 
