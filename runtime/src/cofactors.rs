@@ -7,6 +7,7 @@
 
 use crate::orientation::Orientation;
 use crate::{Mask, Scalar};
+use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
 type Columns<T> = [[T; 3]; 3];
@@ -36,8 +37,7 @@ pub(crate) fn solve<T: Scalar, const M: usize>(
             let first = Inverse::of(&block(a, 0, 0));
             let (ab, ar) = (first.times_columns(&right), first.times(&part(b, 0)));
             let carried = columns_times(&lower, &ab);
-            let schur =
-                [minus(&corner[0], &carried[0]), minus(&corner[1], &carried[1]), minus(&corner[2], &carried[2])];
+            let schur: Columns<T> = from_fn(|k| minus(&corner[k], &carried[k]));
             let keeps = keeps_digits(&schur[0], &corner[0], &carried[0])
                 & keeps_digits(&schur[1], &corner[1], &carried[1])
                 & keeps_digits(&schur[2], &corner[2], &carried[2]);
@@ -56,11 +56,7 @@ pub(crate) fn solve<T: Scalar, const M: usize>(
 /// Three columns of a matrix, from an entry on.
 #[inline(always)]
 fn block<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, i: usize, j: usize) -> Columns<T> {
-    [
-        [a[(i, j)], a[(i + 1, j)], a[(i + 2, j)]],
-        [a[(i, j + 1)], a[(i + 1, j + 1)], a[(i + 2, j + 1)]],
-        [a[(i, j + 2)], a[(i + 1, j + 2)], a[(i + 2, j + 2)]],
-    ]
+    from_fn(|l| from_fn(|k| a[(i + k, j + l)]))
 }
 
 /// Three entries of a vector.

@@ -1,17 +1,14 @@
 //! Group elements from what a step computes.
 
 use crate::linear::{divided, undefined};
+use crate::matrices::shifted;
 use crate::space::by_lane;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
 
 /// I + D.
 pub fn from_increment<T: Scalar, const N: usize>(d: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    let mut element = *d;
-    for i in 0..N {
-        element[(i, i)] += T::one();
-    }
-    element
+    shifted(d, T::one())
 }
 
 /// The quaternion with these coordinates, in the order i, j, k, w in which it keeps them.

@@ -23,7 +23,7 @@ use crate::free_rotation::axes::Axes;
 use crate::linear::{matrix, rows};
 use crate::parameters::invert;
 use crate::root::root;
-use crate::space::{each_lane, lane_of, larger};
+use crate::space::{each_lane, lane_of};
 use crate::{Error, Mask, Real, Scalar, Space};
 use flow::{Matrix, PLANES, Vector, above, dot, flow, product, skew};
 use nalgebra::{SMatrix, SVector};
@@ -146,7 +146,7 @@ impl<T: Real> FreeRotation4<T> {
             return Err(Error::NotFinite { name: "the inertia" });
         }
         let (moments, axes) = Axes::principal(&mass(inertia));
-        let size = moments.iter().fold(T::zero(), |most, moment| larger(most, moment.abs()));
+        let size = moments.max_abs();
         let inverse = size.recip();
         let relative = moments * inverse;
         // Σ_(ij) = d_i + d_j

@@ -279,6 +279,15 @@ fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: us
     xi
 }
 
+/// The error of an iteration that leaves this residual, relative to that of ξ = 0.
+#[cold]
+fn not_converged<T: Scalar>(residual: T, iterations: u32) -> Error {
+    if residual.is_finite() {
+        return Error::NotConverged { residual: residual.to_f64(), iterations };
+    }
+    Error::NotFinite { name: "the implicit equation of the step" }
+}
+
 /// The entries of `yes` in the lanes of `mask`, those of `no` elsewhere.
 #[inline]
 fn select<T: Scalar, const M: usize>(mask: T::Mask, yes: &SVector<T, M>, no: &SVector<T, M>) -> SVector<T, M> {

@@ -31,12 +31,6 @@ impl Orientation {
     /// det < 0 of a single number.
     pub const NEGATIVE: Self = Self { positive: 0, negative: 1 };
 
-    /// The sign of a single number in all lanes.
-    #[cfg(all(test, feature = "lanes"))]
-    pub(crate) fn everywhere(single: Self) -> Self {
-        Self { positive: single.positive * u16::MAX, negative: single.negative * u16::MAX }
-    }
-
     /// From the lanes in which the matrix is regular, and those in which an odd number of signs was negative.
     #[inline]
     pub(crate) fn new<M: Mask>(regular: M, negative: M) -> Self {

@@ -1,8 +1,7 @@
 //! Roots of functions without a derivative at hand, where time does not matter.
 
-use crate::Real;
 use crate::linear::solve_dense;
-use crate::space::larger;
+use crate::{Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// More corrections than any start that leads to a root takes.
@@ -17,18 +16,17 @@ pub(crate) fn root<T: Real, const M: usize>(
     start: SVector<T, M>,
     defect: impl Fn(&SVector<T, M>) -> Option<SVector<T, M>>,
 ) -> Option<SVector<T, M>> {
-    let largest = |v: &SVector<T, M>| v.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
     let (mut x, mut before) = (start, T::from_f64(f64::INFINITY));
     for _ in 0..CORRECTIONS {
         // the largest of some numbers knows nothing of NaN
-        let now = defect(&x).filter(|now| now.iter().all(|entry| entry.is_finite()))?;
-        let size = largest(&now);
+        let now = defect(&x).filter(Space::<T>::is_finite)?;
+        let size = now.max_abs();
         let shrinks = size > T::zero() && size < before;
         if !shrinks {
             return (size < T::EPSILON.sqrt()).then_some(x);
         }
         before = size;
-        let step = T::EPSILON.sqrt() * (largest(&x) + T::EPSILON);
+        let step = T::EPSILON.sqrt() * (x.max_abs() + T::EPSILON);
         let mut slope = SMatrix::<T, M, M>::from_element(T::zero());
         for j in 0..M {
             let mut beside = x;

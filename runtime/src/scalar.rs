@@ -1,11 +1,7 @@
 //! The numbers that an integrator computes with.
 
-mod mask;
-
-pub use mask::Mask;
-
 use core::fmt::{Debug, Display};
-use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 /// What declarations can be integrated in: `f32` and `f64`, several of them side by side as lanes, numbers that carry derivatives.
@@ -127,6 +123,57 @@ pub trait Scalar:
     }
     /// xʸ, NaN for x < 0 and y no integer
     fn powf(self, exponent: Self) -> Self;
+}
+
+/// One truth value for each lane: `bool` for a single number.
+pub trait Mask:
+    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
+{
+    /// True in the lanes whose bit is set, of which lane 0 has the lowest.
+    fn from_bits(bits: u16) -> Self;
+    /// One bit for each lane, that of lane 0 the lowest.
+    fn bits(self) -> u16;
+    /// Whether some lane is true.
+    fn any(self) -> bool;
+    /// Whether all lanes are true.
+    fn all(self) -> bool;
+
+    /// Whether there is a lane `lane`, and it is true.
+    #[inline]
+    fn lane(self, lane: usize) -> bool {
+        lane < 16 && self.bits() >> lane & 1 == 1
+    }
+
+    /// True in all lanes.
+    #[inline]
+    fn everywhere() -> Self {
+        Self::from_bits(u16::MAX)
+    }
+
+    /// True in no lane.
+    #[inline]
+    fn nowhere() -> Self {
+        Self::from_bits(0)
+    }
+}
+
+impl Mask for bool {
+    #[inline]
+    fn from_bits(bits: u16) -> Self {
+        bits & 1 == 1
+    }
+    #[inline]
+    fn bits(self) -> u16 {
+        self.into()
+    }
+    #[inline]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline]
+    fn all(self) -> bool {
+        self
+    }
 }
 
 /// A single number, with an order: what has no lanes.

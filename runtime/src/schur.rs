@@ -47,8 +47,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
 
     /// B = Q H Qᵀ with zeros below the first subdiagonal of H.
     fn hessenberg(b: [[T; N]; N]) -> Self {
-        let identity = from_fn(|i| from_fn(|j| if i == j { T::one() } else { T::zero() }));
-        let mut form = Self { q: identity, t: b };
+        let mut form = Self { q: rows(&SMatrix::identity()), t: b };
         for k in 0..N.saturating_sub(2) {
             let below = from_fn(|i| if i > k { entry(&form.t, i, k) } else { T::zero() });
             form.reflect(0, Reflection::<T, N>::onto(below, k + 1), k, N);
@@ -76,15 +75,12 @@ impl<T: Real, const N: usize> Schur<T, N> {
     fn sweep(&mut self, start: usize, end: usize, is_exceptional: bool) {
         let at = |i: usize, j: usize| entry(&self.t, i, j);
         let (last, before) = (end - 1, end - 2);
-        let (trace, determinant) = match is_exceptional {
-            false => (
-                at(before, before) + at(last, last),
-                at(before, before) * at(last, last) - at(before, last) * at(last, before),
-            ),
-            true => {
-                let size = at(last, before).abs() + at(before, before - 1).abs();
-                (size * T::from_ratio(3, 2), size * size)
-            }
+        let (trace, determinant) = if is_exceptional {
+            let size = at(last, before).abs() + at(before, before - 1).abs();
+            (size * T::from_ratio(3, 2), size * size)
+        } else {
+            let [a, b, c, d] = [at(before, before), at(before, last), at(last, before), at(last, last)];
+            (a + d, a * d - b * c)
         };
         // the first column of (T − σ₁)(T − σ₂)
         let (first, second) = (at(start, start), at(start + 1, start + 1));

@@ -45,32 +45,23 @@ impl<T: Real, const N: usize> Sylvester<T, N> {
         &self,
         rights: [SVector<T, M>; K],
     ) -> Option<([SVector<T, M>; K], Orientation)> {
+        let (mut solutions, mut orientation) = (rights, Orientation::POSITIVE);
         if T::DERIVATIVES > 0 {
             // derivatives of what the iteration neglects are not negligible
-            return dense_solutions(&matrix_of(|x| self.times(x)), rights);
-        }
-        // squares of entries of ordinary size are numbers, whatever the units
-        let unit = power_of_two_near(self.factor.max_abs());
-        let schur = Schur::new(&(self.factor * unit))?;
-        let (mut solutions, mut orientation) = (rights, Orientation::POSITIVE);
-        for solution in &mut solutions {
-            (*solution, orientation) = schur.solve(&(*solution * unit))?;
+            let matrix = matrix_of(|x| self.times(x));
+            for solution in &mut solutions {
+                (*solution, orientation) = solve_dense(&matrix, solution)?;
+            }
+        } else {
+            // squares of entries of ordinary size are numbers, whatever the units
+            let unit = power_of_two_near(self.factor.max_abs());
+            let schur = Schur::new(&(self.factor * unit))?;
+            for solution in &mut solutions {
+                (*solution, orientation) = schur.solve(&(*solution * unit))?;
+            }
         }
         Some((solutions, orientation))
     }
-}
-
-/// The solutions by elimination.
-fn dense_solutions<T: Real, const M: usize, const K: usize>(
-    matrix: &SMatrix<T, M, M>,
-    rights: [SVector<T, M>; K],
-) -> Option<([SVector<T, M>; K], Orientation)> {
-    let mut orientation = Orientation::of(rows(matrix))?;
-    let mut solutions = rights;
-    for solution in &mut solutions {
-        (*solution, orientation) = solve_dense(matrix, solution)?;
-    }
-    Some((solutions, orientation))
 }
 
 /// Rows of a block on the diagonal of a Schur form: the first, and one or two in all.
@@ -86,11 +77,8 @@ impl<T: Real, const N: usize> Schur<T, N> {
         let mut next = 0;
         from_fn(|_| {
             let first = next;
-            let size = match entry(&self.t, first + 1, first) == T::zero() {
-                _ if first >= N => 0,
-                true => 1,
-                false => 2,
-            };
+            let is_pair = entry(&self.t, first + 1, first) != T::zero();
+            let size = if first < N { 1 + usize::from(is_pair) } else { 0 };
             next += size;
             Block { first, size }
         })
@@ -243,10 +231,10 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
     fn size_of_terms(&self, x: &SVector<T, M>) -> T {
         // the sum of all entries of |Δ||B|
         let delta: SMatrix<T, N, N> = skew(x);
-        let sum = |entries: &mut dyn Iterator<Item = T>| entries.fold(T::zero(), |sum, entry| sum + entry.abs());
-        let terms =
-            (0..N).map(|k| sum(&mut delta.column(k).iter().copied()) * sum(&mut self.factor.row(k).iter().copied()));
-        terms.fold(T::zero(), |sum, term| sum + term)
+        let add = |sum: T, entry: &T| sum + entry.abs();
+        delta.column_iter().zip(self.factor.row_iter()).fold(T::zero(), |sum, (column, row)| {
+            sum + column.iter().fold(T::zero(), add) * row.iter().fold(T::zero(), add)
+        })
     }
 
     fn largest_entry(&self) -> T {

@@ -277,9 +277,8 @@ fn add_product<T: Scalar, const N: usize>(
 pub(super) fn reach<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>, tolerance: f64) -> [T; 9] {
     let negligible = larger(T::from_f64(tolerance), T::from_ratio(1, 8) * T::EPSILON);
     let sizes = sizes(x, series);
-    let root = |size: T, n: usize| match size > T::zero() {
-        true => (negligible / size).powf(T::from_ratio(1, n as i64)),
-        false => T::one(),
+    let root = |size: T, n: usize| {
+        if size > T::zero() { (negligible / size).powf(T::from_ratio(1, n as i64)) } else { T::one() }
     };
     let size = |n: usize| sizes.get(n).copied().unwrap_or(T::one());
     // beyond the last degree terms grow on as they did; that they shrink is not counted on
@@ -297,11 +296,8 @@ pub(super) fn reach<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>, tolera
 /// The largest sum of the terms of each degree where α = 1.
 fn sizes<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>) -> [T; DEGREE + 1] {
     const SAMPLES: i64 = 16;
-    let (mut low, mut high) = (x[0], x[0]);
-    for &other in x.iter() {
-        low = if other < low { other } else { low };
-        high = if other > high { other } else { high };
-    }
+    let low = x.iter().fold(x[0], |low, &other| if other < low { other } else { low });
+    let high = x.iter().fold(x[0], |high, &other| larger(high, other));
     let mut sizes = [T::zero(); DEGREE + 1];
     for sample in 0..=SAMPLES {
         let epsilon = low + (high - low) * T::from_ratio(sample, SAMPLES);

@@ -1,8 +1,7 @@
 //! Skew matrices of four dimensions, and free motions by the Taylor series in time.
 
 use crate::linear::rows;
-use crate::space::larger;
-use crate::{Real, Scalar};
+use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The entries (i, j) above the diagonal, in the order of the components.
@@ -108,9 +107,7 @@ pub(super) fn flow<T: Real>(
         (rotations[n + 1], momenta[n + 1], velocities[n + 1]) = (rotation, momentum, velocity(&momentum));
         whole.0.iter_mut().flatten().zip(rotation.iter().flatten()).for_each(|(sum, term)| *sum += *term);
         whole.1 += momentum;
-        let largest = |entries: &[T]| entries.iter().fold(zero, |most, entry| larger(most, entry.abs()));
-        let is_small =
-            largest(rotation.as_flattened()) < small && largest(momentum.as_slice()) <= small * largest(m.as_slice());
+        let is_small = rotation.max_abs() < small && momentum.max_abs() <= small * m.max_abs();
         ends = if is_small { ends + 1 } else { 0 };
         // two terms in a row, as one may vanish
         if ends >= 2 {

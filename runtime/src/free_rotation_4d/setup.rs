@@ -1,7 +1,6 @@
 //! The constants of a motion, from its Taylor series.
 
 use super::flow::{Matrix, PLANES, Vector, at, dot, dual, entry, flow, pfaffian, product, skew};
-use crate::space::larger;
 use crate::stumpff::stumpff;
 use crate::{Real, Scalar, Space};
 use nalgebra::SVector;
@@ -32,17 +31,7 @@ pub(super) struct Constants<T> {
 impl<T: Scalar> Constants<T> {
     /// Those of a motion whose parts are Taylor series.
     pub fn by_series(parts: T) -> Self {
-        let zero = T::zero();
-        Self {
-            parts,
-            by_series: T::one(),
-            step: parts.recip(),
-            moments: [zero; 4],
-            origin: [zero; 3],
-            slopes: [[zero; 3]; 3],
-            casimirs: [zero; 2],
-            turn: [zero; 4],
-        }
+        Self { parts, by_series: T::one(), step: parts.recip(), ..Self::read(&Space::<T>::origin()) }
     }
 
     #[inline]
@@ -183,7 +172,6 @@ struct Fitted<T> {
 impl<T: Real> Fit<'_, T> {
     /// By the method of Gauss and Newton, from no correction at all: from a small one where a moment vanishes, as J̃ has no slope there.
     fn fit(&self) -> Option<Fitted<T>> {
-        let largest = |entries: &Vector<T>| entries.iter().fold(T::zero(), |most, entry| larger(most, entry.abs()));
         let small = T::from_ratio(1, 1000) * dot(self.momentum, self.momentum);
         let beta = if self.d.iter().any(|d| *d * *d <= small) { small } else { T::zero() };
         let mut found = self.at([beta, T::one(), T::zero(), T::zero()]);
@@ -191,7 +179,7 @@ impl<T: Real> Fit<'_, T> {
         for _ in 0..20 {
             let next = self.corrected(&found);
             // NaN ends it
-            let shrinks = largest(&next.residual) < T::from_ratio(1, 2) * largest(&found.residual);
+            let shrinks = next.residual.max_abs() < T::from_ratio(1, 2) * found.residual.max_abs();
             if !shrinks {
                 if derivatives == 0 {
                     break;
@@ -200,8 +188,8 @@ impl<T: Real> Fit<'_, T> {
             }
             found = next;
         }
-        let accepted = T::from_f64(64.0) * T::EPSILON * largest(self.momentum);
-        (largest(&found.residual) <= accepted).then_some(found)
+        let accepted = T::from_f64(64.0) * T::EPSILON * self.momentum.max_abs();
+        (found.residual.max_abs() <= accepted).then_some(found)
     }
 
     fn at(&self, unknowns: [T; 4]) -> Fitted<T> {
@@ -267,11 +255,8 @@ fn least_squares<T: Real>(columns: [Vector<T>; 4], b: Vector<T>) -> [T; 4] {
     for stage in 0..4 {
         let sizes = left.map(|column| dot(&column, &column).sqrt());
         let size = |k: usize| at(&sizes, k);
-        let next = (0..4).filter(|&k| !at(&used, k)).max_by(|&a, &b| match size(a) < size(b) {
-            true => core::cmp::Ordering::Less,
-            false => core::cmp::Ordering::Greater,
-        });
-        let Some(next) = next else { break };
+        let open = (0..4).filter(|&k| !at(&used, k));
+        let Some(next) = open.reduce(|a, b| if size(a) < size(b) { b } else { a }) else { break };
         let length = size(next);
         // NaN ends it
         let is_independent = length > T::from_f64(1e3) * T::EPSILON;

@@ -1,6 +1,6 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, Jacobian, QUICK, at_identity, path, size, with_derivatives};
+use super::{Equation, Jacobian, QUICK, at_identity, not_converged, path, size, with_derivatives};
 use crate::orientation::Orientation;
 use crate::space::{lane_of, set_lane};
 use crate::{Error, Mask, Scalar, Space};
@@ -69,11 +69,7 @@ fn unfinished<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     }
     let terms = equation.prepare(target);
     let [left, whole] = [*xi, SVector::from_element(T::zero())].map(|xi| size(&equation.residual(&terms, &xi)));
-    let residual = left / whole;
-    match residual.is_finite() {
-        true => Error::NotConverged { residual: residual.to_f64(), iterations: made },
-        false => Error::NotFinite { name: "the implicit equation of the step" },
-    }
+    not_converged(left / whole, made)
 }
 
 /// The equation in one lane.

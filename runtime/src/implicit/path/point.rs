@@ -1,6 +1,6 @@
 //! Points of the path, and Newton's method with one unknown held fixed.
 
-use crate::implicit::{Equation, Jacobian, is_much_smaller, size};
+use crate::implicit::{Equation, Jacobian, is_much_smaller, not_converged, size};
 use crate::orientation::Orientation;
 use crate::space::larger;
 use crate::{Error, Real, Space};
@@ -80,12 +80,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     /// The error for too much work.
     pub fn exhausted(&mut self, here: &PathPoint<T, M>) -> Error {
         let (residual, _) = self.equation.linearize(&self.moving, &here.xi);
-        match size(&residual) / self.weight {
-            residual if residual.is_finite() => {
-                Error::NotConverged { residual: residual.to_f64(), iterations: self.made + self.count }
-            }
-            _ => Error::NotFinite { name: "the implicit equation of the step" },
-        }
+        not_converged(size(&residual) / self.weight, self.made + self.count)
     }
 
     /// Whether a residual is no more than the rounding of terms of the size `terms`.
