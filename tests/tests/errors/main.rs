@@ -8,6 +8,7 @@ mod scenes;
 use std::collections::BTreeSet;
 
 use clebsch::Error;
+use proc_macro2::{Delimiter, TokenTree};
 use scenes::scenes;
 
 /// A scene that fails, and what a person has to be told.
@@ -36,17 +37,24 @@ fn every_error_says_what_to_change() {
     }
 }
 
-/// The variants are those of the source, read as it is written.
+/// The variants are those of the source, read as it is written: each follows its documentation.
 #[test]
 fn no_error_is_left_out() {
     let source = include_str!("../../../runtime/src/error.rs");
     let file = syn::parse_file(source).expect("error.rs is Rust");
     let declared = file.items.iter().find_map(|item| match item {
-        syn::Item::Enum(declared) if declared.ident == "Error" => Some(declared),
+        syn::Item::Macro(item) if item.mac.path.is_ident("errors") => item.mac.tokens.clone().into_iter().last(),
         _ => None,
     });
-    let declared: BTreeSet<String> =
-        declared.expect("an enum `Error`").variants.iter().map(|variant| variant.ident.to_string()).collect();
+    let Some(TokenTree::Group(variants)) = declared else { panic!("an `enum Error` in `errors!`") };
+    let tokens: Vec<TokenTree> = variants.stream().into_iter().collect();
+    let declared = tokens.windows(2).filter_map(|pair| match pair {
+        [TokenTree::Group(documentation), TokenTree::Ident(variant)] => {
+            (documentation.delimiter() == Delimiter::Bracket).then(|| variant.to_string())
+        }
+        _ => None,
+    });
+    let declared: BTreeSet<String> = declared.collect();
     let provoked: BTreeSet<String> = scenes().iter().map(|scene| variant(&scene.error)).collect();
     assert_eq!(declared, provoked, "each variant needs a scene in tests/tests/errors/scenes.rs");
 }
