@@ -147,10 +147,10 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// From now on the gap is only priced, at first as much as closing it costs; its first `motions` entries are those of configurations.
     pub fn price_gap(&mut self, motions: usize) {
-        let diagonal = self.stiffer.diagonal();
-        let largest = |max, x: &T| larger(max, *x);
-        let by_motion = diagonal.iter().take(motions).fold(T::zero(), largest) * T::from_ratio(1, 8);
-        let by_momentum = diagonal.iter().skip(motions).fold(T::zero(), largest) * T::from_ratio(1, 8);
+        let [by_motion, by_momentum] = [true, false].map(|is_motion| {
+            let chosen = (0..D).filter(|i| (*i < motions) == is_motion);
+            chosen.fold(T::zero(), |max, i| larger(max, self.stiffer[(i, i)])) * T::from_ratio(1, 8)
+        });
         self.settings.gap_price = Some(SVector::from_fn(|i, _| if i < motions { by_motion } else { by_momentum }));
         self.settings.weight = SMatrix::from_element(T::zero());
     }
