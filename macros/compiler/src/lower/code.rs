@@ -284,8 +284,13 @@ pub fn is_in_brackets(constant: &Rational, terms: &[(Rational, Code)]) -> bool {
 impl Code {
     /// A product as a quotient: the factors above and those below, where one of them is a reciprocal that is used here alone.
     pub(crate) fn quotient(factors: &[Code]) -> Option<(Vec<&Code>, Vec<&Code>)> {
-        let below: Vec<&Code> = factors.iter().filter_map(Code::divisor).collect();
-        let above = factors.iter().filter(|factor| factor.divisor().is_none()).collect();
+        let (mut above, mut below): (Vec<&Code>, Vec<&Code>) = (Vec::new(), Vec::new());
+        for factor in factors {
+            match factor {
+                Code::Reciprocal(x) => below.push(x),
+                factor => above.push(factor),
+            }
+        }
         (!below.is_empty()).then_some((above, below))
     }
 
@@ -331,10 +336,7 @@ impl Code {
     }
 
     fn as_local(&self) -> Option<usize> {
-        match self {
-            Code::Local(index) => Some(*index),
-            _ => None,
-        }
+        if let Code::Local(index) = self { Some(*index) } else { None }
     }
 
     /// Whether it is a matrix whose size only the type of a name says.
@@ -342,13 +344,6 @@ impl Code {
         let Code::Whole(whole) = self else { return false };
         use MatrixOperation::*;
         matches!(whole.operation, Embedded(..) | Skew | SkewComponents | SkewOuter)
-    }
-
-    fn divisor(&self) -> Option<&Code> {
-        match self {
-            Code::Reciprocal(x) => Some(x),
-            _ => None,
-        }
     }
 
     /// The argument that it reads an entry of or takes as a whole, with the shape of that.

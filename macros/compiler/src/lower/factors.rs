@@ -5,8 +5,8 @@ use clebsch_symbolic::{Rational, Table, Zero, integer, work};
 use super::kernel::{Id, Operation, Operations};
 use super::scalar::is_unit;
 
-#[derive(Default)]
-struct Factored {
+struct Factored<'a> {
+    operations: &'a mut Operations,
     /// The terms of each sum that has changed.
     sums: Table<Id, Vec<(Rational, Id)>>,
     /// How often each operation stands in what the outputs are made of.
@@ -21,10 +21,10 @@ pub(super) fn factored(
     outputs: &[Id],
     sums: Table<Id, Vec<(Rational, Id)>>,
 ) -> Table<Id, Vec<(Rational, Id)>> {
-    let mut factored = Factored { uses: vec![0; operations.len()], sums, ..Factored::default() };
-    outputs.iter().for_each(|&output| factored.take(operations, output));
+    let mut factored = Factored { uses: vec![0; operations.len()], operations, sums, waiting: Vec::new() };
+    outputs.iter().for_each(|&output| factored.take(output));
     while let Some(sum) = factored.waiting.pop() {
-        factored.sum(operations, sum);
+        factored.sum(sum);
     }
     factored.sums
 }
@@ -45,59 +45,59 @@ struct Choice {
     saved: isize,
 }
 
-impl Factored {
+impl Factored<'_> {
     /// One use more.
-    fn take(&mut self, operations: &Operations, id: Id) {
+    fn take(&mut self, id: Id) {
         work::spend(1);
         self.uses[id] += 1;
         if self.uses[id] > 1 {
             return;
         }
-        if matches!(operations.value(id), Operation::Sum(_, terms) if terms.len() > 1) {
+        if matches!(self.operations.value(id), Operation::Sum(_, terms) if terms.len() > 1) {
             self.waiting.push(id);
         }
-        self.operands(operations, id).into_iter().for_each(|operand| self.take(operations, operand));
+        self.operands(id).into_iter().for_each(|operand| self.take(operand));
     }
 
     /// One use less.
-    fn release(&mut self, operations: &Operations, id: Id) {
+    fn release(&mut self, id: Id) {
         self.uses[id] -= 1;
         if self.uses[id] == 0 {
-            self.operands(operations, id).into_iter().for_each(|operand| self.release(operations, operand));
+            self.operands(id).into_iter().for_each(|operand| self.release(operand));
         }
     }
 
-    fn operands(&self, operations: &Operations, id: Id) -> Vec<Id> {
+    fn operands(&self, id: Id) -> Vec<Id> {
         match self.sums.get(&id) {
             Some(terms) => terms.iter().map(|(_, term)| *term).collect(),
-            None => operations.value(id).operands(),
+            None => self.operations.value(id).operands(),
         }
     }
 
     /// Takes out one factor after the other, the one that saves most first.
-    fn sum(&mut self, operations: &mut Operations, sum: Id) {
+    fn sum(&mut self, sum: Id) {
         if self.uses[sum] == 0 {
             return;
         }
-        while let Some(terms) = self.terms(operations, sum)
-            && let Some(choice) = self.choose(operations, &terms)
+        while let Some(terms) = self.terms(sum)
+            && let Some(choice) = self.choose(&terms)
         {
-            let terms = self.taken_out(operations, terms, &choice);
+            let terms = self.taken_out(terms, &choice);
             self.sums.insert(sum, terms);
         }
     }
 
-    fn terms(&self, operations: &Operations, sum: Id) -> Option<Vec<(Rational, Id)>> {
-        match operations.value(sum) {
+    fn terms(&self, sum: Id) -> Option<Vec<(Rational, Id)>> {
+        match self.operations.value(sum) {
             Operation::Sum(_, terms) => Some(self.sums.get(&sum).unwrap_or(terms).clone()),
             _ => None,
         }
     }
 
-    fn choose(&self, operations: &Operations, terms: &[(Rational, Id)]) -> Option<Choice> {
+    fn choose(&self, terms: &[(Rational, Id)]) -> Option<Choice> {
         let mut positions: Table<Id, Vec<usize>> = Table::default();
         for (position, (_, term)) in terms.iter().enumerate() {
-            let Operation::Product(factors) = operations.value(*term) else { continue };
+            let Operation::Product(factors) = self.operations.value(*term) else { continue };
             for (i, factor) in factors.iter().enumerate() {
                 // the product without it is looked for
                 work::spend(1 + factors.len() / 2);
@@ -108,8 +108,7 @@ impl Factored {
         }
         let candidates = positions.iter().filter(|(_, positions)| positions.len() > 1);
         let choices = candidates.map(|(&factor, positions)| {
-            let saved: isize =
-                positions.iter().map(|&position| self.saved(operations, terms[position].1, factor)).sum();
+            let saved: isize = positions.iter().map(|&position| self.saved(terms[position].1, factor)).sum();
             Choice { factor: Factor::Of(factor), positions: positions.clone(), saved: saved - 1 }
         });
         let choices = choices.chain(numbers(terms));
@@ -118,12 +117,12 @@ impl Factored {
     }
 
     /// The multiplications that a product of which a factor is taken out needs no more.
-    fn saved(&self, operations: &Operations, product: Id, factor: Id) -> isize {
-        let Operation::Product(factors) = operations.value(product) else { return 0 };
+    fn saved(&self, product: Id, factor: Id) -> isize {
+        let Operation::Product(factors) = self.operations.value(product) else { return 0 };
         let rest = without(factors, factor);
         let is_at_hand = match rest.as_slice() {
             [_] => true,
-            _ => operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
+            _ => self.operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
         };
         let before = if self.uses[product] > 1 { 0 } else { factors.len() as isize - 1 };
         let after = if is_at_hand { 0 } else { rest.len() as isize - 1 };
@@ -135,64 +134,59 @@ impl Factored {
     }
 
     /// The terms with those of a choice replaced by one product.
-    fn taken_out(
-        &mut self,
-        operations: &mut Operations,
-        terms: Vec<(Rational, Id)>,
-        choice: &Choice,
-    ) -> Vec<(Rational, Id)> {
+    fn taken_out(&mut self, terms: Vec<(Rational, Id)>, choice: &Choice) -> Vec<(Rational, Id)> {
         work::spend(terms.len() * (1 + choice.positions.len() / 16));
         let (taken, mut rest): (Vec<_>, Vec<_>) =
             terms.into_iter().enumerate().partition(|(position, _)| choice.positions.contains(position));
         let (first, sign) = (taken[0].0, integer(if taken[0].1.0.is_negative() { -1 } else { 1 }));
-        taken.iter().for_each(|(_, (_, product))| self.release(operations, *product));
+        taken.iter().for_each(|(_, (_, product))| self.release(*product));
         let mut inner = Vec::with_capacity(taken.len());
         for (_, (coefficient, term)) in taken {
             // sums that differ in sign are one
             let left = match &choice.factor {
-                Factor::Of(factor) => (coefficient * &sign, self.divided(operations, term, *factor)),
+                Factor::Of(factor) => (coefficient * &sign, self.divided(term, *factor)),
                 Factor::Number(number) => (coefficient * &sign / number, term),
             };
-            self.append(operations, &mut inner, left);
+            self.append(&mut inner, left);
         }
         inner.retain(|(coefficient, _)| !coefficient.is_zero());
         let sum = match inner.as_slice() {
             // what is left of them cancels
             [] => return rest.into_iter().map(|(_, term)| term).collect(),
             [(coefficient, only)] if *coefficient == integer(1) => *only,
-            _ => self.made(operations, Operation::Sum(integer(0), inner)),
+            _ => self.made(Operation::Sum(integer(0), inner)),
         };
         let (weight, term) = match &choice.factor {
-            Factor::Of(factor) => (sign, self.product(operations, *factor, sum)),
+            Factor::Of(factor) => (sign, self.product(*factor, sum)),
             Factor::Number(number) => (sign * number, sum),
         };
-        self.take(operations, term);
+        self.take(term);
         let place = rest.iter().position(|(position, _)| *position > first).unwrap_or(rest.len());
         rest.insert(place, (first, (weight, term)));
         rest.into_iter().map(|(_, term)| term).collect()
     }
 
-    fn product(&mut self, operations: &mut Operations, factor: Id, other: Id) -> Id {
-        let mut factors = match operations.value(other) {
+    fn product(&mut self, factor: Id, other: Id) -> Id {
+        let mut factors = match self.operations.value(other) {
             Operation::Product(factors) => factors.clone(),
             _ => vec![other],
         };
         factors.push(factor);
         factors.sort_unstable();
-        self.made(operations, Operation::Product(factors))
+        self.made(Operation::Product(factors))
     }
 
     /// A product without one of its factors.
-    fn divided(&mut self, operations: &mut Operations, product: Id, factor: Id) -> Id {
-        match without(&operations.value(product).operands(), factor).as_slice() {
+    fn divided(&mut self, product: Id, factor: Id) -> Id {
+        match without(&self.operations.value(product).operands(), factor).as_slice() {
             [only] => *only,
-            rest => self.made(operations, Operation::Product(rest.to_vec())),
+            rest => self.made(Operation::Product(rest.to_vec())),
         }
     }
 
     /// Adds a term to a sum; of a sum that stands nowhere else, its terms.
-    fn append(&self, operations: &Operations, sum: &mut Vec<(Rational, Id)>, (coefficient, term): (Rational, Id)) {
-        match operations.value(term) {
+    fn append(&self, sum: &mut Vec<(Rational, Id)>, (coefficient, term): (Rational, Id)) {
+        match self.operations.value(term) {
             Operation::Sum(constant, inner) if constant.is_zero() && is_unit(&coefficient) && self.uses[term] == 0 => {
                 let inner = self.sums.get(&term).unwrap_or(inner);
                 inner.iter().for_each(|(weight, term)| add(sum, weight * &coefficient, *term));
@@ -201,9 +195,9 @@ impl Factored {
         }
     }
 
-    fn made(&mut self, operations: &mut Operations, operation: Operation) -> Id {
-        let (id, _) = operations.intern(operation);
-        self.uses.resize(operations.len(), 0);
+    fn made(&mut self, operation: Operation) -> Id {
+        let (id, _) = self.operations.intern(operation);
+        self.uses.resize(self.operations.len(), 0);
         id
     }
 }
@@ -212,7 +206,7 @@ impl Factored {
 fn numbers(terms: &[(Rational, Id)]) -> Vec<Choice> {
     let mut choices: Vec<Choice> = Vec::new();
     for (position, (coefficient, _)) in terms.iter().enumerate() {
-        let magnitude = if coefficient.is_negative() { -coefficient.clone() } else { coefficient.clone() };
+        let magnitude = coefficient.abs();
         if magnitude == integer(1) {
             continue;
         }

@@ -45,6 +45,11 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
     signs::moved(Kernel { locals, outputs: outputs.iter().map(output).collect() })
 }
 
+/// Factors as often as they stand in a product.
+fn repeated(factors: &[(Scalar, u32)]) -> impl Iterator<Item = Scalar> {
+    factors.iter().flat_map(|&(factor, power)| std::iter::repeat_n(factor, power as usize))
+}
+
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
 const LONGEST_EXPRESSION: usize = 256;
 /// An expression that nests deeper is cut too: a parser takes more of its stack for a level than for an operation.
@@ -226,14 +231,11 @@ impl Builder<'_, '_> {
             match positions.as_slice() {
                 [only] => collected.push((*only, terms[*only].clone())),
                 [first, ..] => {
-                    let slow = positions
-                        .iter()
-                        .map(|&position| (self.slow_part(terms[position].0), terms[position].1.clone()));
-                    let slow: Vec<_> = slow.collect();
-                    let factors = fast.iter().flat_map(|&(factor, power)| std::iter::repeat_n(factor, power as usize));
-                    let factors: Vec<Scalar> =
-                        [self.scalars.sum(integer(0), slow)].into_iter().chain(factors).collect();
-                    collected.push((*first, (self.scalars.product(factors), integer(1))));
+                    let terms = positions.iter().map(|&position| &terms[position]);
+                    let slow: Vec<_> = terms.map(|(term, weight)| (self.slow_part(*term), weight.clone())).collect();
+                    let slow = self.scalars.sum(integer(0), slow);
+                    let product = self.scalars.product([slow].into_iter().chain(repeated(fast)));
+                    collected.push((*first, (product, integer(1))));
                 }
                 [] => {}
             }
@@ -254,15 +256,14 @@ impl Builder<'_, '_> {
     }
 
     fn slow_part(&mut self, term: Scalar) -> Scalar {
-        let slow = self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) == Rate::Once);
-        let slow: Vec<Scalar> = slow.flat_map(|(factor, power)| std::iter::repeat_n(factor, power as usize)).collect();
-        self.scalars.product(slow)
+        let mut slow = self.factors(term);
+        slow.retain(|(factor, _)| self.scalars.rate(*factor) == Rate::Once);
+        self.scalars.product(repeated(&slow))
     }
 
     /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.
     fn convert_product(&mut self, mut coefficient: Rational, factors: &[(Scalar, u32)]) -> (Rational, Id) {
-        let repeated = |&(factor, exponent): &(Scalar, u32)| std::iter::repeat_n(factor, exponent as usize);
-        let mut factors: Vec<Scalar> = factors.iter().flat_map(repeated).collect();
+        let mut factors: Vec<Scalar> = repeated(factors).collect();
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
             let (slow, fast): (Vec<_>, Vec<_>) =
@@ -277,9 +278,7 @@ impl Builder<'_, '_> {
             let group = self.scalars.scale(group, magnitude);
             parts.push(self.convert(group));
         }
-        for factor in factors {
-            parts.push(self.convert(factor));
-        }
+        parts.extend(factors.into_iter().map(|factor| self.convert(factor)));
         parts.sort_unstable();
         match parts.as_slice() {
             [only] => (coefficient, *only),
@@ -408,16 +407,13 @@ impl Builder<'_, '_> {
                 if terms.is_empty() {
                     return Code::Number(constant);
                 }
-                let delays: Vec<u32> = match self.delays.is_empty() {
-                    true => Vec::new(),
-                    false => terms.iter().map(|term| delay_of_term(&self.delays, term)).collect(),
-                };
-                let terms: Vec<_> =
-                    terms.into_iter().map(|(coefficient, term)| (coefficient, self.reference(term, names))).collect();
-                match delays.is_empty() {
-                    true => Code::Sum(constant, terms),
-                    false => balance::balanced(constant, terms.into_iter().zip(delays)),
+                let code = |(weight, term): &(Rational, Id)| (weight.clone(), self.reference(*term, names));
+                let codes: Vec<_> = terms.iter().map(code).collect();
+                if self.delays.is_empty() {
+                    return Code::Sum(constant, codes);
                 }
+                let delays = terms.iter().map(|term| delay_of_term(&self.delays, term));
+                balance::balanced(constant, codes.into_iter().zip(delays))
             }
             Operation::Product(_) => {
                 let factors = self.operands(id);

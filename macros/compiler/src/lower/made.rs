@@ -54,7 +54,7 @@ impl<'a, 'g> Maker<'a, 'g> {
         if self.is_for_people(id) {
             return match id {
                 Id::ConservedMomenta => matrices::short_list(value),
-                _ if is_stacked(id) => matrices::short_stack(value),
+                _ if is_stacked(id) => matrices::short_kernel(&matrices::below(value)),
                 _ => matrices::short_kernel(value),
             };
         }
@@ -119,7 +119,7 @@ pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting
 /// Vectors, one after the other in one output.
 pub(super) fn stack(scalars: &mut Scalars, vectors: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
     if scalars.keeps_matrices {
-        return matrices::stack(vectors);
+        return matrices::kernel(&matrices::below(vectors));
     }
     let outputs = [Grid::vector(entries(scalars, vectors))];
     kernel(scalars, &outputs, hoisting)

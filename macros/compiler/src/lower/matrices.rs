@@ -23,49 +23,42 @@ use words::{Weighted, cheapest_cut, common_letter};
 
 /// One output for each expression.
 pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
-    Matrices::default().kernel(expressions)
+    Matrices::default().kernel(|lowering| lowering.each(expressions))
 }
 
 /// The same for a person to read: as few statements as there are shared terms, and matrices of blocks entry by entry.
 pub(super) fn short_kernel(expressions: &[Expr<'_>]) -> Kernel {
     let lowering = Matrices { joins_blocks: true, ..Matrices::default() };
-    lowering.kernel(expressions).without_unused().nested()
+    lowering.kernel(|lowering| lowering.each(expressions)).without_unused().nested()
 }
 
-fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
+/// Vectors as one.
+pub(super) fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
     vectors.first().map(|first| first.graph().below(vectors)).into_iter().collect()
-}
-
-/// Vectors, one after the other in one output.
-pub(super) fn stack(expressions: &[Expr<'_>]) -> Kernel {
-    kernel(&below(expressions))
-}
-
-/// The same for a person to read.
-pub(super) fn short_stack(expressions: &[Expr<'_>]) -> Kernel {
-    short_kernel(&below(expressions))
 }
 
 /// Numbers, one after the other in one output, for a person to read.
 pub(super) fn short_list(expressions: &[Expr<'_>]) -> Kernel {
-    let mut lowering = Matrices { joins_blocks: true, ..Matrices::default() };
-    let entries: Vec<Code> = expressions.iter().map(|&expr| lowering.value(expr)).collect();
-    let outputs = vec![(Shape::vector(entries.len()), entries)];
-    signs::moved(Kernel { locals: lowering.locals, outputs }).without_unused().nested()
+    let lowering = Matrices { joins_blocks: true, ..Matrices::default() };
+    let list = |lowering: &mut Matrices| expressions.iter().map(|&expr| lowering.value(expr)).collect();
+    lowering.kernel(|lowering| vec![column(list(lowering))]).without_unused().nested()
 }
 
 /// The largest entry of each expression, in one output.
 pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
-    let mut lowering = Matrices::default();
-    let mut largest = |expr: Expr<'_>| {
+    let largest = |lowering: &mut Matrices, expr: Expr<'_>| {
         let value = lowering.value(expr);
-        match expr.shape().is_scalar() {
-            true => value,
-            false => lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar()),
+        if expr.shape().is_scalar() {
+            return value;
         }
+        lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar())
     };
-    let entries: Vec<Code> = expressions.iter().map(|&expr| largest(expr)).collect();
-    signs::moved(Kernel { locals: lowering.locals, outputs: vec![(Shape::vector(entries.len()), entries)] })
+    let all = |lowering: &mut Matrices| expressions.iter().map(|&expr| largest(lowering, expr)).collect();
+    Matrices::default().kernel(|lowering| vec![column(all(lowering))])
+}
+
+fn column(entries: Vec<Code>) -> (Shape, Vec<Code>) {
+    (Shape::vector(entries.len()), entries)
 }
 
 /// What is lowered of one kernel.
@@ -78,9 +71,13 @@ struct Matrices {
 }
 
 impl Matrices {
-    fn kernel(mut self, expressions: &[Expr<'_>]) -> Kernel {
-        let outputs = expressions.iter().map(|&expr| (expr.shape(), vec![self.value(expr)])).collect();
+    fn kernel(mut self, outputs: impl FnOnce(&mut Matrices) -> Vec<(Shape, Vec<Code>)>) -> Kernel {
+        let outputs = outputs(&mut self);
         signs::moved(Kernel { locals: self.locals, outputs })
+    }
+
+    fn each(&mut self, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Code>)> {
+        expressions.iter().map(|&expr| (expr.shape(), vec![self.value(expr)])).collect()
     }
 
     /// The code of an expression: a scalar where it is 1×1, else the matrix as a whole.
@@ -208,10 +205,10 @@ impl Matrices {
             return Code::Read(Input::of(&symbol, row, column));
         }
         let value = self.value(a);
-        match shape.is_scalar() {
-            true => self.entry(&value, row, column),
-            false => self.operation(MatrixOperation::Block(row, column), vec![value], shape),
+        if shape.is_scalar() {
+            return self.entry(&value, row, column);
         }
+        self.operation(MatrixOperation::Block(row, column), vec![value], shape)
     }
 
     /// Σ x_k E_k, entry by entry where the basis has no function of its own.

@@ -3,8 +3,9 @@
 //! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
 //! field names the field once.
 
-use clebsch_symbolic::{Analytic, One, Rational, Role, Zero, integer, work};
+use clebsch_symbolic::{One, Rational, Role, Zero, integer, work};
 
+use super::scalar::add as add_to;
 use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};
 
 const LONGEST_NAME: usize = 48;
@@ -79,12 +80,11 @@ impl Names<'_> {
             None => parts.push((weight, factors)),
         };
         for (weight, factors) in terms {
-            let is_sum =
-                |(base, power): &(Scalar, u32)| *power == 1 && matches!(self.scalars.node(*base), ScalarNode::Sum(..));
-            let position = factors.iter().position(is_sum);
-            let Some((position, ScalarNode::Sum(inner, terms))) =
-                position.map(|at| (at, self.scalars.node(factors[at].0)))
-            else {
+            let sum = factors.iter().enumerate().find_map(|(position, (base, power))| match self.scalars.node(*base) {
+                ScalarNode::Sum(inner, terms) if *power == 1 => Some((position, inner, terms)),
+                _ => None,
+            });
+            let Some((position, inner, terms)) = sum else {
                 add(weight.clone(), factors.clone());
                 continue;
             };
@@ -96,12 +96,8 @@ impl Names<'_> {
             for (term, inner) in terms {
                 let mut factors = others.clone();
                 for (base, power) in self.factors(*term) {
-                    match factors.iter_mut().find(|(other, _)| *other == base) {
-                        Some((_, sum)) => *sum += power,
-                        None => factors.push((base, power)),
-                    }
+                    add_to(&mut factors, base, power);
                 }
-                factors.sort_unstable();
                 add(weight * inner, factors);
             }
         }
@@ -236,14 +232,9 @@ impl Names<'_> {
             }
             ScalarNode::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.value(*x, false)?)),
             ScalarNode::Output(call, output) => {
-                let name = match &self.scalars.call_of(*call).callee {
-                    Callee::Analytic(Analytic::Exponential) => "exponential",
-                    Callee::Analytic(Analytic::Phi) => "phi",
-                    Callee::Analytic(Analytic::Logarithm) => "logarithm",
-                    Callee::Inverse => "inverse",
-                    Callee::Value(_) | Callee::Gradient(_) => return None,
-                };
-                Some(format!("{name}_{}{}", output.row, output.column))
+                let callee = &self.scalars.call_of(*call).callee;
+                let is_ours = !matches!(callee, Callee::Value(_) | Callee::Gradient(_));
+                is_ours.then(|| format!("{callee}_{}{}", output.row, output.column))
             }
             ScalarNode::Sum(..) | ScalarNode::Product(_) | ScalarNode::Reciprocal(_) => self.value(scalar, false),
         }

@@ -80,12 +80,11 @@ impl Pairs {
         while let Some((count, Reverse(pair))) = self.queue.pop() {
             work::spend(1);
             let uses = &self.uses[&pair];
-            match uses.are_shared() {
-                true if uses.all == count => return Some(pair),
-                // some of its uses are gone
-                true => self.queue.push((uses.all, Reverse(pair))),
-                false => {}
+            if uses.are_shared() && uses.all == count {
+                return Some(pair);
             }
+            // some of its uses are gone
+            self.queue.extend(uses.are_shared().then_some((uses.all, Reverse(pair))));
         }
         None
     }

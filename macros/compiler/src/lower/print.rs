@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, integer};
+use clebsch_symbolic::{Analytic, Rational, integer};
 
 use super::{Callee, Code, Input, Kernel, KernelTable, MatrixOperation, MechanicsProgram, Program, Whole};
 use crate::derive::Id;
@@ -60,18 +60,11 @@ impl KernelTable {
             Code::Sum(constant, terms) => {
                 // people read a + b + c, in whatever order it is added
                 let (constant, terms) = Code::summands(constant, terms);
-                let mut text = String::new();
-                for (coefficient, term) in &terms {
-                    let negative = *coefficient < integer(0);
-                    let magnitude = if negative { -coefficient.clone() } else { coefficient.clone() };
-                    text += sign(text.is_empty(), negative);
-                    let scaled = magnitude != integer(1);
-                    text += &if scaled { format!("{magnitude}*{}", self.text(term, 1)) } else { self.text(term, 1) };
-                }
+                let mut text = sum(terms.iter().map(|(weight, term)| (weight, self.text(term, 1))));
                 if constant != integer(0) {
                     text = if text.is_empty() { constant.to_string() } else { format!("{constant} + {text}") };
                 }
-                if place == 0 { text } else { format!("({text})") }
+                bracketed(text, place > 0)
             }
             Code::Product(factors) => {
                 let product =
@@ -83,23 +76,16 @@ impl KernelTable {
                         below.iter().fold(above, |text, divisor| format!("{text}/{}", self.text(divisor, 2)))
                     }
                 };
-                if place < 2 { text } else { format!("({text})") }
+                bracketed(text, place > 1)
             }
-            Code::Reciprocal(x) if place == 0 => format!("1/{}", self.text(x, 2)),
-            Code::Reciprocal(x) => format!("(1/{})", self.text(x, 2)),
+            Code::Reciprocal(x) => bracketed(format!("1/{}", self.text(x, 2)), place > 0),
             Code::Root(x, (1, 2)) => format!("sqrt({})", self.text(x, 0)),
-            Code::PerOnePlusCosine(x) => {
-                let text = format!("1/(1 + sqrt(1 - {}))", self.text(x, 1));
-                if place == 0 { text } else { format!("({text})") }
-            }
+            Code::PerOnePlusCosine(x) => bracketed(format!("1/(1 + sqrt(1 - {}))", self.text(x, 1)), place > 0),
             Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
             Code::Call(callee, arguments) => {
-                let argument = |(_, entries): &(clebsch_symbolic::Shape, Vec<Code>)| {
-                    let entries: Vec<String> = entries.iter().map(|entry| self.text(entry, 0)).collect();
-                    format!("[{}]", entries.join(", "))
-                };
-                let arguments: Vec<String> = arguments.iter().map(argument).collect();
-                format!("{callee}({})", arguments.join(", "))
+                let entries = |entries: &[Code]| entries.iter().map(|entry| self.text(entry, 0)).collect::<Vec<_>>();
+                let arguments = arguments.iter().map(|(_, argument)| format!("[{}]", entries(argument).join(", ")));
+                format!("{callee}({})", arguments.collect::<Vec<_>>().join(", "))
             }
             Code::Output(local, callee, output) => match callee {
                 Callee::Value(_) => format!("t{local}"),
@@ -117,15 +103,7 @@ impl KernelTable {
         let (text, is_sum) = match &whole.operation {
             MatrixOperation::Argument(input) => (input.name.clone(), false),
             MatrixOperation::Entries => (format!("[{}]", operands.join(", ")), false),
-            MatrixOperation::Sum(weights) => {
-                let mut text = String::new();
-                for (weight, operand) in weights.iter().zip(&operands) {
-                    text += sign(text.is_empty(), weight.is_negative());
-                    let size = weight.abs();
-                    text += &if size == integer(1) { operand.clone() } else { format!("{size}*{operand}") };
-                }
-                (text, true)
-            }
+            MatrixOperation::Sum(weights) => (sum(weights.iter().zip(operands)), true),
             MatrixOperation::Scaled | MatrixOperation::Product => (operands.join("*"), false),
             MatrixOperation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
             MatrixOperation::Transpose => (format!("{}ᵀ", operands[0]), false),
@@ -137,8 +115,20 @@ impl KernelTable {
             MatrixOperation::Entry(i, j) => (format!("{}[{i},{j}]", operands[0]), false),
             other => (format!("{other:?}({})", operands.join(", ")).to_lowercase(), false),
         };
-        if is_sum && place > 0 { format!("({text})") } else { text }
+        bracketed(text, is_sum && place > 0)
     }
+}
+
+/// Σ weight · term.
+fn sum<'a>(terms: impl Iterator<Item = (&'a Rational, String)>) -> String {
+    terms.fold(String::new(), |text, (weight, term)| {
+        let (sign, size) = (sign(text.is_empty(), weight.is_negative()), weight.abs());
+        text + sign + &if size == integer(1) { term } else { format!("{size}*{term}") }
+    })
+}
+
+fn bracketed(text: String, is_bracketed: bool) -> String {
+    if is_bracketed { format!("({text})") } else { text }
 }
 
 /// What stands before a term of a sum.
@@ -170,9 +160,9 @@ impl fmt::Display for Callee {
 }
 
 fn read(input: &Input) -> String {
-    match input.is_vector {
-        true if input.is_scalar => input.name.clone(),
-        true => format!("{}[{}]", input.name, input.row),
-        false => format!("{}[{},{}]", input.name, input.row, input.column),
+    match (input.is_scalar, input.is_vector) {
+        (true, _) => input.name.clone(),
+        (_, true) => format!("{}[{}]", input.name, input.row),
+        _ => format!("{}[{},{}]", input.name, input.row, input.column),
     }
 }

@@ -1,5 +1,6 @@
 //! Scalar expressions: sums of multiples, products of powers, functions; each distinct one exists once.
 
+use std::ops::AddAssign;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
@@ -271,9 +272,9 @@ impl Scalars {
             coefficient = product(&coefficient, &number);
             match rest.map(|rest| (rest, self.node(rest))) {
                 Some((_, ScalarNode::Product(inner))) => {
-                    inner.iter().for_each(|&(base, exponent)| raise(&mut powers, base, exponent));
+                    inner.iter().for_each(|&(base, exponent)| add(&mut powers, base, exponent));
                 }
-                Some((rest, _)) => raise(&mut powers, rest, 1),
+                Some((rest, _)) => add(&mut powers, rest, 1),
                 None => {}
             }
         }
@@ -370,18 +371,10 @@ pub(super) fn is_unit(coefficient: &Rational) -> bool {
     coefficient.is_one() || *coefficient == integer(-1)
 }
 
-/// Adds a term to a sorted sum.
-fn add(terms: &mut Vec<(Scalar, Rational)>, scalar: Scalar, coefficient: Rational) {
-    match terms.binary_search_by_key(&scalar, |(term, _)| *term) {
-        Ok(position) => terms[position].1 += coefficient,
-        Err(position) => terms.insert(position, (scalar, coefficient)),
-    }
-}
-
-/// Multiplies a sorted product by a power.
-fn raise(powers: &mut Vec<(Scalar, u32)>, base: Scalar, exponent: u32) {
-    match powers.binary_search_by_key(&base, |(factor, _)| *factor) {
-        Ok(position) => powers[position].1 += exponent,
-        Err(position) => powers.insert(position, (base, exponent)),
+/// Adds to the value of a scalar among sorted ones: the coefficient of a term, the exponent of a factor.
+pub(super) fn add<V: AddAssign>(parts: &mut Vec<(Scalar, V)>, scalar: Scalar, value: V) {
+    match parts.binary_search_by_key(&scalar, |(other, _)| *other) {
+        Ok(position) => parts[position].1 += value,
+        Err(position) => parts.insert(position, (scalar, value)),
     }
 }

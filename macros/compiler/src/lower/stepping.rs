@@ -171,24 +171,31 @@ impl<'g> Maker<'_, 'g> {
         predict: Option<&Kernel>,
     ) -> (Kernel, Kernel, Option<Kernel>) {
         let system = formulas.newton_system(equation, self.scalars.keeps_matrices);
+        let predict = predict.filter(|_| fixed_point::serves(formulas, equation));
         if self.scalars.keeps_matrices {
             let linearize = of_matrices(&mut self.scalars, &system, Hoisting::Nothing);
-            return match fixed_point::residual_of_matrices(formulas, equation, predict) {
-                Some(alone) => {
-                    let (prepare, alone) = matrices::hoisted(alone);
-                    (prepare, linearize, Some(alone))
-                }
-                None => {
-                    let (prepare, linearize) = matrices::hoisted(linearize);
-                    (prepare, linearize, None)
-                }
-            };
+            // a linear system costs more than many residuals
+            if predict.is_some() {
+                let (prepare, alone) = matrices::hoisted(matrices::kernel(&[equation.residual]));
+                return (prepare, linearize, Some(alone));
+            }
+            let (prepare, linearize) = matrices::hoisted(linearize);
+            return (prepare, linearize, None);
         }
-        let (hoisted, mut terms) = (&mut self.hoisted, Hoisted::default());
-        let linearize = of_matrices(&mut self.scalars, &system, Hoisting::Terms(hoisted, &mut terms));
-        let newton = fixed_point::Newton { linearize: &linearize, predict };
-        let residual = fixed_point::residual(formulas, equation, &newton, &mut self.scalars, (hoisted, &mut terms));
-        let prepare = terms.kernel(&mut self.scalars, Hoisting::Constants(hoisted));
+        let mut terms = Hoisted::default();
+        let linearize = of_matrices(&mut self.scalars, &system, Hoisting::Terms(&mut self.hoisted, &mut terms));
+        let residual = predict.and_then(|predict| {
+            let (mut constants, mut more) = (self.hoisted.clone(), terms.clone());
+            let residual = [formulas.residual_by_halves(equation)];
+            let residual = separate(&mut self.scalars, &residual, Hoisting::Terms(&mut constants, &mut more));
+            let unknowns = equation.components.len();
+            let is_chosen = fixed_point::is_chosen(formulas, (&residual, predict), &linearize, unknowns);
+            is_chosen.then(|| {
+                (self.hoisted, terms) = (constants, more);
+                residual
+            })
+        });
+        let prepare = terms.kernel(&mut self.scalars, Hoisting::Constants(&mut self.hoisted));
         // what is there already needs no preparation
         match prepare.reads() {
             Some(reads) => {

@@ -19,7 +19,7 @@ impl<'g> Maker<'_, 'g> {
     /// J(q, (E_j)_Q(q)), column by column; with whole matrices J(q, ξ_Q(q)).
     pub(super) fn orbit_metric(&mut self) {
         match self.rows.value(Id::OrbitMetric).filter(|_| self.scalars.keeps_matrices) {
-            Some(momenta) => self.add(Id::OrbitMetric, matrices::stack(momenta)),
+            Some(momenta) => self.add(Id::OrbitMetric, matrices::kernel(&matrices::below(momenta))),
             None => self.matrices(Id::OrbitMetric, &[self.system.orbit_metric()]),
         }
     }

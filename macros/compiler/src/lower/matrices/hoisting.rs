@@ -26,9 +26,10 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
     };
     let (mut prepare, mut rest) = (Kernel::default(), Kernel::default());
     for (code, depends) in kernel.locals.iter().zip(&depends) {
-        match depends {
-            true => rest.locals.push(code.with_locals(&after)),
-            false => prepare.locals.push(code.with_locals(&before)),
+        if *depends {
+            rest.locals.push(code.with_locals(&after));
+        } else {
+            prepare.locals.push(code.with_locals(&before));
         }
     }
     prepare.outputs = terms.iter().map(|&index| (shape(index), vec![before(index)])).collect();
