@@ -3,14 +3,12 @@
 mod hoisted;
 mod shorten;
 
-use std::rc::Rc;
-
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
 use super::grid::Grid;
 use super::pairs::Pairs;
-use super::scalar::{CallId, Callee, Output};
+use super::scalar::{Callee, Factors, Output};
 use super::signs;
 use super::{Code, Kernel, Rate, Scalar, ScalarNode, Scalars};
 pub use hoisted::Hoisted;
@@ -161,20 +159,16 @@ impl Builder<'_, '_> {
                 self.intern(Operation::Function(function, x))
             }
             ScalarNode::Output(call, output) => {
-                let (id, callee) = self.convert_call(call);
-                self.intern(Operation::Output(id, callee, output))
+                let call = self.scalars.call_of(call).clone();
+                let mut entries = |grid: &Grid| grid.entries.iter().map(|entry| self.convert(*entry)).collect();
+                let arguments = call.arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
+                let id = self.intern(Operation::Call(call.callee.clone(), arguments));
+                self.intern(Operation::Output(id, call.callee, output))
             }
             ScalarNode::Input(_) | ScalarNode::Pi => self.intern(Operation::Leaf(scalar)),
         };
         self.known.insert(scalar, id);
         id
-    }
-
-    fn convert_call(&mut self, call: CallId) -> (Id, Callee) {
-        let call = self.scalars.call_of(call).clone();
-        let argument = |grid: Rc<Grid>| (grid.shape, grid.entries.iter().map(|entry| self.convert(*entry)).collect());
-        let arguments = call.arguments.into_iter().map(argument).collect();
-        (self.intern(Operation::Call(call.callee.clone(), arguments)), call.callee)
     }
 
     fn scaled(&mut self, coefficient: Rational, id: Id) -> Id {
@@ -222,43 +216,24 @@ impl Builder<'_, '_> {
         if !self.slow_rates().contains(&Rate::Once) {
             return terms;
         }
-        let mut groups: Table<Vec<(Scalar, u32)>, Vec<usize>> = Table::default();
+        let mut groups: Table<Factors, Vec<(usize, Factors)>> = Table::default();
         for (position, (term, _)) in terms.iter().enumerate() {
-            groups.entry(self.fast_factors(*term)).push(position);
+            let is_slow = |(factor, _): &(Scalar, u32)| self.scalars.rate(*factor) == Rate::Once;
+            let (slow, fast) = self.scalars.factors(*term).into_iter().partition(is_slow);
+            groups.entry(fast).push((position, slow));
         }
-        let mut collected = Vec::new();
-        for (fast, positions) in groups.iter() {
-            match positions.as_slice() {
-                [only] => collected.push((*only, terms[*only].clone())),
-                [first, ..] => {
-                    let terms = positions.iter().map(|&position| &terms[position]);
-                    let slow: Vec<_> = terms.map(|(term, weight)| (self.slow_part(*term), weight.clone())).collect();
-                    let slow = self.scalars.sum(integer(0), slow);
-                    let product = self.scalars.product([slow].into_iter().chain(repeated(fast)));
-                    collected.push((*first, (product, integer(1))));
-                }
-                [] => {}
+        let collect = |(fast, members): (&Factors, &Vec<(usize, Factors)>)| {
+            if let [(only, _)] = members[..] {
+                return terms[only].clone();
             }
-        }
-        collected.sort_by_key(|(position, _)| *position);
-        collected.into_iter().map(|(_, term)| term).collect()
-    }
-
-    fn factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
-        match self.scalars.node(term) {
-            ScalarNode::Product(factors) => factors.clone(),
-            _ => vec![(term, 1)],
-        }
-    }
-
-    fn fast_factors(&self, term: Scalar) -> Vec<(Scalar, u32)> {
-        self.factors(term).into_iter().filter(|(factor, _)| self.scalars.rate(*factor) != Rate::Once).collect()
-    }
-
-    fn slow_part(&mut self, term: Scalar) -> Scalar {
-        let mut slow = self.factors(term);
-        slow.retain(|(factor, _)| self.scalars.rate(*factor) == Rate::Once);
-        self.scalars.product(repeated(&slow))
+            let slow = |(position, slow): &(usize, Factors)| {
+                (self.scalars.product(repeated(slow)), terms[*position].1.clone())
+            };
+            let slow: Vec<_> = members.iter().map(slow).collect();
+            let slow = self.scalars.sum(integer(0), slow);
+            (self.scalars.product([slow].into_iter().chain(repeated(fast))), integer(1))
+        };
+        groups.iter().map(collect).collect()
     }
 
     /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.

@@ -5,7 +5,7 @@
 
 use clebsch_symbolic::{One, Rational, Role, Zero, integer, work};
 
-use super::scalar::add as add_to;
+use super::scalar::{Factors, add as add_to};
 use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};
 
 const LONGEST_NAME: usize = 48;
@@ -38,9 +38,6 @@ fn distinct(name: String, names: &[String]) -> String {
     [name.clone()].into_iter().chain(suffixed).chain(numbered).find(|name| !is_taken(name)).unwrap_or(name)
 }
 
-/// Factors with their exponents.
-type Factors = Vec<(Scalar, u32)>;
-
 /// A factor of a sum with its sign and its other factors.
 type Term = (Rational, Factors);
 
@@ -55,19 +52,12 @@ impl Names<'_> {
         let sign = integer(if is_negative { -1 } else { 1 });
         let name = match self.scalars.node(scalar) {
             ScalarNode::Sum(constant, terms) => {
-                let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.factors(*term));
+                let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.scalars.factors(*term));
                 self.sum(constant * &sign, terms.iter().map(term).collect())
             }
-            _ => self.product(&sign, &self.factors(scalar)),
+            _ => self.product(&sign, &self.scalars.factors(scalar)),
         };
         name.filter(|name| is_short(name))
-    }
-
-    fn factors(&self, scalar: Scalar) -> Factors {
-        match self.scalars.node(scalar) {
-            ScalarNode::Product(factors) => factors.clone(),
-            _ => vec![(scalar, 1)],
-        }
     }
 
     /// The terms with the sums in them multiplied out, where that leaves fewer: (a + b + c)/h − b/h − c/h is a/h.
@@ -95,7 +85,7 @@ impl Names<'_> {
             }
             for (term, inner) in terms {
                 let mut factors = others.clone();
-                for (base, power) in self.factors(*term) {
+                for (base, power) in self.scalars.factors(*term) {
                     add_to(&mut factors, base, power);
                 }
                 add(weight * inner, factors);
@@ -188,7 +178,7 @@ impl Names<'_> {
         for &(base, power) in factors {
             match self.scalars.node(base) {
                 ScalarNode::Reciprocal(x) => {
-                    let inner = self.factors(*x);
+                    let inner = self.scalars.factors(*x);
                     below.extend(inner.into_iter().map(|(base, inner)| (base, inner * power)));
                 }
                 ScalarNode::Sum(..) if power == 1 => sums.push(self.base(base)?),
@@ -196,11 +186,8 @@ impl Names<'_> {
             }
         }
         if !below.is_empty() {
-            let mut names = Vec::new();
-            for (base, power) in below {
-                names.push(self.raised(base, power)?);
-            }
-            words.push(format!("per_{}", names.join("_")));
+            let names: Option<Vec<String>> = below.into_iter().map(|(base, power)| self.raised(base, power)).collect();
+            words.push(format!("per_{}", names?.join("_")));
         }
         if !sums.is_empty() {
             let sums = sums.join("_times_");

@@ -13,6 +13,9 @@ use super::grid::{Grid, Grids};
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Scalar(u32);
 
+/// Factors with their exponents.
+pub(super) type Factors = Vec<(Scalar, u32)>;
+
 /// How often a value changes, from never to in each iteration of a solve.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Rate {
@@ -110,7 +113,7 @@ pub enum ScalarNode {
     /// constant + Σ coefficient · scalar.
     Sum(Rational, Vec<(Scalar, Rational)>),
     /// Π scalar^exponent, exponents positive.
-    Product(Vec<(Scalar, u32)>),
+    Product(Factors),
     /// 1/x.
     Reciprocal(Scalar),
     /// x^(numerator/denominator) with an exponent between zero and one.
@@ -263,10 +266,18 @@ impl Scalars {
         }
     }
 
+    /// Its factors; itself where it is no product.
+    pub fn factors(&self, scalar: Scalar) -> Factors {
+        match self.node(scalar) {
+            ScalarNode::Product(factors) => factors.clone(),
+            _ => vec![(scalar, 1)],
+        }
+    }
+
     /// The product of scalars.
     pub fn product(&mut self, factors: impl IntoIterator<Item = Scalar>) -> Scalar {
         let mut coefficient = integer(1);
-        let mut powers: Vec<(Scalar, u32)> = Vec::new();
+        let mut powers = Factors::new();
         for factor in factors {
             let (number, rest) = self.factor(factor);
             coefficient = product(&coefficient, &number);
@@ -293,7 +304,7 @@ impl Scalars {
         self.scale(product, coefficient)
     }
 
-    fn cancel_reciprocals(&self, powers: &mut Vec<(Scalar, u32)>) {
+    fn cancel_reciprocals(&self, powers: &mut Factors) {
         for position in 0..powers.len() {
             if let ScalarNode::Reciprocal(inner) = self.node(powers[position].0)
                 && let Ok(other) = powers.binary_search_by_key(inner, |(base, _)| *base)

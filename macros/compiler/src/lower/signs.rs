@@ -23,19 +23,13 @@ pub(super) fn moved(kernel: Kernel) -> Kernel {
             signs.places.push((is_negative, place));
             continue;
         }
-        let shape = shape(&code);
         let is_computed = is_negative && has_terms(&code) && begins_slowly(&code);
         let (place, is_new) = signs.locals.intern(code);
-        if is_new {
-            signs.shapes.push(shape);
-            signs.are_negative.push(is_computed);
-        }
+        signs.are_negative.extend(is_new.then_some(is_computed));
         signs.places.push((is_negative ^ signs.are_negative[place], place));
     }
-    let mut outputs = Vec::with_capacity(kernel.outputs.len());
-    for (shape, entries) in kernel.outputs {
-        outputs.push((shape, entries.into_iter().map(|entry| signs.whole(entry)).collect()));
-    }
+    let mut whole = |entries: Vec<Code>| entries.into_iter().map(|entry| signs.whole(entry)).collect();
+    let outputs = kernel.outputs.into_iter().map(|(shape, entries)| (shape, whole(entries))).collect();
     let locals = signs.locals.into_values().into_iter().zip(signs.are_negative);
     let locals = locals.map(|(code, is_negative)| if is_negative { negative(code) } else { code });
     Kernel { locals: locals.collect(), outputs }
@@ -83,8 +77,6 @@ struct Signs {
     locals: Interner<Code>,
     /// For each term of the kernel, whether its negative is among these, and where.
     places: Vec<(bool, usize)>,
-    /// The shapes of those that are matrices.
-    shapes: Vec<Option<Shape>>,
     /// Whether the negative of a term is computed: that of a sum whose first number takes the sign outside of loops.
     are_negative: Vec<bool>,
 }
@@ -221,19 +213,13 @@ impl Signs {
         }
     }
 
+    /// The shape of a matrix; `None` of a number.
     fn shape(&self, code: &Code) -> Option<Shape> {
         match code {
-            Code::Local(index) => self.shapes[*index],
-            code => shape(code),
+            Code::Local(index) => self.shape(self.locals.value(*index)),
+            Code::Whole(whole) => Some(whole.shape).filter(|shape| !shape.is_scalar()),
+            _ => None,
         }
-    }
-}
-
-/// The shape of a matrix; `None` of a number.
-fn shape(code: &Code) -> Option<Shape> {
-    match code {
-        Code::Whole(whole) => Some(whole.shape).filter(|shape| !shape.is_scalar()),
-        _ => None,
     }
 }
 
