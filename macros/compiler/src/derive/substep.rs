@@ -101,7 +101,8 @@ fn agree<'g>(model: &System<'g>, (before, after): (&[Covector<'g>], &[Covector<'
 /// A factor that moves no configuration has no side: its cost has to be invariant under conjugation.
 pub(super) fn check_unmoved<'g>(model: &System<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<(), Diagnostics> {
     let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
-    let has_sides = |k: &usize| !model.factors[*k].moves && !agree(model, (&before, &after), *k);
+    // terms are ordered by when they were made: the components of all factors are made here
+    let has_sides = |k: &usize| !agree(model, (&before, &after), *k) && !model.factors[*k].moves;
     let Some(k) = (0..model.factors.len()).find(has_sides) else { return Ok(()) };
     let factor = &model.factors[k];
     let (name, group) = (&factor.name, factor.group.name(model.graph));
