@@ -88,13 +88,15 @@ impl Diagnostic {
     }
 
     /// The text to type instead.
-    pub fn help(self, text: impl fmt::Display) -> Diagnostic {
-        self.line(format!("help: {text}"))
+    pub fn help(mut self, text: impl fmt::Display) -> Diagnostic {
+        self.lines.push(format!("help: {text}"));
+        self
     }
 
     /// The mathematical reason.
-    pub fn note(self, text: impl fmt::Display) -> Diagnostic {
-        self.line(format!("note: {text}"))
+    pub fn note(mut self, text: impl fmt::Display) -> Diagnostic {
+        self.lines.push(format!("note: {text}"));
+        self
     }
 
     /// Help, if there is any.
@@ -109,11 +111,6 @@ impl Diagnostic {
     pub fn later(place: impl Into<Location>, what: impl fmt::Display) -> Diagnostic {
         let error = Diagnostic::new(place, format!("{what} is not supported yet"));
         Diagnostic { comes_later: true, ..error }
-    }
-
-    fn line(mut self, text: String) -> Diagnostic {
-        self.lines.push(text);
-        self
     }
 
     fn to_compile_error(&self) -> TokenStream {
@@ -180,7 +177,7 @@ impl Diagnostics {
 
     /// Adds errors.
     pub fn extend(&self, errors: impl IntoIterator<Item = Diagnostic>) {
-        self.found.borrow_mut().extend(errors);
+        errors.into_iter().for_each(|error| self.push(error));
     }
 
     /// Whether there are none.

@@ -99,7 +99,7 @@ fn program<'g>(
         };
         match found.and_then(|steps| MethodProgram::new(&method.name, steps, &program)) {
             Ok(found) => program.methods.push(found),
-            Err(errors) => errors.into_vec().into_iter().for_each(|error| diagnostics.push(error)),
+            Err(errors) => diagnostics.extend(errors),
         }
     }
     diagnostics.propagate(Program::Mechanics(program))

@@ -40,26 +40,26 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<La
     (diagnostics.len() == before).then(|| settle(&sides.into_iter().flatten().collect::<Vec<_>>()))
 }
 
-/// On which sides the composition law holds.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Sides {
-    Left,
-    Right,
-    Both,
-    /// It moves nothing.
-    Neither,
+/// On which sides the composition law holds; on both for a factor that moves nothing.
+struct Sides {
+    left: bool,
+    right: bool,
+    moves: bool,
 }
 
 /// A factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none.
 fn settle(sides: &[Sides]) -> Vec<Law> {
-    let any = |wanted: Sides| sides.contains(&wanted);
-    let open = if any(Sides::Right) && !any(Sides::Left) { Side::Right } else { Side::Left };
-    let side = |sides: &Sides| match sides {
-        Sides::Left => Side::Left,
-        Sides::Right => Side::Right,
-        Sides::Both | Sides::Neither => open,
+    let is_right = sides.iter().any(|sides| !sides.left) && sides.iter().all(|sides| sides.right);
+    let open = if is_right { Side::Right } else { Side::Left };
+    let law = |&Sides { left, right, moves }: &Sides| {
+        let side = match (left, right) {
+            (true, false) => Side::Left,
+            (false, true) => Side::Right,
+            _ => open,
+        };
+        Law { side, moves }
     };
-    sides.iter().map(|sides| Law { side: side(sides), moves: *sides != Sides::Neither }).collect()
+    sides.iter().map(law).collect()
 }
 
 impl<'g> Action<'_, 'g> {
@@ -110,22 +110,18 @@ impl<'g> Action<'_, 'g> {
         let Factor { group, symbol, .. } = &self.factors[index];
         let points = self.points();
         if identity::equal(&self.at(&[(index, *symbol)], &points), &points) {
-            return Some(Sides::Neither);
+            return Some(Sides { left: true, right: true, moves: false });
         }
         let (first, second) = (self.element(index, 1), self.element(index, 2));
         let composed = self.at(&[(index, second)], &self.at(&[(index, first)], &points));
         let is_action_of = |product: Expr<'g>| identity::equal(&composed, &self.at(&[(index, product)], &points));
         let left = is_action_of(group.compose(second, first));
         let right = is_action_of(group.compose(first, second));
-        match (left, right) {
-            (true, true) => Some(Sides::Both),
-            (true, false) => Some(Sides::Left),
-            (false, true) => Some(Sides::Right),
-            (false, false) => {
-                let error = self.no_action(Some(index)).note(self.composition(index, &composed));
-                diagnostics.refuse(error.help(self.example(index)))
-            }
+        if !left && !right {
+            let error = self.no_action(Some(index)).note(self.composition(index, &composed));
+            return diagnostics.refuse(error.help(self.example(index)));
         }
+        Some(Sides { left, right, moves: true })
     }
 
     /// Any two factors commute, and all together act as one after the other.

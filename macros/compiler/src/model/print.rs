@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use clebsch_symbolic::Expr;
-
 use super::scalar::spell_scalar;
 use super::{
     Configuration, Factor, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
     Side, Steered, System,
 };
+use crate::parse::joined;
 
 impl fmt::Display for Model<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -130,24 +129,15 @@ impl fmt::Display for Configuration<'_> {
 
 impl fmt::Display for OfferedSymmetry<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let images: Vec<String> = self.configurations.iter().chain(&self.elements).map(Expr::to_string).collect();
-        write!(
-            f,
-            "symmetry {}: {}, {}: {}",
-            self.name,
-            self.group.name(self.symbol.graph()),
-            self.side,
-            images.join(", ")
-        )
+        let group = self.group.name(self.symbol.graph());
+        let images = joined(self.configurations.iter().chain(&self.elements));
+        write!(f, "symmetry {}: {group}, {}: {images}", self.name, self.side)
     }
 }
 
 impl fmt::Display for Side {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Side::Left => "left",
-            Side::Right => "right",
-        })
+        f.write_str(if *self == Side::Left { "left" } else { "right" })
     }
 }
 

@@ -6,17 +6,11 @@ use syn::ext::IdentExt;
 
 use super::Factor;
 use super::value::Value;
-use crate::diagnostic::{Diagnostics, error, report};
+use crate::diagnostic::{Diagnostics, report};
 use crate::parse::Pattern;
 
 /// GroupNames with a meaning of their own in all closures.
 const RESERVED: [&str; 4] = ["h", "t", "I", "self"];
-
-/// A name and its value; a value with an error, which was reported, is `None`.
-pub(super) struct Binding<'g> {
-    ident: Ident,
-    value: Option<Value<'g>>,
-}
 
 /// The names of one closure.
 #[derive(Default)]
@@ -29,22 +23,24 @@ pub(super) struct Scope<'g> {
     elements: Vec<(Expr<'g>, Group)>,
 }
 
-impl<'g> Binding<'g> {
-    /// The names of a pattern with the parts of a value; without values where there is an error.
-    pub fn of(pattern: &Pattern, value: Option<Value<'g>>, diagnostics: &Diagnostics) -> Vec<Binding<'g>> {
-        match (pattern, value) {
-            (Pattern::Name(ident), value) => vec![Binding { ident: ident.clone(), value }],
-            (Pattern::Tuple(patterns, _), Some(Value::Tuple(parts))) if patterns.len() == parts.len() => {
-                let parts = patterns.iter().zip(parts);
-                parts.flat_map(|(pattern, part)| Binding::of(pattern, Some(part), diagnostics)).collect()
+/// The names of a pattern with the parts of a value; a value with an error, which was reported, is `None`.
+pub(super) fn bindings<'g>(
+    pattern: &Pattern,
+    value: Option<Value<'g>>,
+    diagnostics: &Diagnostics,
+) -> Vec<(Ident, Option<Value<'g>>)> {
+    match (pattern, value) {
+        (Pattern::Name(ident), value) => vec![(ident.clone(), value)],
+        (Pattern::Tuple(patterns, _), Some(Value::Tuple(parts))) if patterns.len() == parts.len() => {
+            let parts = patterns.iter().zip(parts);
+            parts.flat_map(|(pattern, part)| bindings(pattern, Some(part), diagnostics)).collect()
+        }
+        (Pattern::Tuple(patterns, place), value) => {
+            if let Some(value) = value {
+                report!(diagnostics, *place, "`{}` does not fit {}", pattern.spell(), value.describe();
+                    help "write as many names as the tuple has parts, or one for all");
             }
-            (Pattern::Tuple(patterns, place), value) => {
-                if let Some(value) = value {
-                    report!(diagnostics, *place, "`{}` does not fit {}", pattern.spell(), value.describe();
-                        help "write as many names as the tuple has parts, or one for all");
-                }
-                patterns.iter().flat_map(|pattern| Binding::of(pattern, None, diagnostics)).collect()
-            }
+            patterns.iter().flat_map(|pattern| bindings(pattern, None, diagnostics)).collect()
         }
     }
 }
@@ -69,23 +65,23 @@ impl<'g> Scope<'g> {
 
     /// Introduces an argument.
     pub fn add_argument(&mut self, pattern: &Pattern, value: Option<Value<'g>>, diagnostics: &Diagnostics) {
-        let bindings = Binding::of(pattern, value, diagnostics);
-        self.names.extend(bindings.into_iter().map(|binding| (binding.ident.unraw().to_string(), binding.value)));
+        let bindings = bindings(pattern, value, diagnostics);
+        self.names.extend(bindings.into_iter().map(|(ident, value)| (ident.unraw().to_string(), value)));
         self.arguments = self.names.len();
     }
 
     /// Introduces a name of a `let` or of a closure inside; arguments stay what they are.
-    pub fn add(&mut self, binding: Binding<'g>, what: &str, diagnostics: &Diagnostics) {
-        let name = binding.ident.unraw().to_string();
-        if !check_reserved(&binding.ident, what, diagnostics) {
+    pub fn add(&mut self, ident: &Ident, value: Option<Value<'g>>, what: &str, diagnostics: &Diagnostics) {
+        if !check_reserved(ident, what, diagnostics) {
             return;
         }
+        let name = ident.unraw().to_string();
         if self.names[..self.arguments].iter().any(|(argument, _)| *argument == name) {
-            let error = error!(binding.ident.span(), "`{name}` is an argument and cannot be redefined");
-            diagnostics.push(error.help("choose another name").note("a `let` may replace a `let`, and nothing else"));
+            report!(diagnostics, ident, "`{name}` is an argument and cannot be redefined";
+                help "choose another name"; note "a `let` may replace a `let`, and nothing else");
             return;
         }
-        self.names.push((name, binding.value));
+        self.names.push((name, value));
     }
 
     /// Notes which names of the declaration are not arguments here, and what to do about each.

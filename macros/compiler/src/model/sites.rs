@@ -65,21 +65,19 @@ impl<'g> Sites<'g> {
     }
 
     /// The configuration at a place.
-    pub fn configuration_at(&self, graph: &'g Graph, place: usize) -> Value<'g> {
+    pub fn configuration_at(&self, place: usize) -> Value<'g> {
         let (structure, leaves) = &self.configuration;
         let text = self.places[place].text();
         let leaf = |(number, leaf): (usize, &Configuration<'g>)| {
             let name = format!("{}[{text}]{}", self.pattern, leaf.accessor);
-            let property = leaf.symbol.as_symbol().map_or(Property::General, |data| data.property);
-            let symbol = graph.symbol(&name, leaf.shape, Role::At(place, number), property);
-            Value::leaf(symbol, leaf.is_quaternion)
+            Value::leaf(like(leaf.symbol, &name, Role::At(place, number)), leaf.is_quaternion)
         };
         let leaves: Vec<Value<'g>> = leaves.iter().enumerate().map(leaf).collect();
         Value::nested(structure, &leaves)
     }
 
     /// What a field has at a place, with new symbols like those of the site itself where it is met first.
-    pub fn entry(&mut self, graph: &'g Graph, field: usize, place: usize, parameter: &Parameter<'g>) -> Vec<Expr<'g>> {
+    pub fn entry(&mut self, field: usize, place: usize, parameter: &Parameter<'g>) -> Vec<Expr<'g>> {
         if let Some(known) = self.entries.iter().find(|entry| (entry.field, entry.place) == (field, place)) {
             return known.leaves.clone();
         }
@@ -87,9 +85,8 @@ impl<'g> Sites<'g> {
         let first = self.next_leaf;
         self.next_leaf += parameter.leaves.len();
         let leaf = |(number, leaf): (usize, &super::Leaf<'g>)| {
-            let property = leaf.symbol.as_symbol().map_or(Property::General, |data| data.property);
             let name = format!("{}[{text}]{}", parameter.name, leaf.accessor);
-            graph.symbol(&name, leaf.shape, Role::Parameter(first + number), property)
+            like(leaf.symbol, &name, Role::Parameter(first + number))
         };
         let leaves: Vec<Expr<'g>> = parameter.leaves.iter().enumerate().map(leaf).collect();
         self.entries.push(Entry { field, place, leaves: leaves.clone() });
@@ -100,6 +97,12 @@ impl<'g> Sites<'g> {
     pub fn is_inside(&self, place: &SiteIndex<'g>) -> bool {
         place.wraps || bounds::is_inside(place.index, self.count, &self.ranges)
     }
+}
+
+/// A symbol of the shape and the property of another one.
+fn like<'g>(symbol: Expr<'g>, name: &str, role: Role) -> Expr<'g> {
+    let property = symbol.as_symbol().map_or(Property::General, |data| data.property);
+    symbol.graph().symbol(name, symbol.shape(), role, property)
 }
 
 /// The terms of a kinetic energy, which may be of one site each alone.

@@ -2,7 +2,7 @@
 
 use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
-use super::super::scope::Binding;
+use super::super::scope::bindings;
 use super::{Elaborator, Value, shortened};
 use crate::diagnostic::{error, refuse, report};
 use crate::parse::{Pattern, spell};
@@ -69,8 +69,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// Introduces the names of a pattern; those of a value with an error have an error too.
     pub(super) fn bind(&mut self, pattern: &Pattern, value: Option<Value<'g>>, what: &str) {
         let diagnostics = &self.context.diagnostics;
-        let bindings = Binding::of(pattern, value, diagnostics);
-        bindings.into_iter().for_each(|binding| self.scope.add(binding, what, diagnostics));
+        for (ident, value) in bindings(pattern, value, diagnostics) {
+            self.scope.add(&ident, value, what, diagnostics);
+        }
     }
 
     /// Both sides of the equation that a body ends with.

@@ -134,7 +134,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             refuse!(self, &index.index, "`{text}` is no index of a site";
                 help "write a whole number, an index, or sums of these, as in `q[(i + 1) % N]`");
         }
-        let (graph, fields) = (self.graph(), self.context.fields);
+        let fields = self.context.fields;
         let power = self.context.power.as_mut()?;
         let name = power.name.clone();
         if !power.is_inside(&place) {
@@ -148,12 +148,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (_, false) if is_own => Some(own),
             (Each::Configuration, true) => {
                 let number = power.place(place);
-                Some(power.configuration_at(graph, number))
+                Some(power.configuration_at(number))
             }
             (Each::Field(field), true) => {
                 let parameter = &fields.parameters[field];
                 let number = power.place(place);
-                let leaves = power.entry(graph, field, number, parameter).into_iter().map(Value::Matrix);
+                let leaves = power.entry(field, number, parameter).into_iter().map(Value::Matrix);
                 Some(Value::nested(&parameter.structure, &leaves.collect::<Vec<_>>()))
             }
             _ => refuse!(self, index, "the {} of a site depends on that site alone", self.key;
