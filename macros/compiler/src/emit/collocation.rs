@@ -3,7 +3,8 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::functions::{Body, HAMILTON_EQUATIONS};
+use super::function::Body;
+use super::functions::HAMILTON_EQUATIONS;
 use super::scope::{index, nested, size};
 use super::{Emitter, flag};
 

@@ -12,16 +12,16 @@ use crate::model::{Access, Promise, Side};
 
 impl Emitter<'_, '_> {
     pub(super) fn constants_type(&self) -> TokenStream {
-        let (name, private, scalar) = (&self.names.constants, &self.paths.private, &self.paths.scalar);
+        let (name, private, scalar) = (self.names.free("Constants"), &self.paths.private, &self.paths.scalar);
         let names = self.kernels.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = if self.has_uniform_inertia() {
             quote!(#scalar)
         } else if self.keeps_matrices {
-            let dimension = size(self.dimension());
+            let dimension = size(self.model.dimension());
             quote!(#private::InertiaInverse<#scalar, #dimension>)
         } else {
-            self.paths.matrix(self.dimension(), self.dimension())
+            self.paths.matrix(self.model.dimension(), self.model.dimension())
         };
         let inverse = (!self.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let kind = self.kind_of_free_rotation();
@@ -101,7 +101,7 @@ impl Emitter<'_, '_> {
             let matrix = self.paths.matrix(dimension, dimension);
             return quote!(<#matrix>::from_diagonal_element(inertia));
         }
-        if self.dimension() == dimension {
+        if self.model.dimension() == dimension {
             return quote!(inertia);
         }
         let start = size(solve.components[0]);
@@ -130,7 +130,7 @@ impl Emitter<'_, '_> {
                 quote!([#(inertia #row),*])
             });
             quote!(#private::matrix([#(#rows),*]))
-        } else if components.len() == self.dimension() {
+        } else if components.len() == self.model.dimension() {
             quote!(inertia)
         } else {
             let first = size(first);
@@ -142,7 +142,7 @@ impl Emitter<'_, '_> {
     /// The body of the function that makes the constants.
     pub(super) fn constants(&self, kernel: &Kernel) -> TokenStream {
         let (private, scope) = (&self.paths.private, self.scope_of_system());
-        let (constants, checks) = (&self.names.constants, self.checks());
+        let (constants, checks) = (self.names.free("Constants"), self.checks());
         let moves = self.formulas.inertia_moves();
         let inertia = (!moves).then(|| {
             let inertia = self.inertia(&scope);

@@ -4,7 +4,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::SystemEmitter;
-use super::functions::{Body, CONTROLLED, Function};
+use super::function::{Body, Function};
+use super::functions::CONTROLLED;
 use super::scope::size;
 use crate::derive::Id;
 use crate::lower::Kernel;
@@ -15,10 +16,11 @@ impl SystemEmitter<'_, '_> {
         let Some(control) = &self.model.control else { return TokenStream::new() };
         let (krate, scalar, name) = (&self.paths.krate, &self.paths.scalar, self.target.ident.to_string());
         let (configuration, constants) = (self.alias("Q"), self.alias("C"));
-        let (dimension, motions) = (self.place_dimension(), size(self.dimension()));
+        let (dimension, motions) = (self.place_dimension(), size(self.model.dimension()));
         let [d, u, c] = [dimension, self.inputs(), control.bounds.len()].map(size);
         let [costates, input, bounds, momentum] =
-            [dimension, self.inputs(), control.bounds.len(), self.dimension()].map(|rows| self.paths.matrix(rows, 1));
+            [dimension, self.inputs(), control.bounds.len(), self.model.dimension()]
+                .map(|rows| self.paths.matrix(rows, 1));
         let (point, steps, [start, costate]) = if self.is_steered() {
             (configuration, scalar.clone(), [quote!(q), quote!(mu)])
         } else {
@@ -73,7 +75,7 @@ impl SystemEmitter<'_, '_> {
 
     /// The dimension of what is steered: a configuration, or a state.
     fn place_dimension(&self) -> usize {
-        if self.is_steered() { self.dimension() } else { 2 * self.dimension() }
+        if self.is_steered() { self.model.dimension() } else { 2 * self.model.dimension() }
     }
 
     /// The only output of a kernel, a scalar.
@@ -173,7 +175,7 @@ impl SystemEmitter<'_, '_> {
     /// What the inputs of forces move.
     fn forced(&self, function: &Function) -> Body<'_> {
         let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
-        let [m, u, w] = [self.dimension(), self.inputs(), 2 * self.dimension() + self.inputs()].map(size);
+        let [m, u, w] = [self.model.dimension(), self.inputs(), 2 * self.model.dimension() + self.inputs()].map(size);
         let passed = || {
             let by_input = self.tuple(self.kernels.kernel(Id::ByInput), &[]);
             quote! {

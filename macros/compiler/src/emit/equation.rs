@@ -4,7 +4,8 @@ use clebsch_symbolic::Shape;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-use super::functions::{Body, EQUATION, Function, SOLVER};
+use super::function::{Body, Function};
+use super::functions::{EQUATION, SOLVER};
 use super::scope::{Scope, size};
 use super::{Emitter, docs};
 use crate::derive::{Id, Solution, Structure};
@@ -35,12 +36,14 @@ impl<'g> Emitter<'_, 'g> {
         self.names.equation(self.program.suffix(solve.substep), solve.number)
     }
 
-    /// What an equation holds, by the names that its methods call it.
-    pub(super) fn held_by_equation(&self, solve: &Solve) -> Vec<&'static str> {
-        let mut held = vec!["system", "c"];
-        held.extend((solve.moves && self.formulas.is_timed()).then_some("t"));
-        held.extend(solve.moves.then_some("q"));
-        held.extend(solve.reads_input.then_some("u"));
+    /// What an equation holds, by the names that its methods call it, with the types.
+    pub(super) fn held_by_equation(&self, solve: &Solve) -> Vec<(&'static str, TokenStream)> {
+        let (lifetime, scalar) = (self.names.lifetime(), &self.paths.scalar);
+        let reference = |name, ty: TokenStream| (name, quote!(&#lifetime #ty));
+        let mut held = vec![reference("system", self.target.of_type()), reference("c", self.alias("C"))];
+        held.extend((solve.moves && self.formulas.is_timed()).then(|| ("t", scalar.clone())));
+        held.extend(solve.moves.then(|| reference("q", self.alias("Q"))));
+        held.extend(solve.reads_input.then(|| reference("u", self.input_type())));
         held
     }
 }
@@ -57,7 +60,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     /// The struct, with the equation as its documentation, and its implementation.
     fn tokens(&self) -> TokenStream {
         let EquationType { emitter, solve, .. } = self;
-        let (private, scalar, lifetime) = (&emitter.paths.private, &emitter.paths.scalar, &emitter.names.lifetime);
+        let (private, scalar, lifetime) = (&emitter.paths.private, &emitter.paths.scalar, emitter.names.lifetime());
         let mut sizes = vec![size(solve.dimension)];
         // the number of momenta is that of unknowns unless it is said
         sizes.extend((solve.momenta.len() != solve.dimension).then(|| size(solve.momenta.len())));
@@ -68,23 +71,15 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         };
         let prepare = (solve.solution == Solution::Newton).then(|| self.prepare());
         let (functions, correct, solver) = (self.functions(EQUATION), self.correct(), self.functions(SOLVER));
-        let target = emitter.target.borrowed(&emitter.equation_name(solve), lifetime);
+        let target = emitter.target.borrowed(&emitter.equation_name(solve), &lifetime);
         let implementation = target.implementation(of, quote!(#prepare #functions #correct #solver));
         let (name, (parameters, _, predicates)) = (&target.ident, target.generics.split_for_impl());
         let formulas = emitter.rows.titled(solve.id(Id::Equation));
         let documentation = docs::formulas("The momentum equation in the chart.", formulas, None);
-        let (system, constants, input) = (emitter.target.of_type(), emitter.alias("C"), emitter.input_type());
-        let configuration = emitter.alias("Q");
-        let time = (solve.moves && emitter.formulas.is_timed()).then(|| quote!(#scalar,));
-        let configuration = solve.moves.then(|| quote!(&#lifetime #configuration,));
-        let input = solve.reads_input.then(|| quote!(&#lifetime #input,));
+        let held = emitter.held_by_equation(solve).into_iter().map(|(_, ty)| ty);
         quote! {
             #documentation
-            struct #name #parameters(
-                &#lifetime #system,
-                &#lifetime #constants,
-                #time #configuration #input
-            ) #predicates;
+            struct #name #parameters(#(#held,)*) #predicates;
             #implementation
         }
     }
@@ -92,10 +87,11 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     /// The body of a method, with names for what it reads of the equation.
     fn body(&self, code: TokenStream) -> TokenStream {
         let held = self.emitter.held_by_equation(self.solve);
-        let read: Vec<bool> = held.iter().map(|name| mentions(&code, name)).collect();
+        let read: Vec<bool> = held.iter().map(|(name, _)| mentions(&code, name)).collect();
         let Some(last) = read.iter().rposition(|&is_read| is_read) else { return code };
         let names = held.iter().zip(&read).take(last + 1);
-        let names = names.map(|(name, is_read)| if *is_read { format_ident!("{name}") } else { format_ident!("_") });
+        let names =
+            names.map(|((name, _), is_read)| if *is_read { format_ident!("{name}") } else { format_ident!("_") });
         let rest = (last + 1 < held.len()).then(|| quote!(..));
         quote!(let &Self(#(#names,)* #rest) = self; #code)
     }

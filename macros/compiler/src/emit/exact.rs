@@ -4,7 +4,8 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::functions::{Body, FREE_MOTION, SPLIT_KICKS};
+use super::function::Body;
+use super::functions::{FREE_MOTION, SPLIT_KICKS};
 use super::scope::size;
 
 impl Emitter<'_, '_> {

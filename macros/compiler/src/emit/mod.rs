@@ -9,6 +9,7 @@ mod dials;
 mod docs;
 mod equation;
 mod exact;
+mod function;
 mod functions;
 mod jacobian;
 mod matrices;
@@ -241,7 +242,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
     }
 
     fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
-        let [momenta, coordinates] = [(0..self.dimension()).collect(), (0..self.dimension()).collect()];
+        let [momenta, coordinates] = [(0..self.model.dimension()).collect(), (0..self.model.dimension()).collect()];
         let (reads, numbers) = (RefCell::default(), RefCell::default());
         Scope { emitter: self, system, constants, momenta, coordinates, reads, numbers }
     }

@@ -2,32 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, TokenStream, TokenTree};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident};
 use syn::Lifetime;
 
 use crate::model::{Opaque, Power, ScalarType, System};
 
-/// Names of generated types and of their lifetime.
-pub struct Names {
-    taken: BTreeSet<String>,
-    /// The struct of the constants.
-    pub constants: Ident,
-    /// The struct of the equation of the velocity of a momentum.
-    pub velocity: Ident,
-    /// The lifetime of its references.
-    pub lifetime: Lifetime,
-    /// The runtime's module for generated code.
-    pub runtime: Ident,
-    /// The scalar, where it is no parameter.
-    pub scalar: Ident,
-    /// The type of configurations q.
-    pub configuration: Ident,
-    /// The type of group elements F.
-    pub element: Ident,
-    /// The type of momenta μ.
-    pub momentum: Ident,
-}
+/// Names of generated types and of their lifetime: those of the user's item and what it reads are taken.
+pub struct Names(BTreeSet<String>);
 
 impl Names {
     /// The names for a model and its methods.
@@ -52,18 +34,21 @@ impl Names {
         if let ScalarType::Parameter(ident) = &model.item.scalar {
             taken.insert(ident.to_string());
         }
-        let lifetime = format!("'{}", free("clebsch", &taken));
-        Names {
-            constants: free("Constants", &taken),
-            velocity: free("Velocity", &taken),
-            lifetime: Lifetime::new(&lifetime, proc_macro2::Span::call_site()),
-            runtime: free("runtime", &taken),
-            scalar: free("T", &taken),
-            configuration: free("Q", &taken),
-            element: free("F", &taken),
-            momentum: free("Mu", &taken),
-            taken,
+        Names(taken)
+    }
+
+    /// The name, with underscores behind it as long as it is taken.
+    pub fn free(&self, name: &str) -> Ident {
+        let mut name = name.to_string();
+        while self.0.contains(&name) {
+            name.push('_');
         }
+        format_ident!("{name}")
+    }
+
+    /// The lifetime of references to the user's struct.
+    pub fn lifetime(&self) -> Lifetime {
+        Lifetime { apostrophe: Span::call_site(), ident: self.free("clebsch") }
     }
 
     /// The struct of an equation.
@@ -74,17 +59,8 @@ impl Names {
             "_whole" => "Whole",
             _ => "",
         };
-        free(&format!("Equation{suffix}{}", number + 1), &self.taken)
+        self.free(&format!("Equation{suffix}{}", number + 1))
     }
-}
-
-/// The name, with underscores behind it as long as it is taken.
-fn free(name: &str, taken: &BTreeSet<String>) -> Ident {
-    let mut name = name.to_string();
-    while taken.contains(&name) {
-        name.push('_');
-    }
-    format_ident!("{name}")
 }
 
 /// All identifiers of some tokens; those of lifetimes too, without their quote.

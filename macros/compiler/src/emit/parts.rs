@@ -4,7 +4,8 @@ use clebsch_symbolic::Group;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::functions::{Body, Function, PARTS, SUBSTEP};
+use super::function::{Body, Function};
+use super::functions::{PARTS, SUBSTEP};
 use super::scope::{nested, size};
 use super::{Emitter, flag};
 use crate::derive::Id;

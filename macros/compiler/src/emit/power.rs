@@ -6,7 +6,8 @@ use clebsch_symbolic::{Group, Property};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::functions::{Body, SITES};
+use super::function::Body;
+use super::functions::SITES;
 use super::scope::nested_type;
 use super::system::types_of_system;
 use super::types::Target;

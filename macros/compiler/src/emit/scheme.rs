@@ -4,7 +4,8 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::functions::{Body, GREAT_CIRCLES};
+use super::function::Body;
+use super::functions::GREAT_CIRCLES;
 use super::scope::size;
 use crate::derive::Id;
 

@@ -30,7 +30,7 @@ impl Emitter<'_, '_> {
     fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
         let (private, name) = (&self.paths.private, self.equation_name(solve));
         let held = self.held_by_equation(solve).into_iter();
-        let held = held.map(|held| format_ident!("{}", if held == "system" { "self" } else { held }));
+        let held = held.map(|(name, _)| format_ident!("{}", if name == "system" { "self" } else { name }));
         let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
         match solve.solution {
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
@@ -66,7 +66,7 @@ impl Emitter<'_, '_> {
             quote!(let #solution = #found #fails;)
         });
         let solutions = solutions.collect();
-        let components: Vec<usize> = (0..self.dimension()).collect();
+        let components: Vec<usize> = (0..self.model.dimension()).collect();
         let entries = components.iter().map(entry);
         let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
         let weights = (0..self.formulas.weighted().len()).map(weight_name);
@@ -110,7 +110,7 @@ impl Emitter<'_, '_> {
     /// Some components of the momentum, by reference; all of them are the momentum itself.
     fn part_of_momentum(&self, components: &[usize]) -> TokenStream {
         let private = &self.paths.private;
-        if components.iter().copied().eq(0..self.dimension()) {
+        if components.iter().copied().eq(0..self.model.dimension()) {
             return quote!(mu);
         }
         let components = components.iter().copied().map(size);

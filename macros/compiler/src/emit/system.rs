@@ -4,8 +4,8 @@ use clebsch_symbolic::{Group, Property, Role};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::functions::{Body, CONSERVES, Function, SYSTEM, VELOCITY};
-use super::names::Names;
+use super::function::{Body, Function};
+use super::functions::{CONSERVES, SYSTEM, VELOCITY};
 use super::scope::size;
 use super::{Emitter, SystemEmitter, flag};
 use crate::derive::{Id, Solution};
@@ -95,7 +95,7 @@ impl<'g> Emitter<'_, 'g> {
             // all components of a long momentum are that momentum
             let is_component = |(k, entry): (usize, &Code)| matches!(entry, Code::Read(input) if input.role == Role::Momentum(0) && input.row == k);
             let is_whole = self.keeps_matrices
-                && entries.len() == self.dimension()
+                && entries.len() == self.model.dimension()
                 && entries.iter().enumerate().all(is_component);
             let values = if is_whole { quote!((*mu).into()) } else { quote!([#(#spelled),*]) };
             (Vec::new(), None, quote!(#locals #private::Conserved::new([#(#names),*], #values)))
@@ -116,7 +116,7 @@ impl<'g> Emitter<'_, 'g> {
         solves().next()?;
         let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
         let inertia = scope.body(self.program.kernel(Id::Inertia));
-        let dimension = size(self.dimension());
+        let dimension = size(self.model.dimension());
         let momentum = |solve: &Solve| {
             let factor = &self.model.factors[self.factor_of(solve)];
             let (access, inertia, is_left) = (&factor.accessor, self.block_of_inertia(solve), self.is_left(solve));
@@ -131,7 +131,7 @@ impl<'g> Emitter<'_, 'g> {
             };
             if is_left { quote!((-#momentum)) } else { momentum }
         };
-        if self.dimension() == 3 || self.formulas.turns_whole() {
+        if self.model.dimension() == 3 || self.formulas.turns_whole() {
             let momentum = solves().map(momentum);
             return Some(quote!(let inertia = { #inertia }; let mu = &#(#momentum)*;));
         }
@@ -151,7 +151,7 @@ impl<'g> Emitter<'_, 'g> {
     fn kinetic_energy(&self) -> TokenStream {
         let (private, scope) = (&self.paths.private, self.scope_of_system());
         if self.program.find(Id::Lagrangian).is_some() {
-            let (velocity, system) = (&self.names.velocity, self.receiver());
+            let (velocity, system) = (self.names.free("Velocity"), self.receiver());
             return quote!(#private::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
         }
         let slope = self.program.find(Id::Gyroscopic).map(|kernel| scope.body(kernel));
@@ -176,8 +176,8 @@ impl<'g> Emitter<'_, 'g> {
             return TokenStream::new();
         }
         let (private, scalar, system) = (&self.paths.private, &self.paths.scalar, self.target.of_type());
-        let Names { lifetime, velocity: name, .. } = &self.names;
-        let (configuration, dimension) = (self.alias("Q"), size(self.dimension()));
+        let (lifetime, name) = (self.names.lifetime(), self.names.free("Velocity"));
+        let (configuration, dimension) = (self.alias("Q"), size(self.model.dimension()));
         let words = [("Algebra", quote!(#private::SVector<#scalar, #dimension>))];
         let linearize = self.functions(VELOCITY, (0, 0), &words, |_, kernel| {
             let (scope, kernel) = (self.scope(quote!(self.system), None), kernel?);
@@ -186,7 +186,7 @@ impl<'g> Emitter<'_, 'g> {
             let code = quote!(let (t, q) = (self.t, self.q); #locals (#value, #gradient, #hessian));
             Some(Body::new(kernel, code))
         });
-        let target = self.target.borrowed(name, lifetime);
+        let target = self.target.borrowed(&name, &lifetime);
         let implementation =
             target.implementation(Some(quote!(#private::VelocityEquation<#scalar, #dimension>)), linearize);
         let (parameters, _, predicates) = target.generics.split_for_impl();

@@ -40,7 +40,7 @@ impl Paths {
 
     /// The same in an expansion that gives the module and the scalar names of its own.
     pub fn named(&self, item: &Item, names: &Names) -> Paths {
-        let (runtime, scalar) = (&names.runtime, &names.scalar);
+        let (runtime, scalar) = (names.free("runtime"), names.free("T"));
         let scalar = if item.scalar.is_parameter() { self.scalar.clone() } else { quote!(#scalar) };
         Paths { krate: self.krate.clone(), private: quote!(#runtime), scalar }
     }
@@ -111,26 +111,14 @@ impl Target {
 }
 
 impl SystemEmitter<'_, '_> {
-    /// The number of components of a momentum.
-    pub(super) fn dimension(&self) -> usize {
-        self.model.dimension()
-    }
-
     /// Short names for what signatures are made of.
     pub(super) fn aliases(&self) -> TokenStream {
-        let Names { runtime, scalar, configuration, element, momentum, .. } = &self.names;
-        let (module, spelled, parameter) = (&self.spelled.private, &self.spelled.scalar, self.scalar_parameter());
-        let scalar = parameter.is_none().then(|| quote!(type #scalar = #spelled;));
-        // momenta that are stepped alone have no configuration
-        let of_configuration = parameter.as_ref().filter(|_| !self.model.configurations.is_empty());
-        let [q, f, mu] = self.types(&self.paths);
-        quote! {
-            use #module as #runtime;
-            #scalar
-            type #configuration #of_configuration = #q;
-            type #element #parameter = #f;
-            type #momentum #parameter = #mu;
-        }
+        let (Paths { private, scalar, .. }, module, spelled) =
+            (&self.paths, &self.spelled.private, &self.spelled.scalar);
+        let scalar = (!self.model.item.scalar.is_parameter()).then(|| quote!(type #scalar = #spelled;));
+        let names = ["Q", "F", "Mu"].map(|name| self.alias(name));
+        let types = self.types(&self.paths);
+        quote!(use #module as #private; #scalar #(type #names = #types;)*)
     }
 
     /// The types of q, F and μ.
@@ -143,7 +131,7 @@ impl SystemEmitter<'_, '_> {
             let group = self.model.factors[factor].group;
             paths.leaf(group.element_shape(), group == Group::UnitQuaternions)
         });
-        [configuration, element, paths.matrix(self.dimension(), 1)]
+        [configuration, element, paths.matrix(self.model.dimension(), 1)]
     }
 
     /// The scalar as the argument of a type, where it is a parameter.
@@ -154,14 +142,10 @@ impl SystemEmitter<'_, '_> {
 
     /// A type by its name in signatures: `Q`, `F`, `Mu`, or `C` for the constants.
     pub(super) fn alias(&self, name: &str) -> TokenStream {
-        let names = &self.names;
-        let (name, parameter) = match name {
-            "Q" if self.model.configurations.is_empty() => (&names.configuration, None),
-            "Q" => (&names.configuration, self.scalar_parameter()),
-            "F" => (&names.element, self.scalar_parameter()),
-            "Mu" => (&names.momentum, self.scalar_parameter()),
-            _ => (&names.constants, self.scalar_parameter()),
-        };
+        // momenta that are stepped alone have no configuration
+        let has_scalar = name != "Q" || !self.model.configurations.is_empty();
+        let (name, parameter) = (if name == "C" { "Constants" } else { name }, self.scalar_parameter());
+        let (name, parameter) = (self.names.free(name), parameter.filter(|_| has_scalar));
         quote!(#name #parameter)
     }
 
@@ -171,7 +155,7 @@ impl SystemEmitter<'_, '_> {
 
     /// The type of a vector, by its name where it has one.
     pub(super) fn vector_type(&self, rows: usize) -> TokenStream {
-        if rows == self.dimension() { self.alias("Mu") } else { self.paths.matrix(rows, 1) }
+        if rows == self.model.dimension() { self.alias("Mu") } else { self.paths.matrix(rows, 1) }
     }
 }
 

@@ -5,7 +5,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::functions::{Body, EDGE, Function, VARIATIONAL};
+use super::function::{Body, Function};
+use super::functions::{EDGE, VARIATIONAL};
 use super::scope::{nested, size};
 use crate::derive::Id;
 use crate::lower::Kernel;
@@ -16,10 +17,10 @@ impl Emitter<'_, '_> {
         if !self.model.has_variations() {
             return TokenStream::new();
         }
-        let (krate, dimension) = (&self.paths.krate, size(self.dimension()));
+        let (krate, dimension) = (&self.paths.krate, size(self.model.dimension()));
         let motions = self.functions(VARIATIONAL, (0, 0), &[], |function, kernel| self.motion_of(function, kernel));
         let variational = self.target.derived(Some(quote!(#krate::Variational<#dimension>)), motions);
-        let slopes = self.paths.matrix_of_any_shape(self.dimension(), self.formulas.quantities.len());
+        let slopes = self.paths.matrix_of_any_shape(self.model.dimension(), self.formulas.quantities.len());
         let slopes = if self.is_sensitive() { quote!((#slopes, #slopes)) } else { quote!(()) };
         let varied = self.implementation("Varied", std::slice::from_ref(&dimension), quote!(type Slopes = #slopes;));
         let edges = self.edges();
@@ -29,7 +30,7 @@ impl Emitter<'_, '_> {
     /// The implementations of `VariedSubstep` for each edge of a step, where derivatives are asked for.
     pub(super) fn edges(&self) -> TokenStream {
         let edges = if self.model.has_variations() { self.formulas.stepped } else { 0 };
-        let (private, dimension) = (&self.paths.private, size(self.dimension()));
+        let (private, dimension) = (&self.paths.private, size(self.model.dimension()));
         let edges = (0..edges).map(|index| {
             let slopes = match self.program.find(Id::EdgeSlopes(index)) {
                 Some(_) => quote!(<Self as #private::Varied<#dimension>>::Slopes),
@@ -122,7 +123,7 @@ impl Emitter<'_, '_> {
         }
         let (krate, private) = (&self.paths.krate, &self.paths.private);
         let quantities = &self.formulas.quantities;
-        let [dimension, count] = [self.dimension(), quantities.len()].map(size);
+        let [dimension, count] = [self.model.dimension(), quantities.len()].map(size);
         let names = quantities.iter().map(|quantity| quantity.name.as_str());
         // a composed step asks which columns are those of its size and of its time
         let column = |constant: &str, name: &str| {
