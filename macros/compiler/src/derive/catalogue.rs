@@ -1,185 +1,7 @@
-//! The table of formulas: each has an id, by which prints, documentation and the later stages find it.
+//! The catalogue of formulas and kernels: each has an id, by which prints, documentation and the later stages find it.
 
 use super::Reference::{self, ClebschOptimalControl, DiscreteMechanics, LieGroupMethods, MechanicsAndSymmetry};
 use Heat::{Cold, Hot};
-
-/// Which formula; numbers are those of the substep, and of the equation in it, or of the term.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub enum Id {
-    /// Φ_F(q).
-    Action,
-    /// ξ_Q(q).
-    Generator,
-    /// J(q, p).
-    MomentumMap,
-    /// Ad*_F μ.
-    Coadjoint,
-    /// (TΦ_F)^{-*} p.
-    CotangentLift,
-    /// The representing matrices of μ.
-    MomentumMatrix,
-    /// The components of representing matrices.
-    MomentumComponents,
-    /// What vanishes where q lies on the groups that it is promised to lie on.
-    Membership,
-    /// τ(x) − I, and τ(−x) − I behind it.
-    Retraction,
-    /// The increment of a motion and of another after it.
-    Composition,
-    /// GᵀG ξ of G: ξ ↦ ξ_Q(q).
-    OrbitMetric,
-    /// Σξ.
-    Inertia,
-    /// T(ξ).
-    KineticEnergy,
-    /// ℓ(ξ), which is not quadratic.
-    Lagrangian,
-    /// ∂ℓ/∂ξ.
-    LagrangianGradient,
-    /// ∂²ℓ/∂ξ².
-    LagrangianHessian,
-    /// A of a kinetic energy ½ ξ·Σξ + A·ξ.
-    Gyroscopic,
-    /// V(q).
-    PotentialEnergy,
-    /// H(q, μ).
-    Hamiltonian,
-    /// H(q, μ) − V(q).
-    KineticEnergyOfMomentum,
-    /// The force in 𝔤*.
-    Force,
-    /// K(h, F).
-    DiscreteLagrangian,
-    /// U₀(h, q).
-    StartPotential,
-    /// U₁(h, q⁺).
-    EndPotential,
-    /// F⁻ℓd(q, F).
-    Legendre,
-    /// F⁺ℓd(q, F).
-    LegendreNext,
-    /// A term of the potential of a power.
-    Term(usize),
-    /// Its gradient at a place that it reads.
-    TermGradient(usize, usize),
-    /// What moves a configuration that is steered.
-    Controls,
-    /// The price of a step.
-    Price,
-    /// The bounds of inputs.
-    Bounds,
-    /// The price of the end.
-    PriceOfEnd,
-    /// A momentum that no step changes.
-    Conserved(usize),
-    /// All of these.
-    ConservedMomenta,
-    /// M − N, the kick before the solve.
-    StartKick(usize),
-    /// What of that kick the cost gives at F = I.
-    RestKick(usize),
-    /// The same kick of the covector.
-    StartGradient(usize),
-    /// The impulse of the force before the solve.
-    StartForce(usize),
-    /// What of it depends on the velocity.
-    MovingForce(usize),
-    /// The impulse of the force after the move.
-    EndForce(usize),
-    /// ρ(x) = 0.
-    Equation(usize, usize),
-    /// Dρ(x)·δ.
-    Jacobian(usize, usize),
-    /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩.
-    JacobianFactor(usize, usize),
-    /// x(μ).
-    Solution(usize, usize),
-    /// x(μ) to first order in h, component by component: what iterations start from.
-    Predictor(usize, usize),
-    /// M⁺.
-    MomentumUpdate(usize),
-    /// The same with F = I + D.
-    MomentumAfter(usize),
-    /// N⁺ − M⁺, the kick after the move.
-    EndKick(usize),
-    /// The same kick of the covector.
-    EndGradient(usize),
-    /// The kick of the covector by a cost that couples.
-    CoupledGradient(usize),
-    /// By how much the momentum of a step of first order is ahead.
-    SynchronizedMomentum,
-    /// The kick of a splitting, with its weights.
-    SplittingKick,
-    /// The same kick of the covector.
-    SplittingGradient,
-    /// F − I in the chart.
-    Increment,
-    /// q⁺ with F = I + D.
-    Advance,
-    /// q⁺ by the chart coordinates alone.
-    Displacement,
-    /// The cotangent lift with F = I + D.
-    Lift,
-    /// What a step of order 16 collocates.
-    HamiltonEquations,
-    /// What its sweeps start from.
-    Guess,
-    // what follows has kernels, and is no row of the table
-    /// What a stepper computes once.
-    Constants,
-    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy.
-    EnergyCoefficients,
-    /// The matrix of ξ ↦ ξ_Q(q), or the projection of μ to the momenta of motions, where motions that fix q are not free.
-    Isotropy,
-    /// J(q, p) as a step computes it that maps covectors.
-    MomentumOfStep,
-    /// A covector p at q with J(q, p) = μ.
-    Covector,
-    /// The gradient of a term at all places that it reads.
-    TermGradients(usize),
-    /// What the gradient of a site has at every site.
-    SiteGradient,
-    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ: matrices, or what they make of one motion.
-    Edge(usize),
-    /// ℓd, F⁻ℓd, F⁺ℓd.
-    EdgeMomenta(usize),
-    /// F⁺ℓd; Ad, ∂F⁻ℓd and ∂F⁺ℓd for motions that leave F as it is; ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
-    Carried(usize),
-    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
-    EdgeSlopes(usize),
-    /// J(q, q⁺ − q).
-    Approach,
-    /// A, B, ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives of ℓ + λ·η′.
-    StepExpanded,
-    /// ∂F⁻ℓd/∂u and ∂F⁺ℓd/∂u.
-    ByInput,
-    /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions that leave F as it is, those of q⁺ alone, and the inputs.
-    Bend,
-    /// ± ½ μ·[E_i, E_j].
-    Bracket,
-    /// Where forces take the inputs: ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives.
-    PriceExpanded,
-    /// What price and step gain with h and with t.
-    PriceOfTime,
-    /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
-    BoundsExpanded,
-    /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
-    PriceOfEndExpanded,
-    /// |a|² of a closed form, which has to be below one.
-    SineSquared(usize, usize),
-    /// x(μ) by the rotation in a plane.
-    ClosedForm(usize, usize),
-    /// x(μ), coordinate after coordinate.
-    Explicit(usize, usize),
-    /// −ρ(0) and Dρ of a linear equation.
-    System(usize, usize),
-    /// What an iteration computes once.
-    Preparation(usize, usize),
-    /// ρ(x) alone, where x ← x − s·h·Σ⁻¹ρ(x) is tried before Newton's method.
-    Residual(usize, usize),
-    /// ρ(x) and Dρ(x).
-    Linearization(usize, usize),
-}
 
 /// How often a formula is computed, which decides how its code is written.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -190,7 +12,7 @@ pub enum Heat {
     Cold,
 }
 
-/// What the table says of a formula.
+/// What the catalogue says of a formula.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Entry {
     /// What it is, in words.
@@ -199,60 +21,79 @@ pub struct Entry {
     pub source: Option<Reference>,
     /// How often it is computed.
     pub heat: Heat,
-    /// Whether prints and `DERIVATION` list it; the rest is in the documentation of methods alone.
+    /// Whether prints and `DERIVATION` list it; other formulas are in the documentation of methods alone.
     pub is_listed: bool,
 }
 
-impl Id {
-    /// The numbers of its substep and of its equation there, as far as it has them.
-    fn numbers(&mut self) -> (Option<&mut usize>, Option<&mut usize>) {
-        match self {
-            Id::StartKick(substep)
-            | Id::RestKick(substep)
-            | Id::StartForce(substep)
-            | Id::MovingForce(substep)
-            | Id::EndForce(substep)
-            | Id::StartGradient(substep)
-            | Id::MomentumUpdate(substep)
-            | Id::MomentumAfter(substep)
-            | Id::EndKick(substep)
-            | Id::EndGradient(substep)
-            | Id::CoupledGradient(substep)
-            | Id::Edge(substep)
-            | Id::EdgeMomenta(substep)
-            | Id::Carried(substep)
-            | Id::EdgeSlopes(substep) => (Some(substep), None),
-            Id::Equation(substep, number)
-            | Id::Jacobian(substep, number)
-            | Id::JacobianFactor(substep, number)
-            | Id::Solution(substep, number)
-            | Id::Predictor(substep, number)
-            | Id::SineSquared(substep, number)
-            | Id::ClosedForm(substep, number)
-            | Id::Explicit(substep, number)
-            | Id::System(substep, number)
-            | Id::Preparation(substep, number)
-            | Id::Residual(substep, number)
-            | Id::Linearization(substep, number) => (Some(substep), Some(number)),
-            _ => (None, None),
-        }
-    }
+const fn listed(title: &'static str, heat: Heat) -> Entry {
+    Entry { title, source: None, heat, is_listed: true }
+}
 
+const fn unlisted(title: &'static str, heat: Heat) -> Entry {
+    Entry { is_listed: false, ..listed(title, heat) }
+}
+
+impl Entry {
+    const fn by(self, source: Reference) -> Entry {
+        Entry { source: Some(source), ..self }
+    }
+}
+
+/// The numbers of an id, by what they stand for.
+#[derive(Default)]
+#[expect(dead_code, reason = "substeps and equations alone are asked for")]
+struct Numbers<'i> {
+    substep: Option<&'i mut usize>,
+    equation: Option<&'i mut usize>,
+    term: Option<&'i mut usize>,
+    place: Option<&'i mut usize>,
+    momentum: Option<&'i mut usize>,
+}
+
+/// One row for each id: its name with the numbers that it holds, and what is said of it.
+macro_rules! catalogue {
+    ($($(#[$doc:meta])* $name:ident $(($($number:ident: $type:ty),*))? = $entry:expr;)*) => {
+        /// Which formula or kernel.
+        #[derive(Copy, Clone, PartialEq, Eq, Debug)]
+        pub enum Id {
+            $($(#[$doc])* $name $(($($type),*))?,)*
+        }
+
+        impl Id {
+            /// What the catalogue says of it.
+            pub fn entry(self) -> Entry {
+                match self {
+                    $(Id::$name { .. } => $entry,)*
+                }
+            }
+
+            fn numbers(&mut self) -> Numbers<'_> {
+                match self {
+                    $(Id::$name $(($($number),*))? => {
+                        Numbers { $($($number: Some($number),)*)? ..Numbers::default() }
+                    })*
+                }
+            }
+        }
+    };
+}
+
+impl Id {
     /// The substep whose formula it is; `None` for those of the whole system.
     pub fn substep(mut self) -> Option<usize> {
-        self.numbers().0.copied()
+        self.numbers().substep.copied()
     }
 
     /// The equation whose formula it is, by its number in its substep.
     pub fn equation(mut self) -> Option<usize> {
-        self.numbers().1.copied()
+        self.numbers().equation.copied()
     }
 
     /// The same of an equation of a substep.
-    pub fn at(mut self, (index, equation): (usize, usize)) -> Id {
-        let (substep, number) = self.numbers();
+    pub fn at(mut self, (index, number): (usize, usize)) -> Id {
+        let Numbers { substep, equation, .. } = self.numbers();
         substep.into_iter().for_each(|substep| *substep = index);
-        number.into_iter().for_each(|number| *number = equation);
+        equation.into_iter().for_each(|equation| *equation = number);
         self
     }
 
@@ -260,64 +101,180 @@ impl Id {
     pub fn is_like(self, other: Id) -> bool {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
+}
 
-    /// What the table says.
-    pub fn entry(self) -> Entry {
-        let listed = |title, source, heat| Entry { title, source, heat, is_listed: true };
-        let unlisted = |title, source, heat| Entry { title, source, heat, is_listed: false };
-        match self {
-            Id::Action => listed("action", Some(ClebschOptimalControl), Cold),
-            Id::Generator => listed("generator", Some(MechanicsAndSymmetry), Hot),
-            Id::MomentumMap => listed("momentum map", Some(MechanicsAndSymmetry), Cold),
-            Id::Coadjoint => listed("coadjoint action", Some(MechanicsAndSymmetry), Cold),
-            Id::CotangentLift => listed("cotangent lift", Some(ClebschOptimalControl), Cold),
-            Id::MomentumMatrix | Id::MomentumComponents => unlisted("momentum matrix", None, Cold),
-            Id::Membership => unlisted("group", None, Cold),
-            Id::Retraction => unlisted("retraction", Some(LieGroupMethods), Hot),
-            Id::Composition => unlisted("composition", None, Hot),
-            Id::OrbitMetric => unlisted("metric of the orbit", None, Cold),
-            Id::Inertia => listed("inertia", Some(MechanicsAndSymmetry), Hot),
-            Id::KineticEnergy => listed("kinetic energy", None, Cold),
-            Id::Lagrangian => listed("Lagrangian", None, Cold),
-            Id::LagrangianGradient => unlisted("momentum", None, Cold),
-            Id::LagrangianHessian => unlisted("Hessian of the Lagrangian", None, Cold),
-            Id::Gyroscopic => unlisted("slope of the kinetic energy", None, Hot),
-            Id::PotentialEnergy => listed("potential energy", None, Hot),
-            Id::Hamiltonian => listed("Hamiltonian", Some(MechanicsAndSymmetry), Cold),
-            Id::KineticEnergyOfMomentum => unlisted("kinetic energy", Some(MechanicsAndSymmetry), Cold),
-            Id::Force => listed("force", None, Hot),
-            Id::DiscreteLagrangian => listed("discrete Lagrangian", None, Cold),
-            Id::StartPotential | Id::EndPotential => listed("", None, Cold),
-            Id::Legendre => listed("Legendre transform", Some(DiscreteMechanics), Cold),
-            Id::LegendreNext => listed("next Legendre transform", Some(DiscreteMechanics), Cold),
-            Id::Term(_) => listed("term", None, Hot),
-            Id::TermGradient(..) => listed("gradient of a term", None, Hot),
-            Id::Controls => listed("controls", None, Hot),
-            Id::Price => listed("price", None, Hot),
-            Id::Bounds => listed("bounds", None, Hot),
-            Id::PriceOfEnd => listed("price of the end", None, Hot),
-            Id::ConservedMomenta => unlisted("conserved", None, Cold),
-            Id::Conserved(_) => listed("conserved", None, Cold),
-            Id::StartKick(_) | Id::EndKick(_) | Id::SplittingKick => listed("kick", Some(ClebschOptimalControl), Hot),
-            Id::RestKick(_) => unlisted("kick", Some(ClebschOptimalControl), Hot),
-            Id::StartGradient(_) | Id::EndGradient(_) | Id::CoupledGradient(_) | Id::SplittingGradient => {
-                unlisted("kick of the covector", Some(ClebschOptimalControl), Hot)
-            }
-            Id::StartForce(_) | Id::MovingForce(_) | Id::EndForce(_) => unlisted("impulse of the force", None, Hot),
-            Id::Equation(..) => listed("equation", Some(LieGroupMethods), Hot),
-            Id::Jacobian(..) => listed("Jacobian", Some(LieGroupMethods), Hot),
-            Id::JacobianFactor(..) => unlisted("factor of the Jacobian", None, Hot),
-            Id::Solution(..) => listed("solution", None, Hot),
-            Id::Predictor(..) | Id::Guess => unlisted("predictor", None, Hot),
-            Id::MomentumUpdate(_) => listed("momentum update", Some(ClebschOptimalControl), Hot),
-            Id::MomentumAfter(_) => unlisted("momentum update", Some(ClebschOptimalControl), Hot),
-            Id::Increment => unlisted("increment", Some(LieGroupMethods), Hot),
-            Id::Advance | Id::Displacement => unlisted("action", Some(ClebschOptimalControl), Hot),
-            Id::Lift => unlisted("cotangent lift", Some(ClebschOptimalControl), Cold),
-            Id::SynchronizedMomentum => listed("synchronized momentum", None, Hot),
-            Id::HamiltonEquations => listed("Hamilton's equations", Some(MechanicsAndSymmetry), Hot),
-            // no formulas
-            _ => unlisted("", None, Hot),
-        }
-    }
+catalogue! {
+    /// Φ_F(q).
+    Action = listed("action", Cold).by(ClebschOptimalControl);
+    /// ξ_Q(q).
+    Generator = listed("generator", Hot).by(MechanicsAndSymmetry);
+    /// J(q, p).
+    MomentumMap = listed("momentum map", Cold).by(MechanicsAndSymmetry);
+    /// Ad*_F μ.
+    Coadjoint = listed("coadjoint action", Cold).by(MechanicsAndSymmetry);
+    /// (TΦ_F)^{-*} p.
+    CotangentLift = listed("cotangent lift", Cold).by(ClebschOptimalControl);
+    /// The representing matrices of μ.
+    MomentumMatrix = unlisted("momentum matrix", Cold);
+    /// The components of representing matrices.
+    MomentumComponents = unlisted("momentum matrix", Cold);
+    /// What vanishes where q lies on the groups that it is promised to lie on.
+    Membership = unlisted("group", Cold);
+    /// τ(x) − I, and τ(−x) − I behind it.
+    Retraction = unlisted("retraction", Hot).by(LieGroupMethods);
+    /// The increment of a motion and of another after it.
+    Composition = unlisted("composition", Hot);
+    /// GᵀG ξ of G: ξ ↦ ξ_Q(q).
+    OrbitMetric = unlisted("metric of the orbit", Cold);
+    /// Σξ.
+    Inertia = listed("inertia", Hot).by(MechanicsAndSymmetry);
+    /// T(ξ).
+    KineticEnergy = listed("kinetic energy", Cold);
+    /// ℓ(ξ), which is not quadratic.
+    Lagrangian = listed("Lagrangian", Cold);
+    /// ∂ℓ/∂ξ.
+    LagrangianGradient = unlisted("momentum", Cold);
+    /// ∂²ℓ/∂ξ².
+    LagrangianHessian = unlisted("Hessian of the Lagrangian", Cold);
+    /// A of a kinetic energy ½ ξ·Σξ + A·ξ.
+    Gyroscopic = unlisted("slope of the kinetic energy", Hot);
+    /// V(q).
+    PotentialEnergy = listed("potential energy", Hot);
+    /// H(q, μ).
+    Hamiltonian = listed("Hamiltonian", Cold).by(MechanicsAndSymmetry);
+    /// H(q, μ) − V(q).
+    KineticEnergyOfMomentum = unlisted("kinetic energy", Cold).by(MechanicsAndSymmetry);
+    /// The force in 𝔤*.
+    Force = listed("force", Hot);
+    /// K(h, F).
+    DiscreteLagrangian = listed("discrete Lagrangian", Cold);
+    /// U₀(h, q).
+    StartPotential = listed("", Cold);
+    /// U₁(h, q⁺).
+    EndPotential = listed("", Cold);
+    /// F⁻ℓd(q, F).
+    Legendre = listed("Legendre transform", Cold).by(DiscreteMechanics);
+    /// F⁺ℓd(q, F).
+    LegendreNext = listed("next Legendre transform", Cold).by(DiscreteMechanics);
+    /// A term of the potential of a power.
+    Term(term: usize) = listed("term", Hot);
+    /// Its gradient at a place that it reads.
+    TermGradient(term: usize, place: usize) = listed("gradient of a term", Hot);
+    /// What moves a configuration that is steered.
+    Controls = listed("controls", Hot);
+    /// The price of a step.
+    Price = listed("price", Hot);
+    /// The bounds of inputs.
+    Bounds = listed("bounds", Hot);
+    /// The price of the end.
+    PriceOfEnd = listed("price of the end", Hot);
+    /// A momentum that no step changes.
+    Conserved(momentum: usize) = listed("conserved", Cold);
+    /// All of these.
+    ConservedMomenta = unlisted("conserved", Cold);
+    /// M − N, the kick before the solve.
+    StartKick(substep: usize) = listed("kick", Hot).by(ClebschOptimalControl);
+    /// What of that kick the cost gives at F = I.
+    RestKick(substep: usize) = unlisted("kick", Hot).by(ClebschOptimalControl);
+    /// The same kick of the covector.
+    StartGradient(substep: usize) = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
+    /// The impulse of the force before the solve.
+    StartForce(substep: usize) = unlisted("impulse of the force", Hot);
+    /// What of it depends on the velocity.
+    MovingForce(substep: usize) = unlisted("impulse of the force", Hot);
+    /// The impulse of the force after the move.
+    EndForce(substep: usize) = unlisted("impulse of the force", Hot);
+    /// ρ(x) = 0.
+    Equation(substep: usize, equation: usize) = listed("equation", Hot).by(LieGroupMethods);
+    /// Dρ(x)·δ.
+    Jacobian(substep: usize, equation: usize) = listed("Jacobian", Hot).by(LieGroupMethods);
+    /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩.
+    JacobianFactor(substep: usize, equation: usize) = unlisted("factor of the Jacobian", Hot);
+    /// x(μ).
+    Solution(substep: usize, equation: usize) = listed("solution", Hot);
+    /// x(μ) to first order in h, component by component: what iterations start from.
+    Predictor(substep: usize, equation: usize) = unlisted("predictor", Hot);
+    /// M⁺.
+    MomentumUpdate(substep: usize) = listed("momentum update", Hot).by(ClebschOptimalControl);
+    /// The same with F = I + D.
+    MomentumAfter(substep: usize) = unlisted("momentum update", Hot).by(ClebschOptimalControl);
+    /// N⁺ − M⁺, the kick after the move.
+    EndKick(substep: usize) = listed("kick", Hot).by(ClebschOptimalControl);
+    /// The same kick of the covector.
+    EndGradient(substep: usize) = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
+    /// The kick of the covector by a cost that couples.
+    CoupledGradient(substep: usize) = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
+    /// By how much the momentum of a step of first order is ahead.
+    SynchronizedMomentum = listed("synchronized momentum", Hot);
+    /// The kick of a splitting, with its weights.
+    SplittingKick = listed("kick", Hot).by(ClebschOptimalControl);
+    /// The same kick of the covector.
+    SplittingGradient = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
+    /// F − I in the chart.
+    Increment = unlisted("increment", Hot).by(LieGroupMethods);
+    /// q⁺ with F = I + D.
+    Advance = unlisted("action", Hot).by(ClebschOptimalControl);
+    /// q⁺ by the chart coordinates alone.
+    Displacement = unlisted("action", Hot).by(ClebschOptimalControl);
+    /// The cotangent lift with F = I + D.
+    Lift = unlisted("cotangent lift", Cold).by(ClebschOptimalControl);
+    /// What a step of order 16 collocates.
+    HamiltonEquations = listed("Hamilton's equations", Hot).by(MechanicsAndSymmetry);
+    /// What its sweeps start from.
+    Guess = unlisted("predictor", Hot);
+    // what follows has kernels, and is no row of a table
+    /// What a stepper computes once.
+    Constants = unlisted("", Hot);
+    /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy.
+    EnergyCoefficients = unlisted("", Hot);
+    /// The matrix of ξ ↦ ξ_Q(q), or the projection of μ to the momenta of motions, where motions that fix q are not free.
+    Isotropy = unlisted("", Hot);
+    /// J(q, p) as a step computes it that maps covectors.
+    MomentumOfStep = unlisted("", Hot);
+    /// A covector p at q with J(q, p) = μ.
+    Covector = unlisted("", Hot);
+    /// The gradient of a term at all places that it reads.
+    TermGradients(term: usize) = unlisted("", Hot);
+    /// What the gradient of a site has at every site.
+    SiteGradient = unlisted("", Hot);
+    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ: matrices, or what they make of one motion.
+    Edge(substep: usize) = unlisted("", Hot);
+    /// ℓd, F⁻ℓd, F⁺ℓd.
+    EdgeMomenta(substep: usize) = unlisted("", Hot);
+    /// F⁺ℓd; Ad, ∂F⁻ℓd and ∂F⁺ℓd for motions that leave F as it is; ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′.
+    Carried(substep: usize) = unlisted("", Hot);
+    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
+    EdgeSlopes(substep: usize) = unlisted("", Hot);
+    /// J(q, q⁺ − q).
+    Approach = unlisted("", Hot);
+    /// A, B, ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives of ℓ + λ·η′.
+    StepExpanded = unlisted("", Hot);
+    /// ∂F⁻ℓd/∂u and ∂F⁺ℓd/∂u.
+    ByInput = unlisted("", Hot);
+    /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions that leave F as it is, those of q⁺ alone, and the inputs.
+    Bend = unlisted("", Hot);
+    /// ± ½ μ·[E_i, E_j].
+    Bracket = unlisted("", Hot);
+    /// Where forces take the inputs: ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives.
+    PriceExpanded = unlisted("", Hot);
+    /// What price and step gain with h and with t.
+    PriceOfTime = unlisted("", Hot);
+    /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
+    BoundsExpanded = unlisted("", Hot);
+    /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
+    PriceOfEndExpanded = unlisted("", Hot);
+    /// |a|² of a closed form, which has to be below one.
+    SineSquared(substep: usize, equation: usize) = unlisted("", Hot);
+    /// x(μ) by the rotation in a plane.
+    ClosedForm(substep: usize, equation: usize) = unlisted("", Hot);
+    /// x(μ), coordinate after coordinate.
+    Explicit(substep: usize, equation: usize) = unlisted("", Hot);
+    /// −ρ(0) and Dρ of a linear equation.
+    System(substep: usize, equation: usize) = unlisted("", Hot);
+    /// What an iteration computes once.
+    Preparation(substep: usize, equation: usize) = unlisted("", Hot);
+    /// ρ(x) alone, where x ← x − s·h·Σ⁻¹ρ(x) is tried before Newton's method.
+    Residual(substep: usize, equation: usize) = unlisted("", Hot);
+    /// ρ(x) and Dρ(x).
+    Linearization(substep: usize, equation: usize) = unlisted("", Hot);
 }

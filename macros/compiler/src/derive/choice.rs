@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Shape};
 
 use super::edges::Inserted;
-use super::{Bend, Endpoint, InputStep, Jet, MatrixForm, MechanicsFormulas, SteeredFormulas, Steering, SystemFormulas};
+use super::{Bend, Endpoint, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas, Steering, SystemFormulas};
 
 /// Makes the matrices of a choice.
 pub struct Choice<'a, 'g> {
@@ -63,17 +63,15 @@ impl<'a, 'g> Choice<'a, 'g> {
         Some(Choice { at: Inserted::of(formulas), steering: formulas.steering.as_ref()?, formulas, step })
     }
 
-    fn motions(&self) -> usize {
-        self.formulas.model.dimension()
-    }
-
-    fn inputs(&self) -> usize {
-        self.formulas.model.inputs.iter().map(|leaf| leaf.shape.len()).sum()
+    /// The number of motions, and of inputs.
+    fn counts(&self) -> (usize, usize) {
+        let inputs = self.formulas.model.inputs.iter().map(|leaf| leaf.shape.len());
+        (self.formulas.model.dimension(), inputs.sum())
     }
 
     /// The three blocks of a symmetric matrix over motions and inputs.
     fn curvature(&self, entry: impl Fn(usize, usize) -> Expr<'g>) -> [MatrixForm<'g>; 3] {
-        let (m, u) = (self.motions(), self.inputs());
+        let (m, u) = self.counts();
         [
             self.at.entries(Shape::square(m), &entry),
             self.at.entries(Shape::new(u, m), |i, j| entry(m + i, j)),
@@ -83,7 +81,7 @@ impl<'a, 'g> Choice<'a, 'g> {
 
     /// ℓ, ∂ℓ/∂η, ∂ℓ/∂u.
     fn price_and_slopes(&self) -> [MatrixForm<'g>; 3] {
-        let (m, u, price): (usize, usize, &Jet<'g>) = (self.motions(), self.inputs(), &self.steering.price);
+        let ((m, u), price) = (self.counts(), &self.steering.price);
         [
             MatrixForm::Whole(price.value),
             self.at.entries(Shape::vector(m), |i, _| price.slope[i]),
@@ -112,13 +110,13 @@ impl<'a, 'g> Choice<'a, 'g> {
 
     /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along both motions of an edge and the inputs.
     pub fn bend_curvature(&self, bend: &Bend<'g>) -> MatrixForm<'g> {
-        let whole = 2 * self.motions() + self.inputs();
-        self.at.entries(Shape::square(whole), |i, j| symmetric(&bend.curvature, i, j))
+        let (m, u) = self.counts();
+        self.at.entries(Shape::square(2 * m + u), |i, j| symmetric(&bend.curvature, i, j))
     }
 
     /// ± ½ μ·[E_i, E_j].
     pub fn bracket(&self, bend: &Bend<'g>) -> MatrixForm<'g> {
-        self.at.entries(Shape::square(self.motions()), |i, j| bend.bracket[i][j])
+        self.at.entries(Shape::square(self.counts().0), |i, j| bend.bracket[i][j])
     }
 
     /// ∂/∂h and ∂/∂t of ℓ with what the costate or the multipliers of the step add.
@@ -132,14 +130,12 @@ impl<'a, 'g> Choice<'a, 'g> {
 
     /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
     pub fn bounds_expanded(&self) -> Vec<MatrixForm<'g>> {
-        let (m, u, bounds) = (self.motions(), self.inputs(), &self.steering.bounds);
+        let ((m, u), bounds, weights) = (self.counts(), &self.steering.bounds, self.steering.weights);
         let c = bounds.len();
-        let zero = self.formulas.model.graph.integer(0);
         let curvature = self.curvature(|i, j| {
-            let weighted = bounds.iter().enumerate();
-            let weights = self.steering.weights;
-            let weighted = weighted.map(|(k, bound)| weights.entry(k, 0) * symmetric(&bound.curvature, i, j));
-            weighted.fold(zero, |sum, term| sum + term)
+            let bounds = bounds.iter().enumerate();
+            let weighted = bounds.map(|(k, bound)| weights.entry(k, 0) * symmetric(&bound.curvature, i, j));
+            self.formulas.model.graph.total(Shape::scalar(), weighted)
         });
         let values = [
             self.at.entries(Shape::vector(c), |i, _| bounds[i].value),

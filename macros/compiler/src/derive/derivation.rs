@@ -4,10 +4,9 @@ mod conserved;
 mod equations;
 mod step;
 
-use std::fmt::Write;
-
-use super::{MechanicsFormulas, SteeredFormulas, Structure};
-use crate::model::{Discretization, Motion, Side, System};
+use super::symbols::subscript;
+use super::{MechanicsFormulas, SteeredFormulas, Structure, naming};
+use crate::model::{Discretization, Factor, Motion, System};
 
 /// What lowering found, which the derivation tells.
 pub struct Lowered {
@@ -80,14 +79,14 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     } else {
         "whose kinetic energies differ, so that the constants of each are made in each step"
     };
-    let (summed, each) = match power.terms.len() {
-        1 => ("a sum of one formula".to_string(), "it"),
-        count => (format!("sums of {count} formulas"), "each"),
-    };
     let added = if lowered.is_gathered {
         "the gradient of a site is gathered from the terms that read it"
     } else {
         "what a term has for its sites is added there"
+    };
+    let (summed, each) = match power.terms.len() {
+        1 => ("a sum of one formula".to_string(), "it"),
+        count => (format!("sums of {count} formulas"), "each"),
     };
     let terms = if power.terms.is_empty() {
         "Nothing ties them to each other.".to_string()
@@ -97,6 +96,20 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         )
     };
     format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")
+}
+
+/// The names of the inputs.
+fn inputs(model: &System<'_>) -> String {
+    model.inputs.iter().map(|leaf| leaf.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+/// `one bound`, `3 bounds`; `None` where nothing is bounded.
+fn bounds(model: &System<'_>) -> Option<String> {
+    match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
+        0 => None,
+        1 => Some("one bound".to_string()),
+        count => Some(format!("{count} bounds")),
+    }
 }
 
 /// The text of a system whose configuration inputs move.
@@ -111,65 +124,48 @@ pub fn derivation_of_control(formulas: &SteeredFormulas<'_>, costs: &str) -> Str
         }
         Motion::Dynamics(_) => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
     };
-    let inputs: Vec<&str> = model.inputs.iter().map(|leaf| leaf.name.as_str()).collect();
-    let bounds = match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
-        0 => String::new(),
-        1 => " and keep one bound".to_string(),
-        count => format!(" and keep {count} bounds"),
-    };
+    let bounds = bounds(model).map_or(String::new(), |bounds| format!(" and keep {bounds}"));
     format!(
         "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{}\nCost\n\n{costs}",
         model.item.ident,
         frames(model),
-        inputs.join(", "),
+        inputs(model),
         formulas.table(),
     )
 }
 
 /// Which frame momenta are in, factor by factor.
 fn frames(model: &System<'_>) -> String {
-    let mut text = String::new();
-    for factor in &model.factors {
-        if !factor.moves {
-            let _ = writeln!(
-                text,
-                "{} in {} moves no configuration; its cost is invariant under conjugation, so it has no side.",
-                factor.name,
-                factor.group.name(model.graph),
-            );
-            continue;
+    let frame = |factor: &Factor<'_>| {
+        let (name, group, side) = (&factor.name, factor.group.name(model.graph), factor.side);
+        if factor.moves {
+            let frame = side.frame();
+            format!(
+                "{name} in {group} acts from the {side}: momenta and velocities are {frame}, in the basis of {group}.\n"
+            )
+        } else {
+            format!(
+                "{name} in {group} moves no configuration; its cost is invariant under conjugation, so it has no side.\n"
+            )
         }
-        let (side, frame) = match factor.side {
-            Side::Left => ("left", "spatial"),
-            Side::Right => ("right", "body"),
-        };
-        let _ = writeln!(
-            text,
-            "{} in {} acts from the {side}: momenta and velocities are {frame}, in the basis of {}.",
-            factor.name,
-            factor.group.name(model.graph),
-            factor.group.name(model.graph),
-        );
-    }
-    text + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
+    };
+    let frames: String = model.factors.iter().map(frame).collect();
+    frames + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
 }
 
 /// The kinetic energy in coordinates, for a look at what the cost stands for.
 fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
-    let names: Vec<String> = formulas
-        .symbols
-        .algebra
-        .iter()
-        .flat_map(|xi| (0..xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i + 1))))
-        .collect();
+    let velocities = formulas.symbols.algebra.iter();
+    let names: Vec<String> =
+        velocities.flat_map(|xi| (1..=xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i)))).collect();
     let term = |(i, j, text): &(usize, usize, String)| {
         let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
-        let size = text.strip_prefix('-').filter(|rest| is_one_term(rest));
+        let size = text.strip_prefix('-').filter(|size| is_one_term(size));
         let text = size.unwrap_or(text);
-        (size.is_some(), if text == "1" { square } else { format!("{} {square}", grouped(text)) })
+        let is_sum = text.contains(' ') || text.starts_with('-');
+        let coefficient = if is_sum { format!("({text})") } else { text.to_string() };
+        (size.is_some(), if text == "1" { square } else { format!("{coefficient} {square}") })
     };
-    let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
-    let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
     let signature = match formulas.signature() {
         Some((_, 0)) => "positive definite for positive parameters".to_string(),
         Some((0, _)) => "negative definite for positive parameters".to_string(),
@@ -180,21 +176,11 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         }
         None => "of a signature that depends on the parameters".to_string(),
     };
-    match &lowered.energy {
-        None => format!("Kinetic energy is {signature}.\n"),
-        Some(terms) => {
-            let terms = terms.iter().map(term).fold(String::new(), |sum, (is_negative, term)| {
-                let sign = match (sum.is_empty(), is_negative) {
-                    (true, false) => "",
-                    (true, true) => "-",
-                    (false, false) => " + ",
-                    (false, true) => " - ",
-                };
-                sum + sign + &term
-            });
-            format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
-        }
-    }
+    let Some(terms) = &lowered.energy else { return format!("Kinetic energy is {signature}.\n") };
+    let terms = naming::joined(terms.iter().map(term), '-');
+    let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
+    let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
+    format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
 }
 
 /// Whether no sum stands outside of brackets.
@@ -208,12 +194,4 @@ fn is_one_term(text: &str) -> bool {
         };
         depth > 0 || character != ' '
     })
-}
-
-fn grouped(text: &str) -> String {
-    if text.contains(' ') || text.starts_with('-') { format!("({text})") } else { text.to_string() }
-}
-
-fn subscript(index: usize) -> String {
-    index.to_string().bytes().filter_map(|digit| char::from_u32('₀' as u32 + u32::from(digit - b'0'))).collect()
 }

@@ -5,7 +5,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::{Heat, Id, Reference, latex};
+use super::{Entry, Id, Reference, latex};
 
 /// A derived formula, `symbol = value`.
 #[derive(Clone)]
@@ -22,8 +22,6 @@ pub struct Formula<'g> {
     written: Option<Vec<Expr<'g>>>,
     /// Where it comes from.
     pub source: Option<Reference>,
-    /// How often it is computed.
-    pub heat: Heat,
     /// Whether prints and `DERIVATION` list it.
     pub(super) is_listed: bool,
     /// How the right side is written.
@@ -55,17 +53,16 @@ enum Notation {
 
 impl<'g> Formula<'g> {
     /// A formula that is written as its expressions are.
-    pub(super) fn new(id: Id, symbol: impl Into<String>, value: &[Expr<'g>]) -> Formula<'g> {
-        let entry = id.entry();
+    pub(super) fn new(id: Id, symbol: impl Into<String>, value: impl Into<Vec<Expr<'g>>>) -> Formula<'g> {
+        let Entry { title, source, is_listed, .. } = id.entry();
         Formula {
             id,
-            title: entry.title,
+            title,
             symbol: symbol.into(),
-            value: value.to_vec(),
+            value: value.into(),
             written: None,
-            source: entry.source,
-            heat: entry.heat,
-            is_listed: entry.is_listed,
+            source,
+            is_listed,
             wording: Wording::AsIs,
             free: Vec::new(),
             text: OnceCell::new(),
@@ -73,7 +70,7 @@ impl<'g> Formula<'g> {
     }
 
     /// A formula whose expressions are written expanded where that is shorter.
-    pub(super) fn shorter(id: Id, symbol: impl Into<String>, value: &[Expr<'g>]) -> Formula<'g> {
+    pub(super) fn shorter(id: Id, symbol: impl Into<String>, value: impl Into<Vec<Expr<'g>>>) -> Formula<'g> {
         Formula { wording: Wording::Shorter, ..Formula::new(id, symbol, value) }
     }
 
@@ -97,9 +94,14 @@ impl<'g> Formula<'g> {
         Formula { free, ..self }
     }
 
-    /// The same formula, with another title than that of the table.
+    /// The same formula, with another title than that of the catalogue.
     pub(super) fn with_title(self, title: &'static str) -> Formula<'g> {
         Formula { title, ..self }
+    }
+
+    /// The same formula, which prints leave out if it is of no step.
+    pub(super) fn listed_if(self, is_stepped: bool) -> Formula<'g> {
+        Formula { is_listed: self.is_listed && is_stepped, ..self }
     }
 
     /// The right side, one text for each factor or leaf.

@@ -2,43 +2,19 @@
 
 use super::{Formula, FormulaTable};
 
+#[cfg(test)]
+mod tests;
+
 /// Words of left sides; other words are names.
 const WORDS: [&str; 6] = ["at", "with", "for", "each", "of", "in"];
 
-/// What stands for itself in no font of LaTeX.
-const LETTERS: [(char, &str); 31] = [
-    ('Φ', "\\Phi "),
-    ('Σ', "\\Sigma "),
-    ('Δ', "\\Delta "),
-    ('ξ', "\\xi "),
-    ('η', "\\eta "),
-    ('ζ', "\\zeta "),
-    ('μ', "\\mu "),
-    ('ν', "\\nu "),
-    ('λ', "\\lambda "),
-    ('π', "\\pi "),
-    ('ρ', "\\rho "),
-    ('φ', "\\varphi "),
-    ('δ', "\\delta "),
-    ('ε', "\\varepsilon "),
-    ('γ', "\\gamma "),
-    ('α', "\\alpha "),
-    ('β', "\\beta "),
-    ('ℓ', "\\ell "),
-    ('∂', "\\partial "),
-    ('−', "-"),
-    ('%', "\\%"),
-    ('·', "\\cdot "),
-    ('⟨', "\\langle "),
-    ('⟩', "\\rangle "),
-    ('≥', "\\ge "),
-    ('′', "'"),
-    ('⁺', "^+"),
-    ('⁻', "^-"),
-    ('₀', "_0"),
-    ('₁', "_1"),
-    ('₂', "_2"),
-];
+/// Letters and signs, each with the name of its command.
+const COMMANDS: &str = "Φ Phi Σ Sigma Δ Delta ξ xi η eta ζ zeta μ mu ν nu λ lambda π pi ρ rho φ varphi δ delta ε varepsilon γ gamma α alpha \
+                        β beta ℓ ell ∂ partial · cdot ⟨ langle ⟩ rangle ≥ ge";
+
+/// Signs that are written in another way.
+const SIGNS: [(char, &str); 8] =
+    [('−', "-"), ('%', "\\%"), ('′', "'"), ('⁺', "^+"), ('⁻', "^-"), ('₀', "_0"), ('₁', "_1"), ('₂', "_2")];
 
 impl FormulaTable<'_> {
     /// The formulas that `DERIVATION` lists, in an `align*`.
@@ -77,8 +53,12 @@ fn length_of_word(first: char, text: &str) -> usize {
 }
 
 fn word(first: char, part: &str) -> String {
-    if let Some((_, latex)) = LETTERS.iter().find(|(letter, _)| *letter == first) {
+    if let Some((_, latex)) = SIGNS.iter().find(|(sign, _)| *sign == first) {
         return latex.to_string();
+    }
+    let mut words = COMMANDS.split_whitespace();
+    if !first.is_ascii() && words.any(|word| word.starts_with(first)) {
+        return format!("\\{} ", words.next().unwrap_or_default());
     }
     match part.split_once('_') {
         // ξ_Q and V_1 keep their subscripts
@@ -92,24 +72,4 @@ fn word(first: char, part: &str) -> String {
 fn upright(name: &str) -> String {
     let is_word = name.len() > 1 && name.starts_with(|c: char| c.is_ascii_alphabetic());
     if is_word { format!("\\mathrm{{{}}}", name.replace('_', "\\_")) } else { name.to_string() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::left_side;
-
-    #[test]
-    fn left_sides() {
-        let table = [
-            ("J(q, p)", "J(q, p)"),
-            ("Φ_F(Gamma)", "\\Phi _{F}(\\mathrm{Gamma})"),
-            ("Ad*_(F, G) μ", "\\mathrm{Ad}^*_{(F, G)} \\mu "),
-            ("(TΦ_F)^-* p at R⁺", "(T\\Phi _{F})^{-*} p \\text{ at } R^+"),
-            ("∂V_12/∂q[i % N]", "\\partial V_{12}/\\partial q[i \\% N]"),
-            ("F⁻ℓd(q, attitude_b)", "F^-\\ell d(q, \\mathrm{attitude\\_b})"),
-        ];
-        for (symbol, latex) in table {
-            assert_eq!(left_side(symbol), latex);
-        }
-    }
 }

@@ -5,16 +5,12 @@ use clebsch_symbolic::{Group, Rational, Zero, integer};
 use crate::model::System;
 
 /// The j-th basis element of all factors together, in words.
-pub(super) fn basis_direction(model: &System<'_>, mut j: usize) -> String {
-    for factor in &model.factors {
-        let dimension = factor.group.dimension();
-        if j < dimension {
-            let of = if model.factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
-            return format!("the {}{of}", direction_in_words(model, factor.group, j));
-        }
-        j -= dimension;
-    }
-    "a direction of the group".to_string()
+pub(super) fn basis_direction(model: &System<'_>, j: usize) -> String {
+    let is_within = |k: &usize| j < model.offset(k + 1);
+    let Some(k) = (0..model.factors.len()).find(is_within) else { return "a direction of the group".to_string() };
+    let factor = &model.factors[k];
+    let of = if model.factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
+    format!("the {}{of}", direction_in_words(model, factor.group, j - model.offset(k)))
 }
 
 fn direction_in_words(model: &System<'_>, group: Group, j: usize) -> String {
@@ -103,17 +99,19 @@ fn entries(model: &System<'_>, group: Group, weights: &[Rational]) -> Vec<(usize
 }
 
 fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {
-    let mut text = String::new();
-    for (weight, name) in parts {
-        let negative = weight < integer(0);
-        let magnitude = if negative { -weight } else { weight };
-        text += match (text.is_empty(), negative) {
-            (true, false) => "",
-            (true, true) => "−",
-            (false, false) => " + ",
-            (false, true) => " − ",
-        };
-        text += &if magnitude == integer(1) { name } else { format!("{magnitude} {name}") };
-    }
-    text
+    let term = |(weight, name): (Rational, String)| {
+        let magnitude = weight.abs();
+        (weight.is_negative(), if magnitude == integer(1) { name } else { format!("{magnitude} {name}") })
+    };
+    joined(parts.map(term), '−')
+}
+
+/// Terms, the negative ones by their sizes, as a sum: `a + b − c`.
+pub(super) fn joined(terms: impl Iterator<Item = (bool, String)>, minus: char) -> String {
+    terms.fold(String::new(), |sum, (is_negative, term)| match (sum.is_empty(), is_negative) {
+        (true, false) => term,
+        (true, true) => format!("{minus}{term}"),
+        (false, false) => format!("{sum} + {term}"),
+        (false, true) => format!("{sum} {minus} {term}"),
+    })
 }

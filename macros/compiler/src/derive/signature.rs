@@ -2,6 +2,9 @@
 
 use clebsch_symbolic::{Expr, Matrix, Property};
 
+#[cfg(test)]
+mod tests;
+
 /// The numbers of positive and of negative squares in ½ ξ·Σξ, if they are the same for several positive parameters: scalars and entries
 /// of vectors positive, matrices positive definite.
 pub(super) fn signature(inertia: Expr<'_>) -> Option<(usize, usize)> {
@@ -56,21 +59,4 @@ fn squares(matrix: &Matrix<f64>) -> Option<(usize, usize)> {
         }
     }
     Some((positive, negative))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clebsch_symbolic::{Graph, Shape};
-
-    #[test]
-    fn signs_of_squares() {
-        let graph = Graph::new();
-        let matrix = |entries: [i64; 9]| {
-            graph.literal(Shape::square(3), entries.into_iter().map(clebsch_symbolic::integer).collect())
-        };
-        assert_eq!(signature(matrix([2, 1, 0, 1, 2, 0, 0, 0, 5])), Some((3, 0)));
-        assert_eq!(signature(matrix([1, 2, 0, 2, 1, 0, 0, 0, -5])), Some((1, 2)));
-        assert_eq!(signature(matrix([1, 1, 0, 1, 1, 0, 0, 0, 1])), None);
-    }
 }

@@ -18,8 +18,8 @@ pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEqua
 
 /// How an equation is solved, and in which chart.
 pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<'_>, iteration: &Iteration) -> String {
-    let cleared = equation.cleared;
-    let chart = match formulas.symbols.charts[equation.factors[0]] {
+    let (own_chart, cleared) = (formulas.symbols.charts[equation.factors[0]], equation.cleared);
+    let chart = match own_chart {
         Chart::Cayley if cleared => {
             "the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)"
         }
@@ -42,24 +42,17 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
         Solution::Explicit if equation.formula.is_some() && !equation.is_affine(&formulas.symbols) => {
             format!("is triangular in {chart}: solved by substitution, no iteration")
         }
-        Solution::Explicit
-            if equation.formula.is_none() && formulas.symbols.charts[equation.factors[0]] == Chart::Exponential =>
-        {
+        Solution::Explicit if equation.formula.is_none() && own_chart == Chart::Exponential => {
             "is solved by the velocity itself, x = h Σ⁻¹μ, which commutes with the momentum: no iteration".to_string()
         }
         Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
         Solution::ClosedForm => {
-            let coordinates = match formulas.symbols.charts[equation.factors[0]] {
-                Chart::Sine => ", which is the length of x",
-                _ => "",
-            };
+            let coordinates = if own_chart == Chart::Sine { ", which is the length of x" } else { "" };
             format!(
                 "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1{coordinates}"
             )
         }
-        Solution::Linear => {
-            format!("is linear in {chart}: solved by one elimination, no iteration")
-        }
+        Solution::Linear => format!("is linear in {chart}: solved by one elimination, no iteration"),
         Solution::FreeRotation if formulas.turns_whole() => {
             "is solved by the free motion itself: F̃J̃ − J̃F̃ᵀ = m = h̃μ with J̃² = D² + β, F = exp(δm + κ⋆m) F̃; the constants of a motion are found once, from its Taylor series, and travel along with the state; then NF̃ = G with N and G polynomials of m, one division a step, no iteration, and no error in h".to_string()
         }

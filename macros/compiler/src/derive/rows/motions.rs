@@ -2,15 +2,16 @@
 
 use clebsch_symbolic::{Block, Chart, Expr, Shape};
 
+use super::Names;
 use crate::derive::increments::from_increment;
 use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas};
 use crate::model::Side;
 
 impl<'g> SystemFormulas<'g> {
     /// J(q, ξ_Q(q)).
-    pub(super) fn row_of_orbit_metric(&self) -> Formula<'g> {
-        let symbol = format!("J({}, {}_Q({0}))", self.q(), self.letter(&self.symbols.algebra));
-        Formula::new(Id::OrbitMetric, symbol, &self.momenta_of(self.generator.iter().copied()))
+    pub(super) fn row_of_orbit_metric(&self, Names { q, xi, .. }: &Names) -> Formula<'g> {
+        let metric = self.momenta_of(self.generator.iter().copied());
+        Formula::new(Id::OrbitMetric, format!("J({q}, {xi}_Q({q}))"), metric)
     }
 
     /// GᵀG, column by column: J(q, (E_j)_Q(q)).
@@ -25,15 +26,14 @@ impl<'g> SystemFormulas<'g> {
 
 impl<'g> MechanicsFormulas<'g> {
     /// What variations and the choice of inputs need of motions.
-    pub(super) fn rows_of_motions(&self) -> Vec<Formula<'g>> {
+    pub(super) fn rows_of_motions(&self, names: &Names) -> Vec<Formula<'g>> {
         if !self.model.has_variations() {
             return Vec::new();
         }
-        let d = self.letter(&self.symbols.increments);
         vec![
-            self.row_of_orbit_metric(),
-            Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", &self.retractions()),
-            Formula::new(Id::Composition, format!("{d}, then {d}⁺"), &self.compositions()),
+            self.row_of_orbit_metric(names),
+            Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", self.retractions()),
+            Formula::new(Id::Composition, format!("{d}, then {d}⁺", d = names.d), self.compositions()),
         ]
     }
 

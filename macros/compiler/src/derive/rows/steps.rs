@@ -2,117 +2,91 @@
 
 use clebsch_symbolic::Expr;
 
-use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution, Substep};
+use super::Names;
+use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
+
+/// A formula that is there where its value is.
+fn known<'g>(id: Id, symbol: impl Into<String>, value: Option<Vec<Expr<'g>>>) -> Option<Formula<'g>> {
+    Some(Formula::shorter(id, symbol, value?))
+}
 
 impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
-    pub(super) fn rows_of_substep(&self, index: usize) -> Vec<Formula<'g>> {
-        let (substep, q) = (&self.substeps[index], self.q());
+    pub(super) fn rows_of_substep(&self, names: &Names, index: usize) -> Vec<Formula<'g>> {
+        let (substep, q) = (&self.substeps[index], &names.q);
+        let at =
+            |later: Expr<'g>, parts: &Option<Vec<Expr<'g>>>| parts.as_ref().map(|parts| self.as_of_start(later, parts));
         let mut rows = Vec::new();
-        if let Some(start) = &substep.start {
-            rows.push(Formula::shorter(Id::StartKick(index), "M − N", &self.as_of_start(substep.begins, start)));
-        }
+        rows.extend(known(Id::StartKick(index), "M − N", at(substep.begins, &substep.start)));
         for number in 0..substep.equations.len() {
-            rows.extend(self.rows_of_equation(index, number));
+            rows.extend(self.rows_of_equation(names, index, number));
         }
-        rows.push(self.row_of_update(index, substep));
-        if let Some(after) = self.momentum_after(substep).filter(|_| !self.turns_whole()) {
-            let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
-            rows.push(Formula::shorter(Id::MomentumAfter(index), symbol, &after));
-        }
-        if let Some(end) = &substep.end {
-            let end = self.as_of_start(substep.ends, end);
-            rows.push(Formula::shorter(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), &end));
-        }
-        if let Some(rest) = &substep.rest {
-            rows.push(Formula::shorter(Id::RestKick(index), format!("−r({q}, I)"), rest));
-        }
-        rows.extend(self.rows_of_covectors(index, substep));
-        rows.extend(self.rows_of_forces(index, substep));
-        rows
-    }
-
-    /// The kicks of the covector.
-    fn rows_of_covectors(&self, index: usize, substep: &Substep<'g>) -> Vec<Formula<'g>> {
-        let (q, lagrangian) = (self.q(), &substep.lagrangian);
+        rows.push(match &substep.other {
+            Some(other) => Formula::shorter(Id::MomentumUpdate(index), "M⁺", other.clone()),
+            None => {
+                let update = self.carried_on(substep).unwrap_or_else(|| self.symbols.momenta.clone());
+                Formula::new(Id::MomentumUpdate(index), "M⁺", update)
+            }
+        });
+        let after = self.momentum_after(substep).filter(|_| !self.turns_whole());
+        let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
+        rows.extend(known(Id::MomentumAfter(index), symbol, after));
+        rows.extend(known(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), at(substep.ends, &substep.end)));
+        rows.extend(known(Id::RestKick(index), format!("−r({q}, I)"), substep.rest.clone()));
+        let lagrangian = &substep.lagrangian;
         let start = self.covector_kick(lagrangian.start, substep.begins);
         let end = self.covector_kick(lagrangian.end, substep.ends);
-        let table = [
-            (Id::StartGradient(index), format!("∂U₀/∂{q}"), start),
-            (Id::EndGradient(index), format!("∂U₁/∂{q}, at {q}⁺"), end),
-            (Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)),
-        ];
-        let row =
-            |(id, symbol, value): (Id, String, Option<Vec<Expr<'g>>>)| Some(Formula::shorter(id, symbol, &value?));
-        table.into_iter().filter_map(row).collect()
-    }
-
-    /// The impulses of a force; what depends on the velocity, in the chart.
-    fn rows_of_forces(&self, index: usize, substep: &Substep<'g>) -> Vec<Formula<'g>> {
-        let Some(force) = &substep.force else { return Vec::new() };
-        let moving = force.start_moving.as_ref().filter(|_| substep.other.is_none());
-        let start = force.start.as_ref().map(|start| self.as_of_start(substep.begins, start));
-        let moving = moving.map(|moving| self.in_chart(&self.as_of_start(substep.begins, moving)));
-        let end = self.in_chart(&self.as_of_start(substep.ends, &force.end));
-        let table = [
-            (Id::StartForce(index), "M − N by f".to_string(), start),
-            (Id::MovingForce(index), "M − N by f".to_string(), moving),
-            (Id::EndForce(index), format!("N⁺ − M⁺ by f, at {}⁺", self.q()), Some(end)),
-        ];
-        let row =
-            |(id, symbol, value): (Id, String, Option<Vec<Expr<'g>>>)| Some(Formula::shorter(id, symbol, &value?));
-        table.into_iter().filter_map(row).collect()
+        rows.extend(known(Id::StartGradient(index), format!("∂U₀/∂{q}"), start));
+        rows.extend(known(Id::EndGradient(index), format!("∂U₁/∂{q}, at {q}⁺"), end));
+        rows.extend(known(Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)));
+        if let Some(force) = &substep.force {
+            // what depends on the velocity, in the chart
+            let moving = force.start_moving.as_ref().filter(|_| substep.other.is_none());
+            let start = at(substep.begins, &force.start);
+            let moving = moving.map(|moving| self.in_chart(&self.as_of_start(substep.begins, moving)));
+            let end = self.in_chart(&self.as_of_start(substep.ends, &force.end));
+            rows.extend(known(Id::StartForce(index), "M − N by f", start));
+            rows.extend(known(Id::MovingForce(index), "M − N by f", moving));
+            rows.push(Formula::shorter(Id::EndForce(index), format!("N⁺ − M⁺ by f, at {q}⁺"), end));
+        }
+        rows
     }
 
     /// The move of a configuration and of a covector, by the increments D = F − I.
-    pub(super) fn rows_of_move(&self) -> Vec<Formula<'g>> {
-        let q = self.q();
+    pub(super) fn rows_of_move(&self, Names { q, f, p, d, x, .. }: &Names) -> Vec<Formula<'g>> {
         let after = if self.is_compensated() { format!("{q}⁺ − {q}") } else { format!("{q}⁺") };
-        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
-        let d = self.letter(&self.symbols.increments);
-        let p = self.letter(&self.symbols.covectors);
         let lift = self.at_increments(&self.cotangent_lift);
-        let mut rows = Vec::new();
-        if !self.turns_whole() {
-            rows.push(Formula::shorter(Id::Increment, format!("{d}({x})"), &self.chart_increments()));
-        }
-        rows.push(Formula::shorter(Id::Advance, after.as_str(), &self.advance()));
-        rows.extend(self.displaced().map(|displaced| Formula::shorter(Id::Displacement, after, &displaced)));
-        rows.push(Formula::shorter(Id::Lift, format!("(TΦ_{})^-* {p} at {q}⁺", self.f()), &lift));
+        let increments = (!self.turns_whole()).then(|| self.chart_increments());
+        let mut rows = Vec::from_iter(known(Id::Increment, format!("{d}({x})"), increments));
+        rows.push(Formula::shorter(Id::Advance, &after, self.advance()));
+        rows.extend(known(Id::Displacement, after, self.displaced()));
+        rows.push(Formula::shorter(Id::Lift, format!("(TΦ_{f})^-* {p} at {q}⁺"), lift));
         rows
     }
 
-    /// An equation with its Jacobian, and its solution where there is a formula for it.
-    fn rows_of_equation(&self, index: usize, number: usize) -> Vec<Formula<'g>> {
-        let equation = &self.substeps[index].equations[number];
-        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
-        let delta = self.letter(&self.symbols.blocks.iter().map(|block| block.direction).collect::<Vec<_>>());
-        let row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), &[equation.residual]);
-        let is_explicit = equation.solution == Solution::Explicit;
+    /// An equation with its Jacobian, its solution where there is a formula for it, and what iterations start from.
+    fn rows_of_equation(&self, Names { x, delta, .. }: &Names, index: usize, number: usize) -> Vec<Formula<'g>> {
+        let (substep, equation) = (&self.substeps[index], &self.substeps[index].equations[number]);
         let symbol = format!("Dρ({x})·{delta}");
+        let row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), [equation.residual]);
+        let is_explicit = equation.solution == Solution::Explicit;
         let mut rows = vec![
             if is_explicit { row.with_title("equation (explicit)") } else { row },
-            Formula::new(Id::Jacobian(index, number), symbol.as_str(), &[equation.directional]),
+            Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional]),
         ];
-        let factor = equation.large_jacobian_factor(self).map(|factor| {
+        rows.extend(equation.large_jacobian_factor(self).map(|factor| {
             let symbol = format!("{symbol} = ⟨{delta}^·B, E⟩ with B({x})");
-            Formula::new(Id::JacobianFactor(index, number), symbol, &[factor])
-        });
-        let solution = equation
-            .formula
-            .map(|solution| Formula::new(Id::Solution(index, number), self.coordinates_of(equation), &[solution]));
-        rows.extend(factor.into_iter().chain(solution));
-        rows.extend(self.row_of_predictor(index, number));
+            Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
+        }));
+        let coordinates = self.coordinates_of(equation);
+        let solution = equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x]));
+        rows.extend(solution);
+        if self.is_predicted(equation) {
+            let printed = self.printed_predictor(substep, equation).unwrap_or_default();
+            let row = Formula::shorter(Id::Predictor(index, number), coordinates, printed);
+            rows.push(row.computed_as(self.predictor(substep, equation)));
+        }
         rows
-    }
-
-    /// What iterations of an equation start from.
-    fn row_of_predictor(&self, index: usize, number: usize) -> Option<Formula<'g>> {
-        let substep = &self.substeps[index];
-        let equation = substep.equations.get(number).filter(|equation| self.is_predicted(equation))?;
-        let printed = self.printed_predictor(substep, equation).unwrap_or_default();
-        let row = Formula::shorter(Id::Predictor(index, number), self.coordinates_of(equation), &printed);
-        Some(row.computed_as(self.predictor(substep, equation)))
     }
 
     /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
@@ -130,56 +104,35 @@ impl<'g> MechanicsFormulas<'g> {
         names.collect::<Vec<_>>().join(", ")
     }
 
-    fn row_of_update(&self, index: usize, substep: &Substep<'g>) -> Formula<'g> {
-        if let Some(other) = &substep.other {
-            return Formula::shorter(Id::MomentumUpdate(index), "M⁺", other);
+    /// What a scheme needs beside its substeps: N − π of a step of first order, the kicks of a splitting with their weights b and g, Hamilton's
+    /// equations, which a step of order 16 collocates, and what its sweeps start from.
+    pub(super) fn rows_of_scheme(&self, names: &Names) -> Vec<Formula<'g>> {
+        let Names { q, x, .. } = names;
+        let stagger = known(Id::SynchronizedMomentum, format!("N − π, at {q}"), self.stagger.clone());
+        let mut rows = Vec::from_iter(stagger);
+        if let Some(splitting) = &self.splitting {
+            let gradient = |plain: String, with: String| if splitting.has_gradient { plain + &with } else { plain };
+            let energy = gradient(format!("−h·b·V({q})"), format!(" + h³·g·Gᵀ·Σ⁻¹·G, G = J({q}, ∂V)"));
+            let latex = gradient(
+                format!("-h b V({q})"),
+                format!(" + h^3 g\\, G^T \\Sigma^{{-1}} G,\\quad G = J({q}, \\partial V)"),
+            );
+            let kick = Formula::new(Id::SplittingKick, format!("M⁺ − M at {q}"), splitting.kick.clone());
+            let gradients = self.gradients(splitting.potential);
+            let covector = Formula::new(Id::SplittingGradient, format!("∂U/∂{q} with U"), gradients);
+            rows.push(
+                kick.in_words(format!("J({q}, ∂U), U = {energy}"), format!("J({q}, \\partial U),\\quad U = {latex}")),
+            );
+            rows.push(covector.in_words(energy, latex));
         }
-        let update = |k: usize| {
-            let mu = self.symbols.momenta[k];
-            let mu = substep.rest.as_ref().map_or(mu, |rest| mu - rest[k]);
-            if substep.unchanged[k] { mu } else { self.carried(k, mu) }
-        };
-        let updates: Vec<_> = (0..self.model.factors.len()).map(update).collect();
-        Formula::new(Id::MomentumUpdate(index), "M⁺", &updates)
+        rows.extend(self.row_of_collocation(names));
+        rows.extend(self.guess().map(|guess| Formula::new(Id::Guess, x, guess)));
+        rows
     }
 
-    /// N − π, of a step of first order.
-    pub(super) fn row_of_stagger(&self) -> Option<Formula<'g>> {
-        let stagger = self.stagger.as_ref()?;
-        Some(Formula::shorter(Id::SynchronizedMomentum, format!("N − π, at {}", self.q()), stagger))
-    }
-
-    /// The kicks of a splitting, with their weights b and g.
-    pub(super) fn rows_of_splitting(&self) -> Vec<Formula<'g>> {
-        let Some(splitting) = &self.splitting else { return Vec::new() };
-        let q = self.q();
-        let gradient = |plain: String, with: String| if splitting.has_gradient { plain + &with } else { plain };
-        let energy = gradient(format!("−h·b·V({q})"), format!(" + h³·g·Gᵀ·Σ⁻¹·G, G = J({q}, ∂V)"));
-        let latex = gradient(
-            format!("-h b V({q})"),
-            format!(" + h^3 g\\, G^T \\Sigma^{{-1}} G,\\quad G = J({q}, \\partial V)"),
-        );
-        let kick = Formula::new(Id::SplittingKick, format!("M⁺ − M at {q}"), &splitting.kick);
-        let gradients = self.gradients(splitting.potential);
-        let covector = Formula::new(Id::SplittingGradient, format!("∂U/∂{q} with U"), &gradients);
-        vec![
-            kick.in_words(format!("J({q}, ∂U), U = {energy}"), format!("J({q}, \\partial U),\\quad U = {latex}")),
-            covector.in_words(energy, latex),
-        ]
-    }
-
-    /// Hamilton's equations, which a step of order 16 collocates, and what its sweeps start from.
-    pub(super) fn rows_of_collocation(&self) -> Vec<Formula<'g>> {
-        let x = self.letter(&self.symbols.blocks.iter().map(|block| block.coordinates).collect::<Vec<_>>());
-        let guess = self.guess().map(|guess| Formula::new(Id::Guess, x, &guess));
-        self.row_of_collocation().into_iter().chain(guess).collect()
-    }
-
-    fn row_of_collocation(&self) -> Option<Formula<'g>> {
-        let collocation = self.collocation.as_ref()?;
-        let (q, xi) = (self.q(), self.letter(&self.symbols.algebra));
-        let p = self.letter(&self.symbols.covectors);
-        let row = Formula::new(Id::HamiltonEquations, format!("({q}′, {p}′)"), &collocation.velocity);
+    fn row_of_collocation(&self, Names { q, xi, p, .. }: &Names) -> Option<Formula<'g>> {
+        let velocity = self.collocation.as_ref()?.velocity.clone();
+        let row = Formula::new(Id::HamiltonEquations, format!("({q}′, {p}′)"), velocity);
         let is_linear = !self.energy.gyroscopic.is_zero();
         let (a, less) = if is_linear { (" − A", format!(" − A·{xi}")) } else { ("", String::new()) };
         let v = if self.potential_energy.is_zero() { "" } else { " + V" };

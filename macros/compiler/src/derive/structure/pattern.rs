@@ -5,14 +5,9 @@ use clebsch_symbolic::{Expr, Matrix, Number, Shape};
 
 use crate::derive::equation::{MomentumEquation, Sources, Structure};
 
-/// The values of a Jacobian at a random point, and at two others with the same parameters.
-pub(super) struct Pattern {
-    here: Matrix<Residue>,
-    /// Where the coordinates have other values.
-    there: Matrix<Residue>,
-    /// Where the momenta, the configuration, the time and the input have other values.
-    elsewhere: Matrix<Residue>,
-}
+/// The values of a Jacobian at a random point, and at two others with the same parameters: where the coordinates have other values, and where the
+/// momenta, the configuration, the time and the input have.
+pub(super) struct Pattern([Matrix<Residue>; 3]);
 
 /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h).
 pub(super) fn is_inertial<'g>(
@@ -68,17 +63,17 @@ impl Pattern {
         // most Jacobians are full, and every entry changes with x: then nothing else is of use
         let may_serve = |(i, j): (usize, usize)| here.at(i, j) == there.at(i, j);
         let elsewhere = if shape.positions().any(may_serve) { at(&others) } else { here.clone() };
-        Pattern { here, there, elsewhere }
+        Pattern([here, there, elsewhere])
     }
 
     fn count(&self) -> usize {
-        self.here.shape.rows
+        self.0[0].shape.rows
     }
 
     /// Whether ∂ρ_i/∂x_j = 0.
     pub(super) fn is_zero(&self, i: usize, j: usize) -> bool {
         let zero = Residue::from_rational(&clebsch_symbolic::integer(0));
-        [&self.here, &self.there, &self.elsewhere].iter().all(|matrix| matrix.at(i, j) == zero)
+        self.0.iter().all(|matrix| matrix.at(i, j) == zero)
     }
 
     /// Whether ρ_i holds no other coordinate than x_i.
@@ -88,25 +83,22 @@ impl Pattern {
 
     /// Whether ∂ρ_i/∂x_i is made of parameters alone.
     pub(super) fn is_constant(&self, i: usize) -> bool {
-        let here = self.here.at(i, i);
-        here == self.there.at(i, i) && here == self.elsewhere.at(i, i)
+        self.0.iter().all(|matrix| matrix.at(i, i) == self.0[0].at(i, i))
     }
 
     /// Whether no entry depends on the coordinates.
     pub(super) fn is_linear(&self) -> bool {
-        self.here == self.there
+        self.0[0] == self.0[1]
     }
 
     /// Whether the determinant is made of parameters alone.
     pub(super) fn has_constant_determinant(&self) -> bool {
-        let [here, there, elsewhere] = [&self.here, &self.there, &self.elsewhere].map(|matrix| matrix.inverse().1);
+        let [here, there, elsewhere] = self.0.each_ref().map(|matrix| matrix.inverse().1);
         here == there && here == elsewhere
     }
 
     fn is_symmetric(&self) -> bool {
-        let agrees =
-            |matrix: &Matrix<Residue>| matrix.shape.positions().all(|(i, j)| matrix.at(i, j) == matrix.at(j, i));
-        [&self.here, &self.there, &self.elsewhere].into_iter().all(agrees)
+        self.0.iter().all(|matrix| matrix.shape.positions().all(|(i, j)| matrix.at(i, j) == matrix.at(j, i)))
     }
 
     /// The sets of unknowns that depend on each other, one way or the other.
