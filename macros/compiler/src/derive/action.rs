@@ -2,44 +2,8 @@
 
 use clebsch_symbolic::{Expr, Shape, identity};
 
-use super::symbols::logarithm;
-use super::{Symbols, SystemFormulas};
-use crate::model::{Side, System};
-
-/// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
-pub(super) fn generator<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
-    let factors = || model.factors.iter().zip(&symbols.algebra);
-    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).collect();
-    let at_identity = identities(model);
-    model.action.iter().map(|image| image.differential(&directions).substitute(&at_identity).expand()).collect()
-}
-
-/// The replacement of every group element by the identity, and of its logarithm by zero.
-pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let elements = model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph)));
-    let logarithms = (0..model.factors.len()).map(|k| logarithm(model, k));
-    elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
-}
-
-/// The replacement of q by Φ_F(q).
-pub(super) fn moved<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).collect()
-}
-
-/// The replacement of (t, q) by (t + h, Φ_F(q)).
-pub(super) fn moved_on<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).collect()
-}
-
-/// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
-pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let pairing = generator.iter().zip(&symbols.covectors).map(|(velocity, p)| p.dot(*velocity)).reduce(|a, b| a + b);
-    let gradient = |xi: &Expr<'g>| match pairing {
-        Some(pairing) => pairing.gradient(*xi),
-        None => xi.graph().zero(xi.shape()),
-    };
-    symbols.algebra.iter().map(gradient).collect()
-}
+use super::SystemFormulas;
+use crate::model::Side;
 
 impl<'g> SystemFormulas<'g> {
     /// J(q, p) of these covectors p.

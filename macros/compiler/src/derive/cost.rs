@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Expr;
 
-use super::action::moved_on;
+use super::symbols::moved_on;
 use super::{exact, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Discretization, Kinetic, Mechanics};

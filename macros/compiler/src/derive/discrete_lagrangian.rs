@@ -3,8 +3,7 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::action::{identities, moved};
-use super::symbols::logarithm;
+use super::symbols::{identities, logarithm, moved};
 use super::trivialisation;
 use crate::model::{Factor, Mechanics, Order, System};
 

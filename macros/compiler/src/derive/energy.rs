@@ -2,8 +2,7 @@
 
 use clebsch_symbolic::{Expr, Shape, identity, integer};
 
-use super::action::identities;
-use super::symbols::at_zero;
+use super::symbols::{at_zero, identities};
 use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Configuration, Factor, Kinetic, Mechanics, System};

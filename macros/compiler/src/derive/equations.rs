@@ -2,10 +2,10 @@
 
 use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
-use super::action::identities;
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::equation::{MomentumEquation, Solution, Sources, is_diagonal, is_kept};
+use super::symbols::identities;
 use super::trivialisation::Covector;
 use super::{ChartBlock, exact, structure};
 use crate::model::System;

@@ -235,6 +235,18 @@ impl<'g> FormulaTable<'g> {
     }
 }
 
+impl FormulaTable<'_> {
+    /// The formulas that `DERIVATION` lists, in an `align*`.
+    pub fn latex(&self) -> String {
+        let row = |formula: &Formula<'_>| {
+            let title = if formula.title.is_empty() { String::new() } else { format!("% {}\n", formula.title) };
+            format!("{title}{}", formula.equation_in_latex())
+        };
+        let rows: Vec<String> = self.listing().map(row).collect();
+        format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n"))
+    }
+}
+
 impl fmt::Display for FormulaTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.listing().try_for_each(|formula| writeln!(f, "{}", formula.to_string().trim_end()))

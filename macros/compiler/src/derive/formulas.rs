@@ -1,18 +1,16 @@
 //! The value of the stage `derive`: all that follows from a model, and what is asked of it.
 
-use std::cell::OnceCell;
 use std::fmt;
 use std::ops::Deref;
-use std::rc::Rc;
 
 use clebsch_symbolic::{Chart, Expr, Group};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, DiscreteLagrangian, Endpoint, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm,
-    Splitting, Steering, Substep, Symbols, Symmetries, action, exact, signature,
+    Collocation, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm, Splitting,
+    Substep, Symmetries, SystemFormulas, exact, signature,
 };
-use crate::model::{Discretization, Isotropy, LeafSpace, Mechanics, Steered, System};
+use crate::model::{Isotropy, LeafSpace, Mechanics, Steered};
 
 /// What is derived, as matrix expressions.
 pub enum Formulas<'g> {
@@ -20,24 +18,6 @@ pub enum Formulas<'g> {
     Mechanics(Box<MechanicsFormulas<'g>>),
     /// Of a configuration that inputs move.
     Steered(Box<SteeredFormulas<'g>>),
-}
-
-/// What follows from the action, and from the prices of inputs and of the end.
-pub struct SystemFormulas<'g> {
-    /// What it is derived from.
-    pub model: Rc<System<'g>>,
-    /// The symbols that the derivation adds to those of the model.
-    pub symbols: Symbols<'g>,
-    /// The infinitesimal generator ξ_Q(q), for each leaf of the configuration.
-    pub generator: Vec<Expr<'g>>,
-    /// J(q, p), for each factor.
-    pub momentum_map: Vec<Expr<'g>>,
-    /// What the choice of inputs needs; `None` where nothing is chosen.
-    pub steering: Option<Steering<'g>>,
-    /// The price of the end; `None` if there is none.
-    pub endpoint: Option<Endpoint<'g>>,
-    /// All formulas as a table, made when it is first asked for.
-    pub(super) table: OnceCell<FormulaTable<'g>>,
 }
 
 /// What is derived of a configuration that inputs move.
@@ -103,19 +83,6 @@ pub struct MechanicsFormulas<'g> {
     pub is_exact: bool,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
     pub covector: Option<Vec<Expr<'g>>>,
-}
-
-impl<'g> SystemFormulas<'g> {
-    pub(super) fn new(model: Rc<System<'g>>, discretization: Option<Discretization>) -> SystemFormulas<'g> {
-        let symbols = Symbols::new(&model, discretization);
-        let generator = action::generator(&model, &symbols);
-        let momentum_map = action::momentum_map(&symbols, &generator);
-        let (steering, endpoint, table) = (None, None, OnceCell::new());
-        let mut formulas = SystemFormulas { model, symbols, generator, momentum_map, steering, endpoint, table };
-        formulas.steering = formulas.chosen_by();
-        formulas.endpoint = formulas.price_of_end();
-        formulas
-    }
 }
 
 impl<'g> Deref for MechanicsFormulas<'g> {

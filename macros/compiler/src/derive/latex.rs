@@ -1,7 +1,5 @@
 //! The formulas in LaTeX: the constant `DERIVATION_LATEX`.
 
-use super::{Formula, FormulaTable};
-
 #[cfg(test)]
 mod tests;
 
@@ -15,18 +13,6 @@ const COMMANDS: &str = "Φ Phi Σ Sigma Δ Delta ξ xi η eta ζ zeta μ mu ν n
 /// Signs that are written in another way.
 const SIGNS: [(char, &str); 8] =
     [('−', "-"), ('%', "\\%"), ('′', "'"), ('⁺', "^+"), ('⁻', "^-"), ('₀', "_0"), ('₁', "_1"), ('₂', "_2")];
-
-impl FormulaTable<'_> {
-    /// The formulas that `DERIVATION` lists, in an `align*`.
-    pub fn latex(&self) -> String {
-        let row = |formula: &Formula<'_>| {
-            let title = if formula.title.is_empty() { String::new() } else { format!("% {}\n", formula.title) };
-            format!("{title}{}", formula.equation_in_latex())
-        };
-        let rows: Vec<String> = self.listing().map(row).collect();
-        format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n"))
-    }
-}
 
 /// A left side, `J(q, p)`, in LaTeX: words upright, letters by their names, subscripts in braces.
 pub(super) fn left_side(symbol: &str) -> String {

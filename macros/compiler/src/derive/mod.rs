@@ -32,6 +32,7 @@ mod moves;
 mod naming;
 mod power;
 mod predictor;
+mod prices;
 mod reference;
 mod rows;
 mod signature;
@@ -41,19 +42,22 @@ mod substep;
 mod summation;
 mod symbols;
 mod symmetry;
+mod system;
 mod tolerance;
 mod trivialisation;
 mod variation;
 mod velocity;
 
+use std::rc::Rc;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Mechanics, Model, Order, Steered};
+use crate::model::{Discretization, Mechanics, Model, Order, Steered, System};
 
 pub use catalogue::{Entry, Heat, Id};
 pub use choice::{Choice, StepOfChoice};
 pub use collocation::Collocation;
-pub use control::{Bend, Endpoint, InputStep, Jet, Steering};
+pub use control::{Bend, InputStep};
 pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use edges::EdgeMatrices;
@@ -63,15 +67,17 @@ pub use equation::{MomentumEquation, Solution, Structure};
 pub use force::EdgeForce;
 pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
-pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas, SystemFormulas};
+pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas};
 pub use matrix_form::MatrixForm;
 pub use power::{Home, SiteTerm, Stencil, stencil};
+pub use prices::{Endpoint, Jet, Steering};
 pub use reference::Reference;
 use rows::MOST_LISTED;
 pub use splitting::Splitting;
 pub use substep::Substep;
 pub use symbols::{ChartBlock, Symbols};
 pub use symmetry::{ConservedMomentum, Symmetries};
+pub use system::SystemFormulas;
 pub use variation::{EdgeDerivatives, Quantity};
 
 /// Derives the formulas of a model.
@@ -87,7 +93,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
 
 fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
-    let mut system = SystemFormulas::new(model.system.clone(), model.kinetic.discretization());
+    let mut system = system(model.system.clone(), model.kinetic.discretization());
     let cost = cost::kinetic_cost(&model)?;
     let energy = energy::kinetic(&model, &system, cost)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
@@ -164,9 +170,17 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
     Ok(formulas)
 }
 
+/// What follows from the action and from prices alone.
+fn system<'g>(model: Rc<System<'g>>, discretization: Option<Discretization>) -> SystemFormulas<'g> {
+    let mut system = SystemFormulas::new(model, discretization);
+    system.steering = system.chosen_by();
+    system.endpoint = system.price_of_end();
+    system
+}
+
 /// What is left without mechanics: the action, and what the choice of inputs needs.
 fn steered(model: Steered<'_>) -> SteeredFormulas<'_> {
-    let system = SystemFormulas::new(model.system.clone(), None);
+    let system = system(model.system.clone(), None);
     SteeredFormulas { step: control::step(&model, &system), model, system }
 }
 

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::exact::{by_inertia, inertia_inverse};
-use super::symbols::{at_zero, entries, rows};
+use super::symbols::{at_zero, entries, rows_at};
 use super::{MatrixForm, MechanicsFormulas, MomentumEquation, Solution, Substep};
 
 impl<'g> MechanicsFormulas<'g> {
@@ -61,7 +61,7 @@ impl<'g> MechanicsFormulas<'g> {
             let block = self.symbols.blocks[i].components();
             let within: Vec<usize> = equation.components.iter().copied().filter(|c| block.contains(c)).collect();
             let positions: Vec<usize> = within.iter().map(|component| component - start).collect();
-            self.chart_step(i, substep.divisor) * rows(velocity, &positions)
+            self.chart_step(i, substep.divisor) * rows_at(velocity, &positions)
         });
         Some(blocks.collect())
     }

@@ -9,7 +9,7 @@ mod sylvester;
 use clebsch_symbolic::{Expr, Shape, identity};
 
 use super::equation::{MomentumEquation, Solution, Sources};
-use super::symbols::{ChartBlock, rows};
+use super::symbols::{ChartBlock, rows_at};
 use pattern::Pattern;
 
 /// Jacobians of more unknowns are taken as they are: those of large groups are full.
@@ -123,7 +123,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let gone: Vec<usize> = positions.iter().map(|&i| whole.components[i]).collect();
         // what others a leaf has in its formula cancels
         let absent = if positions.iter().all(|&i| self.pattern.is_alone(i)) { &whole.components } else { &gone };
-        let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows(whole.residual, positions));
+        let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows_at(whole.residual, positions));
         let rest = identity::without_vanishing_terms(rest.expand());
         let value = |(row, &i): (usize, &usize)| -(rest.entry(row, 0) / self.slope(i));
         let formula = if positions.iter().all(|&i| identity::equal(&[self.slope(i)], &[first])) {
@@ -131,12 +131,12 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         } else {
             graph.stack(Shape::vector(positions.len()), positions.iter().enumerate().map(value).collect())
         };
-        let own = identity::without_vanishing_terms(rows(whole.residual, positions));
+        let own = identity::without_vanishing_terms(rows_at(whole.residual, positions));
         let own = MomentumEquation::new(sources, gone.clone(), own, whole.cleared);
         let mut eliminated = self.eliminated.clone();
         eliminated.push(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..own });
         let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).collect();
-        let residual = self.with(&gone, formula, rows(whole.residual, &left)).expand();
+        let residual = self.with(&gone, formula, rows_at(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_iter().map(|i| whole.components[i]).collect();
         let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
@@ -219,7 +219,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let is_other = |i: &usize| !positions.contains(i);
         let others: Vec<usize> = (0..self.columns.len()).filter(is_other).map(|i| whole.components[i]).collect();
         let absent = sources.model.graph.zero(Shape::vector(others.len()));
-        let residual = self.with(&others, absent, rows(whole.residual, positions)).expand();
+        let residual = self.with(&others, absent, rows_at(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let components = positions.iter().map(|&i| whole.components[i]).collect();
         let part = MomentumEquation::new(sources, components, residual, whole.cleared);

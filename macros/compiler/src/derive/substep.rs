@@ -5,9 +5,7 @@ use clebsch_symbolic::{Chart, Expr, identity};
 use super::equation::{MomentumEquation, Solution, Sources};
 use super::force::total;
 use super::trivialisation::{self, Covector};
-use super::{
-    DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, summation, variation,
-};
+use super::{DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, variation};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Mechanics, System};
@@ -76,7 +74,7 @@ impl<'g> Substep<'g> {
             begins,
             ends,
             divisor: sources.divisor,
-            start: if summation::is_compensated(model) {
+            start: if model.is_compensated() {
                 // what comes back after the move is added for the solve alone, and stays out of the sums
                 sources.impulse(lagrangian.start)
             } else {

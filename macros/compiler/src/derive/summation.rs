@@ -13,13 +13,13 @@ use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 use super::increments::inverse_by;
 use super::{MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
+use crate::model::Factor;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Factor, Located, Mechanics, Summation};
 
 impl<'g> MechanicsFormulas<'g> {
     /// Whether the sums of a step keep the rests of their rounding.
     pub fn is_compensated(&self) -> bool {
-        is_compensated(&self.model)
+        self.model.is_compensated()
     }
 
     /// Φ_{I+D}(q) − q for each leaf of the configuration.
@@ -98,23 +98,15 @@ impl<'g> MechanicsFormulas<'g> {
     }
 }
 
-/// Whether the sums of a step keep the rests of their rounding.
-pub(super) fn is_compensated(model: &Mechanics<'_>) -> bool {
-    place(model).is_some()
-}
-
-/// Where compensated summation is asked for.
-fn place<'m>(model: &'m Mechanics<'_>) -> Option<&'m Located<Summation>> {
-    model.dials.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
-}
-
 /// Compensated sums need increments.
 ///
 /// # Errors
 /// A step in which q or N is no sum.
 pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics> {
     // collocation adds changes to q and N whatever they are
-    let Some(summation) = place(&formulas.model).filter(|_| formulas.collocation.is_none()) else { return Ok(()) };
+    let Some(summation) = formulas.model.compensated().filter(|_| formulas.collocation.is_none()) else {
+        return Ok(());
+    };
     features::check((Feature::Summation, Found::at(summation.span)), |feature| match feature {
         Feature::FreeMotionOfFourSpace => Found::when(formulas.turns_whole()),
         Feature::CoupledCost => {

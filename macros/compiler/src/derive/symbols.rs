@@ -2,7 +2,6 @@
 
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
 
-use super::SystemFormulas;
 use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
 /// One symbol for each leaf of the configuration, or for each factor of the group.
@@ -140,55 +139,25 @@ impl<'g> Symbols<'g> {
     }
 }
 
-impl<'g> SystemFormulas<'g> {
-    /// The element of a factor in its chart.
-    pub(super) fn chart_element(&self, factor: usize) -> Expr<'g> {
-        self.symbols.charts[factor].element(self.model.factors[factor].group, &self.symbols.coordinates(factor))
-    }
+/// The replacement of every group element by the identity, and of its logarithm by zero.
+pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let elements = model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph)));
+    let logarithms = (0..model.factors.len()).map(|k| logarithm(model, k));
+    elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
+}
 
-    /// The increment F − I of a factor in its chart, without cancellation.
-    pub(super) fn chart_increment(&self, factor: usize) -> Expr<'g> {
-        let (group, coordinates) = (self.model.factors[factor].group, self.symbols.coordinates(factor));
-        let (numerator, denominator) = self.symbols.charts[factor].increment(group, &coordinates);
-        numerator / denominator
-    }
+/// The replacement of q by Φ_F(q).
+pub(super) fn moved<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).collect()
+}
 
-    /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.
-    pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
-        let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
-        let blocks = self.model.graph.blocks(self.model.factors[factor].group);
-        let (numerator, denominator) = self.symbols.charts[factor].slope_at_identity(&blocks[block]);
-        numerator * self.model.step_size / (denominator * divisor)
-    }
-
-    /// The part of the momentum symbol that belongs to a block.
-    pub(super) fn momentum_of_block(&self, i: usize) -> Expr<'g> {
-        let block = self.symbols.blocks[i];
-        let start = block.offset - self.model.offset(block.factor);
-        self.symbols.momenta[block.factor].block(start, 0, block.coordinates.shape())
-    }
-
-    /// An expression with the momentum of a block set to zero.
-    pub(super) fn without_momentum_of_block(&self, expression: Expr<'g>, i: usize) -> Expr<'g> {
-        let block = self.symbols.blocks[i];
-        let mu = self.symbols.momenta[block.factor];
-        let start = block.offset - self.model.offset(block.factor);
-        let is_own = |a: &usize| (start..start + block.dimension()).contains(a);
-        let entry = |a: usize| if is_own(&a) { mu.graph().integer(0) } else { mu.entry(a, 0) };
-        let others = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(entry).collect());
-        expression.substitute(&[(mu, others)])
-    }
-
-    /// Whether an expression depends on the configuration, on the time or on the input.
-    pub(super) fn is_moving(&self, expression: Expr<'g>) -> bool {
-        expression.depends_on(self.model.time)
-            || self.model.inputs.iter().any(|leaf| expression.depends_on(leaf.symbol))
-            || self.model.reads_configuration(expression)
-    }
+/// The replacement of (t, q) by (t + h, Φ_F(q)).
+pub(super) fn moved_on<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).collect()
 }
 
 /// Some rows of a vector.
-pub(super) fn rows<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
+pub(super) fn rows_at<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
     let shape = Shape::vector(positions.len());
     match positions {
         [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::action::moved;
+use super::symbols::moved;
 use super::{ConservedMomentum, MechanicsFormulas, Solution, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::Mechanics;

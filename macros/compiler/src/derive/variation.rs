@@ -3,6 +3,7 @@
 
 use clebsch_symbolic::{Expr, Property};
 
+use super::prices::Direction;
 use super::{Bend, DiscreteLagrangian, EdgeForce, SystemFormulas, cayley, control, trivialisation};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
@@ -141,7 +142,7 @@ impl<'g> Source<'_, 'g> {
             last = last + self.at_image(self.later(stack(&force.end), ends)).substitute(&rational);
         }
         let (at_start, at_end) = (self.at_start(), self.at_end());
-        let varied = EdgeDerivatives {
+        EdgeDerivatives {
             lagrangian: lagrangian.kinetic + start + end,
             before_by_start: first.differential(&at_start),
             before_by_end: first.differential(&at_end),
@@ -152,21 +153,19 @@ impl<'g> Source<'_, 'g> {
                 .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),
             before: first,
             after: last,
-            bend: None,
-        };
-        let bend = model.control.as_ref().map(|_| self.bend(&varied));
-        EdgeDerivatives { bend, ..varied }
+            bend: model.control.as_ref().map(|_| self.bend((first, last))),
+        }
     }
 
-    fn bend(&self, variation: &EdgeDerivatives<'g>) -> Bend<'g> {
-        let along = |motions: &[(Expr<'g>, Expr<'g>)]| -> Vec<control::Direction<'g>> {
-            let motion = |element: &control::Direction<'g>| {
+    fn bend(&self, momenta: (Expr<'g>, Expr<'g>)) -> Bend<'g> {
+        let along = |motions: &[(Expr<'g>, Expr<'g>)]| -> Vec<Direction<'g>> {
+            let motion = |element: &Direction<'g>| {
                 motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()
             };
             self.system.symbols.basis().iter().map(motion).collect()
         };
         let ends = [along(&self.carried_motions()), along(&self.at_end())].concat();
-        control::bend(self.system, variation, ends)
+        control::bend(self.system, momenta, ends)
     }
 
     fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {

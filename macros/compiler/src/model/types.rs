@@ -7,7 +7,7 @@ use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::Span;
 
 use super::{Access, Layout, Power};
-use crate::parse::{Dials, Discretization, Emit, Isotropy, Opaque, Order, Promise};
+use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Summation};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
 pub enum Model<'g> {
@@ -108,6 +108,16 @@ impl Mechanics<'_> {
     /// Whether discrete Lagrangians are differentiated twice.
     pub fn has_variations(&self) -> bool {
         self.emit.variations() || self.control.is_some()
+    }
+
+    /// Where compensated sums are asked for.
+    pub fn compensated(&self) -> Option<&Located<Summation>> {
+        self.dials.summation.as_ref().filter(|summation| summation.value == Summation::Compensated)
+    }
+
+    /// Whether the sums of a step keep the rests of their rounding.
+    pub fn is_compensated(&self) -> bool {
+        self.compensated().is_some()
     }
 
     /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.

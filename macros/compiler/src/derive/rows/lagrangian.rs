@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::{Names, tuple};
-use crate::derive::action::moved_on;
+use crate::derive::symbols::moved_on;
 use crate::derive::{Formula, Id, MechanicsFormulas};
 
 impl<'g> MechanicsFormulas<'g> {

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
 use super::{Direction, Family};
 use crate::derive::SystemFormulas;
-use crate::derive::action::moved;
+use crate::derive::symbols::moved;
 use crate::model::{LeafSpace, Mechanics, Side};
 
 /// Collects directions, family by family.
