@@ -197,7 +197,6 @@ pub trait Power<const N: usize>:
 
     /// Moves one site with the momentum n.
     #[inline(always)]
-    #[allow(clippy::type_complexity, reason = "what a step of the trait gives")]
     fn moved(
         &self,
         c: &C<Self>,

@@ -59,7 +59,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// q is finite and on its orbit, up to √ε.
     pub(crate) fn check_configuration(&self, q: &S::Configuration) -> Result<(), Error> {
-        check_configuration(&self.system, q)
+        check_on_orbit(q, self.system.orbit_defect(q))
     }
 
     /// Kinetic energy plus potential, at the time of the state.
@@ -145,11 +145,6 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
         check_finite("the time", &t)?;
         self.checked_cotangent_state(t, q, p)
     }
-}
-
-/// q is finite and on its orbit, up to √ε.
-pub(crate) fn check_configuration<S: Clebsch>(system: &S, q: &S::Configuration) -> Result<(), Error> {
-    check_on_orbit(q, system.orbit_defect(q))
 }
 
 /// q is finite and, by this defect, on its orbit, up to √ε.

@@ -1,6 +1,7 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
 use crate::linear::divided;
+use crate::parameters::check_finite;
 use crate::scheme::Scheme;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges};
 use crate::{Carried, Clebsch, Differentiated, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
@@ -197,9 +198,7 @@ where
         mu: &SVector<T, M>,
         u: &S::Input,
     ) -> Result<Passed<S, M>, Error> {
-        if !u.is_finite() {
-            return Err(Error::NotFinite { name: "the input" });
-        }
+        check_finite("the input", u)?;
         let increment = B::Scheme::visit(self.at(t), number, Drift(q, mu, u))?;
         let next = S::advance(&self.system, q, &increment);
         let edge = B::Scheme::visit(self.at(t), number, AtFixedElement((q, &increment, &next, u)));
