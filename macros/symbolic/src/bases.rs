@@ -4,7 +4,7 @@ use num_traits::{One, Zero};
 
 use crate::memory::Map;
 use crate::node::{ExprNode, Operation, Term};
-use crate::{Algebra, Basis, Expr, Graph, Group, Rational, Shape};
+use crate::{Algebra, Basis, Expr, Graph, Group, Rational, Shape, Sparse};
 
 impl<'g> Expr<'g> {
     /// The matrix of x ↦ a × x.
@@ -67,7 +67,11 @@ impl<'g> Expr<'g> {
                 return plain.graph.lower(algebra, plain.graph.expr(*inner));
             }
             if let Some(entries) = plain.constant_entries() {
-                return plain.graph.pairings(algebra, &entries);
+                let columns = algebra.matrix_shape().columns;
+                let product = |(i, j, value): &(usize, usize, Rational)| &entries[i * columns + j] * value;
+                let component = |element: &Sparse| element.iter().map(product).sum();
+                let components = plain.graph.basis(algebra).elements.iter().map(component).collect();
+                return plain.graph.literal(shape, components);
             }
             if !algebra.is_skew() {
                 return plain.atom_of(Operation::Components(algebra), shape);
@@ -111,15 +115,5 @@ impl Graph {
 
     fn gram_matrix(&self, basis: &Basis) -> Expr<'_> {
         self.literal(Shape::square(basis.elements.len()), basis.gram().into_iter().flatten().collect())
-    }
-
-    /// ⟨A, E_i⟩ of a matrix of numbers.
-    fn pairings(&self, algebra: Algebra, entries: &[Rational]) -> Expr<'_> {
-        let columns = algebra.matrix_shape().columns;
-        let component = |element: &crate::Sparse| -> Rational {
-            element.iter().map(|(i, j, value)| &entries[i * columns + j] * value).sum()
-        };
-        let components = self.basis(algebra).elements.iter().map(component).collect();
-        self.literal(Shape::vector(algebra.dimension()), components)
     }
 }

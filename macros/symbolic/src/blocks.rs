@@ -33,10 +33,8 @@ impl<'g> Expr<'g> {
                 a.hadamard(b)
             }
             ExprNode::Of(Operation::Block(r, c), inner) => graph.expr(*inner).block(r + row, c + column, shape),
-            ExprNode::Of(Operation::DiagonalMatrix, inner) if shape.is_scalar() => match row == column {
-                true => graph.expr(*inner).entry(row, 0),
-                false => graph.zero(shape),
-            },
+            ExprNode::Of(Operation::DiagonalMatrix, _) if shape.is_scalar() && row != column => graph.zero(shape),
+            ExprNode::Of(Operation::DiagonalMatrix, inner) if shape.is_scalar() => graph.expr(*inner).entry(row, 0),
             ExprNode::Of(Operation::Embed(r, c), inner) => {
                 let inner = graph.expr(*inner);
                 // where the block and the embedded matrix meet

@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use crate::node::{Analytic, ExprNode, Id, Operation, Term};
-use crate::{Expr, Graph, Property, Rational, Shape};
+use crate::{Expr, Graph, Group, Property, Rational, Shape};
 
 impl<'g> Expr<'g> {
     /// The operation on this expression as a node of its own.
@@ -133,7 +133,7 @@ impl<'g> Expr<'g> {
         if self.is_zero() {
             return graph.integer(0);
         }
-        if self.is_identity() || graph.is_special(self.id) {
+        if self.is_identity() || graph.is_rotation_or(self.id, Group::is_special) {
             return graph.integer(1);
         }
         let (scale, plain) = self.factor().split();
@@ -219,7 +219,7 @@ impl Graph {
         };
         if let Some(start) = word.iter().position(|&letter| self.shape(letter).rows == 1) {
             let rotated = [&word[start..], &word[..start]].concat();
-            return self.with_word(Term::number(Rational::one()), rotated, Shape::scalar());
+            return self.with_word(Term::number(Rational::one()), &rotated, Shape::scalar());
         }
         let folded = self.expr(last) * self.expr(first);
         if folded.factor().word.len() < 2 && folded.terms().len() == 1 {

@@ -196,15 +196,16 @@ impl<K: Number> Matrix<K> {
     pub fn inverse(&self) -> (Matrix<K>, K) {
         let n = self.shape.rows;
         work::spend(n * n * n / 2);
-        let unit = |i: usize, j: usize| if j == i + n { one() } else { zero() };
-        let entry = |(i, j): (usize, usize)| if j < n { self.at(i, j) } else { unit(i, j) };
-        let shape = Shape::new(n, 2 * n);
-        let mut both = Matrix::new(shape, shape.positions().map(entry).collect());
+        // (A I) becomes (I A⁻¹)
+        let unit = |i: usize| (0..n).map(move |j| if i == j { one() } else { zero() });
+        let rows = self.entries.chunks(n).enumerate().flat_map(|(i, row)| row.iter().copied().chain(unit(i)));
+        let mut both = Matrix::new(Shape::new(n, 2 * n), rows.collect());
         let (pivots, determinant) = both.reduce(n);
-        let is_regular = pivots.len() == n;
-        let entry = |(i, j): (usize, usize)| if is_regular { both.at(i, n + j) } else { zero::<K>().reciprocal() };
-        let inverse = Matrix::new(self.shape, self.shape.positions().map(entry).collect());
-        (inverse, if is_regular { determinant } else { zero() })
+        if pivots.len() < n {
+            return (Matrix::new(self.shape, vec![zero::<K>().reciprocal(); n * n]), zero());
+        }
+        let entries = both.entries.chunks(2 * n).flat_map(|row| &row[n..]).copied().collect();
+        (Matrix::new(self.shape, entries), determinant)
     }
 
     /// Brings the first columns into reduced row echelon form. Gives the columns of the pivots and their product, with the sign of
@@ -294,9 +295,7 @@ impl<'g> Expr<'g> {
                 }
                 sum
             }
-            ExprNode::Stack(entries) => {
-                Matrix::new(shape, entries.iter().map(|entry| known[entry].entries[0]).collect())
-            }
+            ExprNode::Stack(parts) => Matrix::new(shape, parts.iter().map(|part| known[part].entries[0]).collect()),
             ExprNode::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
             ExprNode::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
             ExprNode::Opaque(name, output, arguments) => {

@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Add, Mul, Neg};
 
 /// numerator/denominator in lowest terms, with a positive denominator and a numerator that has a negative.
-#[derive(Copy, Clone, PartialEq, Eq, Hash)]
+#[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Fraction {
     pub(crate) numerator: i64,
     pub(crate) denominator: i64,
@@ -133,15 +133,7 @@ impl Ord for Fraction {
 
 impl fmt::Display for Fraction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.denominator {
-            1 => write!(f, "{}", self.numerator),
-            _ => write!(f, "{}/{}", self.numerator, self.denominator),
-        }
-    }
-}
-
-impl fmt::Debug for Fraction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{self}")
+        let Fraction { numerator, denominator } = self;
+        if *denominator == 1 { numerator.fmt(f) } else { write!(f, "{numerator}/{denominator}") }
     }
 }

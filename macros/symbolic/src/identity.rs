@@ -203,11 +203,9 @@ fn stereographic(shape: Shape, random: impl Fn(usize, usize) -> Residue) -> Matr
     let last = shape.len() - 1;
     let square = (0..last).fold(zero(), |sum: Residue, i| sum.add(random(i, 0).multiply(random(i, 0))));
     let scale = square.add(one()).reciprocal();
-    let numerator = |k: usize| match k == last {
-        true => square.add(negative(one())),
-        false => random(k, 0).add(random(k, 0)),
-    };
-    Matrix::new(shape, (0..=last).map(|k| numerator(k).multiply(scale)).collect())
+    let double = |k: usize| random(k, 0).add(random(k, 0));
+    let numerators = (0..last).map(double).chain([square.add(negative(one()))]);
+    Matrix::new(shape, numerators.map(|numerator| numerator.multiply(scale)).collect())
 }
 
 /// At how many points something is looked at: one decides but for a chance of about 10⁻¹⁴, and takes long for large matrices.

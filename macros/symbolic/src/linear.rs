@@ -33,8 +33,8 @@ impl<'g> Expr<'g> {
         {
             return factor * graph.identity(shape.rows);
         }
-        let columns: Vec<Expr<'g>> =
-            (0..shape.columns).map(|j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))])).collect();
+        let column = |j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))]);
+        let columns: Vec<Expr<'g>> = (0..shape.columns).map(column).collect();
         graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).collect())
     }
 
@@ -52,18 +52,12 @@ impl<'g> Expr<'g> {
         Some(sum)
     }
 
-    /// 2^exponent times the expression.
-    pub fn times_power_of_two(self, exponent: i32) -> Expr<'g> {
-        self * self.graph.integer(2).powi(exponent)
-    }
-
     /// The least exponent with which a scalar symbol occurs among the terms of the expanded expression; `None` for zero.
     pub fn least_exponent(self, scalar: Expr<'g>) -> Option<Rational> {
         let exponent = |term: &Term| {
             let found = term.scalars.iter().find(|(base, _)| *base == scalar.id);
             found.map_or(Exponent::ZERO, |(_, exponent)| *exponent)
         };
-        let least = self.expand().terms().iter().map(exponent).min()?;
-        Some(Rational::short(least))
+        self.expand().terms().iter().map(exponent).min().map(Rational::short)
     }
 }

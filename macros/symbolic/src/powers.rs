@@ -20,7 +20,8 @@ impl<'g> Expr<'g> {
     pub fn power(self, exponent: Rational) -> Expr<'g> {
         assert!(self.shape().is_scalar(), "a power of `{self}`");
         let graph = self.graph;
-        let Some(exponent) = small_exponent(&exponent) else {
+        let is_small = |fraction: &Exponent| fraction.numerator.abs().max(fraction.denominator) <= 1 << 20;
+        let Some(exponent) = exponent.as_fraction().filter(is_small) else {
             return (self.function(Function::Ln) * graph.number(exponent)).function(Function::Exp);
         };
         if exponent.is_zero() {
@@ -78,10 +79,4 @@ impl<'g> Expr<'g> {
         };
         known.unwrap_or_else(|| self.atom_of(Operation::Function(function), Shape::scalar()))
     }
-}
-
-/// An exponent with small numerator and denominator.
-fn small_exponent(exponent: &Rational) -> Option<Exponent> {
-    let small = |(numerator, denominator): (i64, i64)| numerator.abs() <= 1 << 20 && denominator <= 1 << 20;
-    exponent.as_fraction().filter(|fraction| small(fraction.parts()))
 }

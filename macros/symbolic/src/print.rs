@@ -96,7 +96,9 @@ impl Printer<'_> {
                 return format!("{}({}, {row}, {column})", self.either("embed", "\\operatorname{embed}"), inner());
             }
             Operation::Determinant => self.either("det", "\\det").into(),
-            Operation::Function(Function::Stumpff(k)) => self.subscripted("c", k),
+            Operation::Function(Function::Stumpff(k)) => {
+                self.either(format!("c{}", in_digits(k.into(), "₋₀₁₂₃₄₅₆₇₈₉")), format!("c_{{{k}}}"))
+            }
             Operation::Function(function) => self.either("", "\\").to_string() + &function.name(),
             Operation::Analytic(Analytic::Exponential) => self.either("exp", "\\exp").into(),
             Operation::Analytic(Analytic::Phi) => self.either("φ", "\\varphi").into(),
@@ -125,11 +127,6 @@ impl Printer<'_> {
             (true, true) => format!("{{{base}}}^{{{latex}}}"),
             (true, false) => format!("{base}^{{{latex}}}"),
         }
-    }
-
-    fn subscripted(&self, letter: &str, index: u8) -> String {
-        let digits = in_digits(index.into(), "₋₀₁₂₃₄₅₆₇₈₉");
-        self.either(format!("{letter}{digits}"), format!("{letter}_{{{index}}}"))
     }
 
     fn rows(&self, shape: Shape, entries: Vec<String>) -> String {

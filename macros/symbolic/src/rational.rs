@@ -9,18 +9,19 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-pub use num_traits::{One, Zero};
-use num_traits::{Pow, ToPrimitive};
+pub use num_rational::Ratio;
+pub use num_traits::{CheckedAdd, CheckedMul, One, Zero};
+use num_traits::{Pow, Signed, ToPrimitive};
 
 use crate::fraction::Fraction;
 use crate::work;
 
 /// A rational number of any size.
-#[derive(Clone, PartialEq, Eq, Hash)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Rational(Size);
 
 /// What fits is short, so that equal numbers are equal values.
-#[derive(Clone, PartialEq, Eq, Hash)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum Size {
     Short(Fraction),
     Long(Box<BigRational>),
@@ -69,6 +70,13 @@ impl Rational {
         }
     }
 
+    fn long(&self) -> BigRational {
+        match &self.0 {
+            Size::Short(fraction) => BigRational::new_raw(fraction.numerator.into(), fraction.denominator.into()),
+            Size::Long(value) => (**value).clone(),
+        }
+    }
+
     /// Numerator and denominator, if they are machine words.
     pub fn parts(&self) -> Option<(i64, i64)> {
         self.as_fraction().map(Fraction::parts)
@@ -82,43 +90,24 @@ impl Rational {
         }
     }
 
-    fn long(&self) -> BigRational {
-        match &self.0 {
-            Size::Short(fraction) => BigRational::new_raw(fraction.numerator.into(), fraction.denominator.into()),
-            Size::Long(value) => (**value).clone(),
-        }
-    }
-
     /// The numerator in lowest terms.
     pub fn numer(&self) -> BigInt {
-        match &self.0 {
-            Size::Short(fraction) => fraction.numerator.into(),
-            Size::Long(value) => value.numer().clone(),
-        }
+        self.parts().map_or_else(|| self.long().numer().clone(), |(numerator, _)| numerator.into())
     }
 
     /// The denominator in lowest terms, positive.
     pub fn denom(&self) -> BigInt {
-        match &self.0 {
-            Size::Short(fraction) => fraction.denominator.into(),
-            Size::Long(value) => value.denom().clone(),
-        }
+        self.parts().map_or_else(|| self.long().denom().clone(), |(_, denominator)| denominator.into())
     }
 
     /// Whether it is whole.
     pub fn is_integer(&self) -> bool {
-        match &self.0 {
-            Size::Short(fraction) => fraction.denominator == 1,
-            Size::Long(value) => value.is_integer(),
-        }
+        self.parts().map_or_else(|| self.long().is_integer(), |(_, denominator)| denominator == 1)
     }
 
     /// Whether it is below zero.
     pub fn is_negative(&self) -> bool {
-        match &self.0 {
-            Size::Short(fraction) => fraction.is_negative(),
-            Size::Long(value) => num_traits::Signed::is_negative(&**value),
-        }
+        self.parts().map_or_else(|| self.long().is_negative(), |(numerator, _)| numerator < 0)
     }
 
     /// |a|.
@@ -136,10 +125,7 @@ impl Rational {
 
     /// The largest integer that is not above it.
     pub fn floor(&self) -> Rational {
-        match &self.0 {
-            Size::Short(fraction) => integer(fraction.floor()),
-            Size::Long(value) => Rational::from(value.floor()),
-        }
+        self.as_fraction().map_or_else(|| Rational::from(self.long().floor()), |fraction| integer(fraction.floor()))
     }
 
     /// aⁿ; a is not zero where n is negative.
@@ -214,19 +200,10 @@ impl fmt::Display for Rational {
     }
 }
 
-impl fmt::Debug for Rational {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{self}")
-    }
-}
-
 impl Neg for &Rational {
     type Output = Rational;
     fn neg(self) -> Rational {
-        match &self.0 {
-            Size::Short(fraction) => Rational::short(-*fraction),
-            Size::Long(value) => Rational::from(-&**value),
-        }
+        self.as_fraction().map_or_else(|| Rational::from(-self.long()), |fraction| Rational::short(-fraction))
     }
 }
 
@@ -237,26 +214,10 @@ impl Neg for Rational {
     }
 }
 
-impl Add for &Rational {
-    type Output = Rational;
-    fn add(self, other: &Rational) -> Rational {
-        let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.checked_add(b));
-        short.map_or_else(|| Rational::from(self.long() + other.long()), Rational::short)
-    }
-}
-
 impl Sub for &Rational {
     type Output = Rational;
     fn sub(self, other: &Rational) -> Rational {
         self + &-other
-    }
-}
-
-impl Mul for &Rational {
-    type Output = Rational;
-    fn mul(self, other: &Rational) -> Rational {
-        let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.checked_mul(b));
-        short.map_or_else(|| Rational::from(self.long() * other.long()), Rational::short)
     }
 }
 
@@ -266,6 +227,21 @@ impl Div for &Rational {
         product(self, &other.recip())
     }
 }
+
+/// The operators that fractions of machine words have, where the result fits.
+macro_rules! checked {
+    ($($operator:ident $function:ident $checked:ident),*) => {$(
+        impl $operator for &Rational {
+            type Output = Rational;
+            fn $function(self, other: &Rational) -> Rational {
+                let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.$checked(b));
+                short.map_or_else(|| Rational::from(self.long().$function(other.long())), Rational::short)
+            }
+        }
+    )*};
+}
+
+checked!(Add add checked_add, Mul mul checked_mul);
 
 /// The operators on values, by those on references.
 macro_rules! by_reference {

@@ -23,21 +23,26 @@ impl<K> Default for Interner<K> {
 impl<K: Hash + Eq> Interner<K> {
     /// The position of a value, where it is known.
     pub fn position(&self, value: &K) -> Option<usize> {
-        self.find(hash_of(value), value)
+        if self.is_empty() {
+            return None;
+        }
+        let taken = self.slots[self.slot(hash_of(value), value)];
+        (taken as usize).checked_sub(1)
     }
 
     /// The position of a value, and whether it is new.
     pub fn intern(&mut self, value: K) -> (usize, bool) {
-        let hash = hash_of(&value);
-        if let Some(known) = self.find(hash, &value) {
-            return (known, false);
-        }
-        if 2 * (self.values.len() + 1) > self.slots.len() {
+        if 2 * (self.len() + 1) > self.slots.len() {
             self.grow();
+        }
+        let hash = hash_of(&value);
+        let slot = self.slot(hash, &value);
+        if let Some(known) = (self.slots[slot] as usize).checked_sub(1) {
+            return (known, false);
         }
         self.values.push(value);
         self.hashes.push(hash);
-        self.take_slot(hash, self.values.len() as u32);
+        self.slots[slot] = self.values.len() as u32;
         (self.values.len() - 1, true)
     }
 
@@ -46,35 +51,25 @@ impl<K: Hash + Eq> Interner<K> {
         self.values
     }
 
-    fn find(&self, hash: u64, value: &K) -> Option<usize> {
-        if self.slots.is_empty() {
-            return None;
-        }
+    /// The slot where a value stands, or the one that it would take.
+    fn slot(&self, hash: u64, value: &K) -> usize {
         let mask = self.slots.len() - 1;
         let mut slot = hash as usize & mask;
         while self.slots[slot] != 0 {
             let position = self.slots[slot] as usize - 1;
             if self.hashes[position] == hash && self.values[position] == *value {
-                return Some(position);
+                break;
             }
             slot = (slot + 1) & mask;
         }
-        None
-    }
-
-    fn take_slot(&mut self, hash: u64, entry: u32) {
-        let mask = self.slots.len() - 1;
-        let mut slot = hash as usize & mask;
-        while self.slots[slot] != 0 {
-            slot = (slot + 1) & mask;
-        }
-        self.slots[slot] = entry;
+        slot
     }
 
     fn grow(&mut self) {
         self.slots = vec![0; (2 * self.slots.len()).max(16)];
-        for position in 0..self.values.len() {
-            self.take_slot(self.hashes[position], position as u32 + 1);
+        for (position, value) in self.values.iter().enumerate() {
+            let slot = self.slot(self.hashes[position], value);
+            self.slots[slot] = position as u32 + 1;
         }
     }
 }
@@ -187,6 +182,15 @@ impl Mixer {
     }
 }
 
+/// Words are mixed in one piece.
+macro_rules! words {
+    ($($write:ident: $word:ty),*) => {$(
+        fn $write(&mut self, word: $word) {
+            self.mix(word as u64);
+        }
+    )*};
+}
+
 impl Hasher for Mixer {
     /// The upper bits are the better mixed ones.
     fn finish(&self) -> u64 {
@@ -195,22 +199,5 @@ impl Hasher for Mixer {
     fn write(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|byte| self.mix(u64::from(*byte)));
     }
-    fn write_u8(&mut self, word: u8) {
-        self.mix(u64::from(word));
-    }
-    fn write_u32(&mut self, word: u32) {
-        self.mix(u64::from(word));
-    }
-    fn write_u64(&mut self, word: u64) {
-        self.mix(word);
-    }
-    fn write_usize(&mut self, word: usize) {
-        self.mix(word as u64);
-    }
-    fn write_isize(&mut self, word: isize) {
-        self.mix(word as u64);
-    }
-    fn write_i64(&mut self, word: i64) {
-        self.mix(word as u64);
-    }
+    words!(write_u8: u8, write_u32: u32, write_u64: u64, write_usize: usize, write_isize: isize, write_i64: i64);
 }

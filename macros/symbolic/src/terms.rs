@@ -6,7 +6,7 @@ use num_traits::{One, Zero};
 
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::rational::product;
-use crate::{Expr, Graph, Property, Rational, Shape, integer, work};
+use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
 
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
@@ -112,13 +112,11 @@ impl<'g> Expr<'g> {
 
     /// This expression as a single factor.
     fn atom(self) -> Term {
-        let mut term = Term::number(Rational::one());
-        if self.shape().is_scalar() {
-            term.scalars.push((self.id, Exponent::ONE));
-        } else {
-            term.word.push(self.id);
+        let term = Term::number(Rational::one());
+        match self.shape().is_scalar() {
+            true => Term { scalars: vec![(self.id, Exponent::ONE)], ..term },
+            false => Term { word: vec![self.id], ..term },
         }
-        term
     }
 
     /// A single term: the only one of the sum, or the whole expression as a factor.
@@ -191,23 +189,21 @@ impl<'g> Expr<'g> {
 impl Graph {
     /// The product of two terms as an expression of the given shape.
     pub(crate) fn multiply(&self, left: &Term, right: &Term, shape: Shape) -> Expr<'_> {
-        let mut term = left.clone();
-        term.coefficient = product(&left.coefficient, &right.coefficient);
+        let coefficient = product(&left.coefficient, &right.coefficient);
+        let mut term = Term { coefficient, scalars: left.scalars.clone(), word: Vec::new() };
         term.multiply_scalars(&right.scalars);
-        let letters: Vec<Id> = std::mem::take(&mut term.word).into_iter().chain(right.word.iter().copied()).collect();
-        self.with_word(term, letters, shape)
+        self.with_word(term, &[&left.word[..], &right.word].concat(), shape)
     }
 
     /// `term · word`, the word reduced.
-    pub(crate) fn with_word(&self, mut term: Term, letters: Vec<Id>, shape: Shape) -> Expr<'_> {
+    pub(crate) fn with_word(&self, mut term: Term, letters: &[Id], shape: Shape) -> Expr<'_> {
         let mut word = Vec::new();
-        for letter in letters {
-            self.push_letter(&mut term, &mut word, letter);
-        }
+        letters.iter().for_each(|&letter| self.push_letter(&mut term, &mut word, letter));
         if word.iter().any(|&letter| self.expr(letter).is_zero()) || term.coefficient.is_zero() {
             return self.zero(shape);
         }
-        for segment in self.split_at_scalars(word) {
+        // cut where an inner dimension is one
+        for segment in word.chunk_by(|_, next| self.shape(*next).rows != 1) {
             let (first, last) = (self.shape(segment[0]), self.shape(segment[segment.len() - 1]));
             if first.rows != 1 || last.columns != 1 {
                 term.word.extend(segment);
@@ -322,49 +318,35 @@ impl Graph {
 
     /// Whether this is the symbol of an orthogonal matrix.
     pub(crate) fn is_orthogonal(&self, id: Id) -> bool {
-        match self.expr(id).property() {
-            Property::Element(group) => group.is_orthogonal(),
-            property => property == Property::Orthogonal,
-        }
+        self.is_rotation_or(id, Group::is_orthogonal)
     }
 
-    /// Whether this is the symbol of a matrix of determinant one.
-    pub(crate) fn is_special(&self, id: Id) -> bool {
+    /// Whether this is the symbol of a rotation or of an element of a group that passes a test.
+    pub(crate) fn is_rotation_or(&self, id: Id, test: fn(Group) -> bool) -> bool {
         match self.expr(id).property() {
-            Property::Element(group) => group.is_special(),
+            Property::Element(group) => test(group),
             property => property == Property::Orthogonal,
         }
-    }
-
-    /// Cuts a word where an inner dimension is one.
-    fn split_at_scalars(&self, word: Vec<Id>) -> Vec<Vec<Id>> {
-        let mut segments: Vec<Vec<Id>> = Vec::new();
-        for letter in word {
-            match segments.last_mut() {
-                Some(segment) if self.shape(letter).rows != 1 => segment.push(letter),
-                _ => segments.push(vec![letter]),
-            }
-        }
-        segments
     }
 
     /// The 1×1 product of a word, written in the one of its two readings that comes first.
-    fn scalar_word(&self, word: Vec<Id>) -> Expr<'_> {
-        match word.as_slice() {
+    fn scalar_word(&self, word: &[Id]) -> Expr<'_> {
+        match word {
             [only] => return self.expr(*only),
-            [a, b] if self.is_unit_square(*a, *b) => return self.integer(1),
+            [a, b] => {
+                let is_square = *self.node(*a) == ExprNode::Of(Operation::Transpose, *b);
+                if is_square && self.expr(*b).property() == Property::Unit {
+                    return self.integer(1);
+                }
+            }
             _ => {}
         }
-        let (sign, reversed) = self.transposed_word(&word).unwrap_or_else(|| (Rational::one(), word.clone()));
-        match reversed.cmp(&word) {
+        let (sign, reversed) = self.transposed_word(word).unwrap_or_else(|| (Rational::one(), word.to_vec()));
+        match reversed.as_slice().cmp(word) {
             Ordering::Less => self.intern(ExprNode::Word(reversed), Shape::scalar()).times(&sign),
             Ordering::Equal if sign == integer(-1) => self.integer(0),
-            _ => self.intern(ExprNode::Word(word), Shape::scalar()),
+            _ => self.intern(ExprNode::Word(word.to_vec()), Shape::scalar()),
         }
-    }
-
-    fn is_unit_square(&self, left: Id, right: Id) -> bool {
-        *self.node(left) == ExprNode::Of(Operation::Transpose, right) && self.expr(right).property() == Property::Unit
     }
 
     /// The transposed letters in reverse order, with a sign; `None` if a letter's transpose is not plus or minus a letter.

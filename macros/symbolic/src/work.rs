@@ -41,8 +41,5 @@ pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
     LIMIT.set(SPENT.get().saturating_add(units).min(outer));
     let result = catch_unwind(AssertUnwindSafe(work));
     LIMIT.set(outer);
-    result.map_err(|payload| match payload.is::<Exhausted>() {
-        true => Exhausted,
-        false => resume_unwind(payload),
-    })
+    result.map_err(|payload| if payload.is::<Exhausted>() { Exhausted } else { resume_unwind(payload) })
 }

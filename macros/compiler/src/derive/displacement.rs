@@ -28,7 +28,7 @@ fn displaced_leaf<'g>(formulas: &MechanicsFormulas<'g>, leaf: usize) -> Option<E
     }
     let group = model.factors[k].group;
     let x = symbols.stacked_coordinates(k);
-    let (alpha, beta) = symbols.charts[k].in_one_plane(group, &symbols.coordinates(k))?;
+    let (alpha, beta) = symbols.charts[k].in_one_plane(&symbols.coordinates(k))?;
     let moved = |q: Expr<'g>| {
         formulas.generator[leaf].substitute(&[(symbols.algebra[k], x), (model.configurations[leaf].symbol, q)])
     };

@@ -141,7 +141,7 @@ fn check_scaling<'g>(model: &System<'g>, energy: Expr<'g>) -> Result<Expr<'g>, D
         return Ok(limit);
     }
     let scaled = energy.substitute(&[(h, 2 * h)]);
-    let power = (-6..=6).find(|&k| identity::equal(&[scaled], &[energy.times_power_of_two(k)]));
+    let power = (-6..=6).find(|&k| identity::equal(&[scaled], &[energy * energy.graph().integer(2).powi(k)]));
     let error = Diagnostic::new(model.spans.kinetic.place, "the cost does not scale like an action");
     let f = &model.factors[0].name;
     let error = match power {

@@ -1,10 +1,10 @@
 //! Charts: coordinates of a group near the identity, one vector for each block of its Lie algebra.
 
-use super::motion::{left_matrix, motion};
+use super::motion::{blocks, left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
 use crate::node::{Analytic, ExprNode, Operation};
-use crate::{Expr, Function, Graph, Shape, identity, rational};
+use crate::{Expr, Function, Graph, Shape, Zero, identity, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -50,7 +50,10 @@ impl Chart {
         let graph = x[0].graph();
         match self {
             Chart::Identity => x[0],
-            Chart::Cayley if group == Group::UnitQuaternions => half_turn(x[0]),
+            Chart::Cayley if group == Group::UnitQuaternions => {
+                let scale = (graph.integer(1) + x[0].norm_squared()).power(rational(-1, 2));
+                quaternion(scale * x[0], scale)
+            }
             // (I − Z)⁻¹(I + Z) = 2(I − Z)⁻¹ − I
             Chart::Cayley => 2 * resolvent(combination(group, x)) - group.identity(graph),
             Chart::Sine => {
@@ -74,9 +77,8 @@ impl Chart {
             }
             Chart::Exponential if group == Group::UnitQuaternions => {
                 let quarter = x[0].norm_squared() / 4;
-                let shape = Shape::vector(4);
                 let [cosine, sine] = [0, 1].map(|k| quarter.function(Function::Stumpff(k)));
-                (sine / 2 * x[0]).embed(shape, 0, 0) + cosine * graph.unit(shape, 3, 0)
+                quaternion(sine / 2 * x[0], cosine)
             }
             Chart::Exponential => exponential(combination(group, x)),
         }
@@ -94,15 +96,13 @@ impl Chart {
                 // w − 1 = −s/(r(1 + r)) with r = √(1 + s)
                 let square = x[0].norm_squared();
                 let root = (one + square).sqrt();
-                let shape = Shape::vector(4);
-                let last = square / (one + root) * graph.unit(shape, 3, 0);
-                (x[0].embed(shape, 0, 0) - last, root)
+                (quaternion(x[0], -(square / (one + root))), root)
             }
             (Chart::Cayley, Group::SpecialEuclidean(n)) => {
                 let turn = x[0].wedge(graph.algebra_of(group));
                 let (increment, denominator) = turn_increment(n, x[0], turn);
-                let (shape, shift) = (group.element_shape(), 2 * (resolvent(turn) * x[1]));
-                ((increment / denominator).embed(shape, 0, 0) + shift.embed(shape, 0, n), one)
+                let shift = 2 * (resolvent(turn) * x[1]);
+                (blocks(increment / denominator, shift), one)
             }
             (Chart::Cayley, _) => even_increment(combination(group, x)),
             (Chart::Affine, _) => (combination(group, x), one),
@@ -121,25 +121,22 @@ impl Chart {
             }
             (Chart::Product, Group::SpecialEuclidean(n)) => {
                 let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
-                let shape = group.element_shape();
-                ((turn / denominator).embed(shape, 0, 0) + x[1].embed(shape, 0, n), one)
+                (blocks(turn / denominator, x[1]), one)
             }
             (Chart::Product, Group::Similarity(n)) => {
                 // eᵈ(I + T) − I = g(I + T) + T with g = eᵈ − 1 = 2 sinh(d/2) e^{d/2}
                 let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
-                let (half, shape) = (x[1] / 2, group.element_shape());
+                let half = x[1] / 2;
                 let growth = 2 * half.function(Function::Sinh) * half.function(Function::Exp);
                 let turn = turn / denominator;
-                let linear = growth * (graph.identity(n) + turn) + turn;
-                (linear.embed(shape, 0, 0) + x[2].embed(shape, 0, n), one)
+                (blocks(growth * (graph.identity(n) + turn) + turn, x[2]), one)
             }
             (Chart::Identity, _) => (x[0], one),
             (Chart::Exponential, Group::UnitQuaternions) => {
                 // cos − 1 = −s c₂(s)
                 let quarter = x[0].norm_squared() / 4;
                 let [sine, versine] = [1, 2].map(|k| quarter.function(Function::Stumpff(k)));
-                let shape = Shape::vector(4);
-                ((sine / 2 * x[0]).embed(shape, 0, 0) - quarter * versine * graph.unit(shape, 3, 0), one)
+                (quaternion(sine / 2 * x[0], -(quarter * versine)), one)
             }
             (Chart::Exponential, _) => {
                 let z = combination(group, x);
@@ -161,12 +158,9 @@ impl Chart {
     }
 
     /// α and β of F = I + αZ + βZ², in charts of rotations where F has this form.
-    pub fn in_one_plane<'g>(self, group: Group, x: &[Expr<'g>]) -> Option<(Expr<'g>, Expr<'g>)> {
+    pub fn in_one_plane<'g>(self, x: &[Expr<'g>]) -> Option<(Expr<'g>, Expr<'g>)> {
         let one = x[0].graph().integer(1);
-        match (self, group) {
-            (Chart::Sine, _) => Some((one, one / (one + cosine(x[0])))),
-            _ => None,
-        }
+        (self == Chart::Sine).then(|| (one, one / (one + cosine(x[0]))))
     }
 
     /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators: components of the
@@ -200,32 +194,27 @@ fn cosine(x: Expr<'_>) -> Expr<'_> {
 
 /// Z = Σ x_i E_i over all blocks.
 fn combination<'g>(group: Group, x: &[Expr<'g>]) -> Expr<'g> {
-    let graph = x[0].graph();
-    let blocks = graph.blocks(group);
-    let index = |block: &Block| blocks.iter().position(|other| other == block).unwrap_or(0);
-    group.placed(graph, |block| x[index(block)])
+    group.placed(x[0].graph(), |index, _| x[index])
 }
 
 /// exp Z, by Stumpff functions of s where Zᵏ⁺² = −s Zᵏ for a k up to two, s = −½ tr Z²: rotations, motions of space and of the plane,
 /// SL(2), SO(1, 2).
 fn exponential(z: Expr<'_>) -> Expr<'_> {
     let graph = z.graph();
-    let s = -(z * z).trace() / 2;
+    let square = z * z;
+    let s = -square.trace() / 2;
     let stumpff = |k: u8| s.function(Function::Stumpff(k));
     let identity = graph.identity(z.shape().rows);
-    let square = z * z;
     if in_one_plane(z).is_some() {
-        return stumpff(0) * identity + stumpff(1) * z;
-    }
-    if identity::vanishes(square * z + s * z) {
-        return identity + stumpff(1) * z + stumpff(2) * square;
-    }
-    if identity::vanishes(square * square + s * square) {
-        return identity + z + stumpff(2) * square + stumpff(3) * (square * z);
-    }
-    match z.shape().rows == 4 && identity::vanishes(z + z.transpose()) {
-        true => double_turn(z),
-        false => z.exponential(),
+        stumpff(0) * identity + stumpff(1) * z
+    } else if identity::vanishes(square * z + s * z) {
+        identity + stumpff(1) * z + stumpff(2) * square
+    } else if identity::vanishes(square * square + s * square) {
+        identity + z + stumpff(2) * square + stumpff(3) * (square * z)
+    } else if z.shape().rows == 4 && identity::vanishes(z + z.transpose()) {
+        double_turn(z)
+    } else {
+        z.exponential()
     }
 }
 
@@ -240,8 +229,7 @@ fn double_turn(z: Expr<'_>) -> Expr<'_> {
     let identity = z.graph().identity(4);
     let halves = [1, -1].map(|sign| {
         let half = (z + sign * dual(z)) / 2;
-        let s =
-            [(0, 1), (0, 2), (0, 3)].into_iter().fold(z.graph().integer(0), |s, (i, j)| s + half.entry(i, j).powi(2));
+        let s = (1..4).fold(z.graph().integer(0), |s, j| s + half.entry(0, j).powi(2));
         let sine = s.function(Function::Stumpff(1)) * half;
         // cos − 1
         (sine, -s * s.function(Function::Stumpff(2)))
@@ -256,12 +244,10 @@ fn resolvent(z: Expr<'_>) -> Expr<'_> {
     (z.graph().identity(z.shape().rows) - z).inverse()
 }
 
-/// The quaternion (x, 1)/√(1 + |x|²).
-fn half_turn(x: Expr<'_>) -> Expr<'_> {
-    let graph = x.graph();
+/// The quaternion with a vector and a scalar part.
+fn quaternion<'g>(vector: Expr<'g>, scalar: Expr<'g>) -> Expr<'g> {
     let shape = Shape::vector(4);
-    let scale = (graph.integer(1) + x.norm_squared()).power(rational(-1, 2));
-    scale * x.embed(shape, 0, 0) + scale * graph.unit(shape, 3, 0)
+    vector.embed(shape, 0, 0) + scalar.embed(shape, 3, 0)
 }
 
 /// 2(I − Z)⁻¹Z. For 4×4 matrices with tr Z = tr Z³ = 0, those of the algebras that keep a form, Z⁴ + sZ² + d = 0 with
@@ -285,17 +271,16 @@ fn determinant_excess(z: Expr<'_>) -> Expr<'_> {
     let n = z.shape().rows;
     let mut powers: Vec<Expr<'_>> = vec![z];
     (2..=n).for_each(|_| powers.push(powers[powers.len() - 1] * z));
-    let traces: Vec<Expr<'_>> = powers
-        .into_iter()
-        .map(|power| if power == z && identity::vanishes(z.trace()) { graph.integer(0) } else { power.trace() })
-        .collect();
+    let is_traceless = identity::vanishes(z.trace());
+    let traces =
+        powers.into_iter().map(|power| if is_traceless && power == z { graph.integer(0) } else { power.trace() });
+    let traces: Vec<Expr<'_>> = traces.collect();
     let mut elementary = vec![graph.integer(1)];
     for k in 1..=n {
-        let term = |i: usize| {
+        let sum = (1..=k).fold(graph.integer(0), |sum, i| {
             let sign = if i % 2 == 1 { 1 } else { -1 };
-            sign * (elementary[k - i] * traces[i - 1])
-        };
-        let sum = (1..=k).map(term).fold(graph.integer(0), |sum, term| sum + term);
+            sum + sign * (elementary[k - i] * traces[i - 1])
+        });
         elementary.push(sum / k as i64);
     }
     elementary.into_iter().skip(1).fold(graph.integer(0), |sum, e| sum + e)
@@ -361,24 +346,34 @@ impl Group {
             Group::Translation(_) => graph.zero(self.element_shape()),
             _ => self.compose(a, b) - self.compose(b, a),
         };
-        let structure = |i: usize| {
+        let structure = |i: usize| -> crate::Sparse {
             let columns = (0..m).map(|j| self.projected_coordinates(bracket(basis[i], basis[j])));
             let columns: Vec<Expr<'g>> = columns.collect();
-            Shape::square(m)
-                .positions()
-                .filter_map(|(row, column)| {
-                    let value = columns[column].entry(row, 0).expand().as_number()?;
-                    (!num_traits::Zero::is_zero(&value)).then_some((row, column, value))
-                })
-                .collect::<crate::Sparse>()
+            let number = |(row, column): (usize, usize)| columns[column].entry(row, 0).expand().as_number();
+            let entries = Shape::square(m).positions().filter_map(|at| Some((at.0, at.1, number(at)?)));
+            entries.filter(|(_, _, value)| !value.is_zero()).collect()
         };
         xi.wedge(graph.algebra(Shape::square(m), (0..m).map(structure).collect()))
     }
 
     /// dexp_ξ = φ(ad_ξ), the right trivialisation of the derivative of exp: (d exp ξ) exp(−ξ) = dexp_ξ dξ.
     pub fn exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
-        let known = xi.graph().images(Map::ExponentialSlope(self));
-        xi.remembered(&known, || self.make_exponential_slope(xi))
+        let graph = xi.graph();
+        xi.remembered(&graph.images(Map::ExponentialSlope(self)), || {
+            let (ad, one) = (self.ad(xi), graph.identity(self.dimension()));
+            let square = ad * ad;
+            let s = -square.trace() / 2;
+            let stumpff = |k: u8| s.function(Function::Stumpff(k));
+            if identity::vanishes(ad) {
+                one
+            } else if identity::vanishes(square) {
+                one + ad / 2
+            } else if identity::vanishes(square * ad + s * ad) {
+                one + stumpff(2) * ad + stumpff(3) * square
+            } else {
+                ad.analytic(Analytic::Phi)
+            }
+        })
     }
 
     /// dexp_ξ on so(4) = so(3) + so(3), where ad of either half vanishes on the other, by four Stumpff functions: many times as long as φ(ad_ξ),
@@ -388,19 +383,5 @@ impl Group {
             let half = |sign: i64| self.exponential_slope((xi + sign * dual_coordinates(xi)) / 2);
             half(1) + half(-1) - xi.graph().identity(6)
         })
-    }
-
-    fn make_exponential_slope(self, xi: Expr<'_>) -> Expr<'_> {
-        let (graph, ad) = (xi.graph(), self.ad(xi));
-        let square = ad * ad;
-        let s = -square.trace() / 2;
-        let stumpff = |k: u8| s.function(Function::Stumpff(k));
-        let one = graph.identity(self.dimension());
-        match () {
-            () if identity::vanishes(ad) => one,
-            () if identity::vanishes(square) => one + ad / 2,
-            () if identity::vanishes(square * ad + s * ad) => one + stumpff(2) * ad + stumpff(3) * square,
-            () => ad.analytic(Analytic::Phi),
-        }
     }
 }

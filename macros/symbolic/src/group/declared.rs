@@ -6,9 +6,9 @@ use num_traits::Zero;
 
 use super::chart::Chart;
 use super::{Declared, Group, sample};
-use crate::algebra::Sparse;
+use crate::algebra::{Sparse, dense};
 use crate::node::Id;
-use crate::{Algebra, Expr, Graph, Property, Rational, Role, Shape};
+use crate::{Algebra, Expr, Graph, Rational, Shape};
 
 /// What a graph keeps of a declared group.
 #[derive(Debug)]
@@ -30,64 +30,39 @@ impl Definition {
 }
 
 impl Group {
-    /// The group of the matrices on which an expression in `symbol` vanishes, near the identity, with a basis of its Lie algebra.
-    pub fn by_equation<'g>(
+    /// The group of matrices that a basis of its Lie algebra generates, or, near the identity, of those on which an expression vanishes
+    /// for the symbol beside it.
+    pub fn declare<'g>(
         graph: &'g Graph,
         name: &str,
-        equation: Expr<'g>,
-        symbol: Expr<'g>,
+        shape: Shape,
         basis: Vec<Sparse>,
+        equation: Option<(Expr<'g>, Expr<'g>)>,
     ) -> Group {
-        declare(graph, name, symbol.shape(), basis, Some((equation.id, symbol.id)))
+        let algebra = graph.algebra(shape, basis);
+        let equation = equation.map(|(equation, symbol)| (equation.id, symbol.id));
+        let declared = |chart: Chart| {
+            let definition = Definition { name: name.to_string(), algebra, chart, equation };
+            let mut definitions = graph.definitions.borrow_mut();
+            definitions.push(Rc::new(definition));
+            let index = definitions.len() as u32 - 1;
+            Group::Declared(Declared { index, size: shape.rows, dimension: algebra.dimension() })
+        };
+        // the chart is found for the group with the general one, and then kept with it
+        let general = declared(Chart::Exponential);
+        if graph.is_closed_under_products(algebra) {
+            declared(Chart::Affine)
+        } else if sample::is_cayley_tangent(graph, general) {
+            declared(Chart::Cayley)
+        } else {
+            general
+        }
     }
-
-    /// The group that a basis of a Lie algebra of matrices generates.
-    pub fn by_basis(graph: &Graph, name: &str, shape: Shape, basis: Vec<Sparse>) -> Group {
-        declare(graph, name, shape, basis, None)
-    }
-}
-
-fn declare(graph: &Graph, name: &str, shape: Shape, basis: Vec<Sparse>, equation: Option<(Id, Id)>) -> Group {
-    let algebra = graph.algebra(shape, basis);
-    let declared = |chart: Chart| {
-        let definition = Definition { name: name.to_string(), algebra, chart, equation };
-        let mut definitions = graph.definitions.borrow_mut();
-        definitions.push(Rc::new(definition));
-        Declared { index: definitions.len() as u32 - 1, size: shape.rows, dimension: algebra.dimension() }
-    };
-    // the chart is found for the group with the general one, and then kept with it
-    let group = Group::Declared(declared(Chart::Exponential));
-    let chart = if graph.is_closed_under_products(algebra) {
-        Chart::Affine
-    } else if sample::is_cayley_tangent(graph, group) {
-        Chart::Cayley
-    } else {
-        Chart::Exponential
-    };
-    Group::Declared(declared(chart))
 }
 
 impl Graph {
     pub(crate) fn definition(&self, declared: Declared) -> Rc<Definition> {
         self.definitions.borrow()[declared.index as usize].clone()
-    }
-
-    /// The coordinates of a matrix in a basis; `None` if it is outside of the span.
-    pub fn coordinates(&self, algebra: Algebra, matrix: &[Rational]) -> Option<Vec<Rational>> {
-        let basis = self.basis(algebra);
-        let (m, columns) = (algebra.dimension(), algebra.matrix_shape().columns);
-        // one row for each entry of the matrices: the coefficients of the basis and the given value
-        let mut rows = vec![vec![Rational::zero(); m + 1]; matrix.len()];
-        for (k, element) in basis.elements.iter().enumerate() {
-            element.iter().for_each(|(i, j, value)| rows[i * columns + j][k] += value);
-        }
-        rows.iter_mut().zip(matrix).for_each(|(row, value)| row[m] = value.clone());
-        let pivots = reduce(&mut rows);
-        let mut coordinates = vec![Rational::zero(); m];
-        for (pivot, row) in pivots.into_iter().zip(rows) {
-            *coordinates.get_mut(pivot)? = row[m].clone();
-        }
-        Some(coordinates)
     }
 
     /// The bracket E_i E_j − E_j E_i of two basis elements, row by row.
@@ -117,17 +92,7 @@ impl Graph {
     /// The span of a basis.
     pub fn span(&self, algebra: Algebra) -> Span {
         let shape = algebra.matrix_shape();
-        let dense = |element: &Sparse| {
-            let mut row = vec![Rational::zero(); shape.len()];
-            element.iter().for_each(|(i, j, value)| row[i * shape.columns + j] += value);
-            row
-        };
-        Span::of(self.basis(algebra).elements.iter().map(dense).collect())
-    }
-
-    /// A new symbol for an element of a declared group's matrices.
-    pub fn element_symbol(&self, name: &str, n: usize) -> Expr<'_> {
-        self.symbol(name, Shape::square(n), Role::DeclaredElement, Property::General)
+        Span::of(self.basis(algebra).elements.iter().map(|element| dense(shape, element)).collect())
     }
 }
 

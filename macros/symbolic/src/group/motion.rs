@@ -89,14 +89,16 @@ impl Group {
 
     /// The algebra element Σ ξ_i E_i with components ξ.
     pub fn wedge(self, xi: Expr<'_>) -> Expr<'_> {
-        self.placed(xi.graph(), |block| xi.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
+        self.placed(xi.graph(), |_, block| xi.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
     }
 
-    /// Σ over the blocks of the element that has the given coordinates in each.
-    pub(crate) fn placed<'g>(self, graph: &'g Graph, coordinates: impl Fn(&Block) -> Expr<'g>) -> Expr<'g> {
+    /// Σ over the blocks, with their indices, of the element that has the given coordinates in each.
+    pub(crate) fn placed<'g>(self, graph: &'g Graph, coordinates: impl Fn(usize, &Block) -> Expr<'g>) -> Expr<'g> {
         let shape = self.element_shape();
-        let part = |block: &Block| coordinates(block).wedge(block.algebra).embed(shape, block.row, block.column);
-        graph.total(shape, graph.blocks(self).iter().map(part))
+        let part = |(index, block): (usize, &Block)| {
+            coordinates(index, block).wedge(block.algebra).embed(shape, block.row, block.column)
+        };
+        graph.total(shape, graph.blocks(self).iter().enumerate().map(part))
     }
 
     /// The vector with the given components in each block.
@@ -220,8 +222,14 @@ fn complex_determinant<'g>(f: Expr<'g>, rows: &[usize], column: usize) -> (Expr<
 /// (A b; 0 1).
 pub(crate) fn motion<'g>(linear: Expr<'g>, shift: Expr<'g>) -> Expr<'g> {
     let n = linear.shape().rows;
+    blocks(linear, shift) + linear.graph().unit(Shape::square(n + 1), n, n)
+}
+
+/// (A b; 0 0).
+pub(crate) fn blocks<'g>(linear: Expr<'g>, shift: Expr<'g>) -> Expr<'g> {
+    let n = linear.shape().rows;
     let shape = Shape::square(n + 1);
-    linear.embed(shape, 0, 0) + shift.embed(shape, 0, n) + linear.graph().unit(shape, n, n)
+    linear.embed(shape, 0, 0) + shift.embed(shape, 0, n)
 }
 
 /// The basis of the matrices q ↦ a q (or q a) of the quaternions a = i, j, k, 1 on (i, j, k, w).

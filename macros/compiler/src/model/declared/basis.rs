@@ -6,8 +6,8 @@ use syn::Expr as Syntax;
 
 use super::super::elaborate::shortened;
 use super::super::value::Value;
-use super::exact::Exact;
-use super::{bracket_with, check_literal, check_size, elaborate, empty_scope, sparse, spell_matrix};
+use super::follow::at_identity;
+use super::{check_literal, check_size, elaborate, empty_scope, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostics, Location, bail, error};
 use crate::parse::{joined, spell};
 
@@ -25,7 +25,7 @@ pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Locati
     independent(name, &matrices, elements)?;
     let basis: Vec<Sparse> = matrices.iter().map(|matrix| sparse(shape, &matrix.entries)).collect();
     closed(graph, name, shape, &basis, place)?;
-    Ok(Group::by_basis(graph, name, shape, basis))
+    Ok(Group::declare(graph, name, shape, basis, None))
 }
 
 /// A matrix of numbers, row by row.
@@ -55,9 +55,8 @@ fn exact(expr: Expr<'_>) -> Option<Vec<Rational>> {
     if !expr.symbols().is_empty() {
         return None;
     }
-    // by construction: there is no symbol to be asked for
-    let value = expr.evaluate(&mut |symbol| clebsch_symbolic::Matrix::from_fn(symbol.shape(), |_| Exact::UNKNOWN));
-    value.entries.into_iter().map(Exact::rational).collect()
+    // no symbol is asked for: any will do
+    at_identity(expr, expr.graph().identity(1))
 }
 
 fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<Shape, Diagnostics> {
@@ -100,9 +99,7 @@ fn combination(terms: impl Iterator<Item = (usize, Rational)>) -> String {
 }
 
 fn closed(graph: &Graph, name: &str, shape: Shape, basis: &[Sparse], place: Location) -> Result<(), Diagnostics> {
-    let span = graph.span(graph.algebra(shape, basis.to_vec()));
-    let outside = |bracket: &[Rational]| !span.holds(bracket);
-    let Some((i, j, bracket)) = bracket_with(graph, shape, basis, outside) else { return Ok(()) };
+    let Some((i, j, bracket)) = open_bracket(graph, shape, basis) else { return Ok(()) };
     let (i, j) = (i + 1, j + 1);
     bail!(place, "the basis of `{name}` is not closed: [E{i}, E{j}] is outside of its span";
         help "add `{}`, and whatever its brackets need", constructor(shape, &bracket);

@@ -1,7 +1,7 @@
 //! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
 //! along the group that this algebra generates.
 
-use clebsch_symbolic::{Expr, Graph, Group, Rational, Shape, Sparse, Zero, reduce};
+use clebsch_symbolic::{Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, reduce};
 use quote::ToTokens;
 
 use super::super::closures::tail;
@@ -10,7 +10,7 @@ use super::super::scope::{Scope, check_reserved};
 use super::super::value::Value;
 use super::super::vectors::vectors;
 use super::kernel::kernel;
-use super::{bracket_with, check_literal, check_size, dense, elaborate, empty_scope, follow, sparse, spell_matrix};
+use super::{check_literal, check_size, dense, elaborate, empty_scope, follow, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
 use crate::parse::{Closure, Pattern, spell, spell_type};
 
@@ -20,7 +20,7 @@ pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group
     let key = format!("equation of `{name}`");
     check_literal(&key, closure.body.to_token_stream())?;
     let pattern = &closure.arguments[0].pattern;
-    let symbol = graph.element_symbol(&pattern.spell(), n);
+    let symbol = graph.symbol(&pattern.spell(), Shape::square(n), Role::DeclaredElement, Property::General);
     let scope = scope(pattern, symbol)?;
     let (left, right) = elaborate(graph, &key, scope, |elaborator| elaborator.equation(&closure.body))?;
     let (place, body) = tail(&closure.body);
@@ -97,13 +97,14 @@ impl<'g> GroupEquation<'_, 'g> {
     /// The group, unless something is wrong with the equation.
     fn group(&self, sides: &[(Expr<'g>, Expr<'g>)]) -> Result<Group, Diagnostic> {
         let expressions: Vec<Expr<'g>> = sides.iter().map(|(left, right)| *left - *right).collect();
-        self.is_rational(&expressions)?;
+        let equation = self.joined(&expressions);
+        self.is_rational(equation)?;
         self.holds_at_identity(sides)?;
-        let derivative = follow::derivative(&expressions, self.symbol).ok_or_else(|| self.no_value())?;
+        let derivative = follow::derivative(equation, self.symbol).ok_or_else(|| self.no_value())?;
         let basis = self.algebra(&derivative)?;
-        self.is_closed(&derivative, &basis)?;
-        self.holds_along(&expressions, &derivative, &basis)?;
-        Ok(Group::by_equation(self.graph, self.name, self.joined(&expressions), self.symbol, basis))
+        self.is_closed(&basis)?;
+        self.holds_along(equation, &derivative, &basis)?;
+        Ok(Group::declare(self.graph, self.name, self.symbol.shape(), basis, Some((equation, self.symbol))))
     }
 
     fn no_value(&self) -> Diagnostic {
@@ -112,13 +113,13 @@ impl<'g> GroupEquation<'_, 'g> {
             note "with {} = I it divides by 0, or its numbers have more than 38 digits", self.symbol)
     }
 
-    fn is_rational(&self, expressions: &[Expr<'g>]) -> Result<(), Diagnostic> {
+    fn is_rational(&self, equation: Expr<'g>) -> Result<(), Diagnostic> {
         let (name, symbol) = (self.name, self.symbol);
-        if !expressions.iter().any(|expr| expr.depends_on(symbol)) {
+        if !equation.depends_on(symbol) {
             bail!(self.place, "the equation of `{name}` does not depend on `{symbol}`";
                 help "write an equation for `{symbol}`, as in `{symbol}.transpose() * {symbol} == I`");
         }
-        if !expressions.iter().all(|expr| expr.is_rational()) {
+        if !equation.is_rational() {
             bail!(self.place, "the equation of `{name}` is not rational";
                 note "its Lie algebra is found exactly, over the rational numbers, so roots, functions and π cannot stand in it");
         }
@@ -157,21 +158,9 @@ impl<'g> GroupEquation<'_, 'g> {
     }
 
     /// Brackets of the kernel stay in the kernel.
-    fn is_closed(&self, derivative: &[Vec<Rational>], basis: &[Sparse]) -> Result<(), Diagnostic> {
+    fn is_closed(&self, basis: &[Sparse]) -> Result<(), Diagnostic> {
         let shape = self.symbol.shape();
-        // the rows without their zeros; a column is an entry of the matrix, column by column
-        let place = |k: usize| (k % shape.rows) * shape.columns + k / shape.rows;
-        let sparse_row = |row: &Vec<Rational>| -> Vec<(usize, Rational)> {
-            let slopes = row.iter().enumerate().filter(|(_, slope)| !slope.is_zero());
-            slopes.map(|(k, slope)| (place(k), slope.clone())).collect()
-        };
-        let rows: Vec<Vec<(usize, Rational)>> = derivative.iter().map(sparse_row).collect();
-        let slope = |row: &Vec<(usize, Rational)>, bracket: &[Rational]| -> Rational {
-            let terms = row.iter().filter(|(entry, _)| !bracket[*entry].is_zero());
-            terms.map(|(entry, slope)| slope * &bracket[*entry]).sum()
-        };
-        let outside = |bracket: &[Rational]| rows.iter().any(|row| !slope(row, bracket).is_zero());
-        let Some((i, j, bracket)) = bracket_with(self.graph, shape, basis, outside) else { return Ok(()) };
+        let Some((i, j, bracket)) = open_bracket(self.graph, shape, basis) else { return Ok(()) };
         let [e, f] = [i, j].map(|k| spell_matrix(shape, &dense(shape, &[(1, &basis[k])])));
         let (i, j, bracket) = (i + 1, j + 1, spell_matrix(shape, &bracket));
         bail!(self.place, "the matrices with `{}` are no group", shortened(&self.text);
@@ -181,7 +170,7 @@ impl<'g> GroupEquation<'_, 'g> {
     /// The equation holds on the group of the algebra.
     fn holds_along(
         &self,
-        expressions: &[Expr<'g>],
+        equation: Expr<'g>,
         derivative: &[Vec<Rational>],
         basis: &[Sparse],
     ) -> Result<(), Diagnostic> {
@@ -190,12 +179,12 @@ impl<'g> GroupEquation<'_, 'g> {
         let general =
             basis.iter().enumerate().map(|(k, element)| ((k as i64 * k as i64 * 7 + 3 * k as i64) % 23 - 11, element));
         let leaves = |direction: Vec<(i64, &Sparse)>| {
-            let order = follow::leaves_at(expressions, self.symbol, &direction)?;
+            let order = follow::leaves_at(equation, self.symbol, &direction)?;
             Some((spell_matrix(self.symbol.shape(), &dense(self.symbol.shape(), &direction)), order))
         };
         let Some((along, order)) = alone.chain([general.collect()]).find_map(leaves) else { return Ok(()) };
         let rank = reduce(&mut derivative.to_vec()).len();
-        let general_rank = follow::general_rank(expressions, self.symbol);
+        let general_rank = follow::general_rank(equation, self.symbol);
         let f = self.symbol;
         if rank < general_rank {
             bail!(self.place, "the equation of `{}` is not regular at the identity", self.name;
@@ -210,7 +199,8 @@ impl<'g> GroupEquation<'_, 'g> {
         if let [single] = expressions {
             return *single;
         }
-        let entries = follow::entries(expressions);
+        let entries_of = |&expr: &Expr<'g>| expr.shape().positions().map(move |(i, j)| expr.entry(i, j));
+        let entries: Vec<Expr<'g>> = expressions.iter().flat_map(entries_of).collect();
         self.graph.stack(Shape::vector(entries.len()), entries)
     }
 }

@@ -163,16 +163,13 @@ fn spell_matrix(shape: Shape, entries: &[Rational]) -> String {
     format!("[{}]", rows.join("; "))
 }
 
-/// The first bracket of two basis elements that has a property: which, and what it is.
-fn bracket_with(
-    graph: &Graph,
-    shape: Shape,
-    basis: &[Sparse],
-    property: impl Fn(&[Rational]) -> bool,
-) -> Option<(usize, usize, Vec<Rational>)> {
+/// The first bracket of two elements of a basis that lies outside of their span: which, and what it is.
+fn open_bracket(graph: &Graph, shape: Shape, basis: &[Sparse]) -> Option<(usize, usize, Vec<Rational>)> {
     let algebra = graph.algebra(shape, basis.to_vec());
+    let span = graph.span(algebra);
     let pairs = (0..basis.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-    pairs.map(|(i, j)| (i, j, graph.bracket(algebra, i, j))).find(|(_, _, bracket)| property(bracket))
+    let mut brackets = pairs.map(|(i, j)| (i, j, graph.bracket(algebra, i, j)));
+    brackets.find(|(_, _, bracket)| !span.holds(bracket))
 }
 
 /// The size of a declared group's matrices is within the limit.

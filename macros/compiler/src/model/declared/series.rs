@@ -1,6 +1,6 @@
 //! Truncated power series in one variable s: how a formula changes along a curve.
 
-use clebsch_symbolic::{Analytic, Function, Matrix, Number, Rational, Shape, integer};
+use clebsch_symbolic::{Analytic, Function, Matrix, Number, Rational, Shape};
 
 /// c_0 + c_1 s + … + c_{N−1} s^{N−1}.
 #[derive(Copy, Clone, Debug)]
@@ -15,7 +15,7 @@ impl<K: Number, const N: usize> PartialEq for Series<K, N> {
 
 impl<K: Number, const N: usize> Series<K, N> {
     fn constant(value: K) -> Self {
-        let zero = K::from_rational(&integer(0));
+        let zero = K::from_integer(0);
         Series(std::array::from_fn(|k| if k == 0 { value } else { zero }))
     }
 }
@@ -30,14 +30,14 @@ impl<K: Number, const N: usize> Number for Series<K, N> {
     }
 
     fn multiply(self, other: Self) -> Self {
-        let zero = K::from_rational(&integer(0));
+        let zero = K::from_integer(0);
         Series(std::array::from_fn(|k| (0..=k).fold(zero, |sum, i| sum.add(self.0[i].multiply(other.0[k - i])))))
     }
 
     /// b_0 = 1/a_0, b_k = −(a_1 b_{k−1} + … + a_k b_0)/a_0.
     fn reciprocal(self) -> Self {
-        let zero = K::from_rational(&integer(0));
-        let (first, minus) = (self.0[0].reciprocal(), K::from_rational(&integer(-1)));
+        let zero = K::from_integer(0);
+        let (first, minus) = (self.0[0].reciprocal(), K::from_integer(-1));
         let mut inverse = [zero; N];
         inverse[0] = first;
         for k in 1..N {
@@ -61,7 +61,7 @@ impl<K: Number, const N: usize> Number for Series<K, N> {
     }
 
     fn opaque(_: &str, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
-        Matrix::from_fn(shape, |_| Series::constant(K::from_rational(&integer(0))))
+        Matrix::from_fn(shape, |_| Series::constant(K::from_integer(0)))
     }
 
     fn pi() -> Self {
