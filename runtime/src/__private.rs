@@ -48,7 +48,7 @@ pub use crate::steered::{
 };
 pub use crate::stepper::check_on_orbit;
 pub use crate::stumpff::stumpff;
-pub use crate::summation::{Compensated, Plain, accumulate};
+pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Space, Time};
 pub use core;

@@ -182,7 +182,7 @@ mod sphere;
 mod state;
 mod steered;
 mod stumpff;
-mod summation;
+mod sums;
 mod sylvester;
 mod system;
 mod tangent;

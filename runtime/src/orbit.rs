@@ -3,7 +3,7 @@
 use crate::linear::rows;
 use crate::orientation::Orientation;
 use crate::space::{lane_of, larger};
-use crate::summation::accumulate;
+use crate::sums::accumulate;
 use crate::{Mask, Scalar};
 use nalgebra::{SMatrix, SVector};
 

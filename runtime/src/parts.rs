@@ -3,7 +3,7 @@
 //! A *scheme* is the order in which these parts are called. It is the same for every declaration and stands in [`scheme`](crate::scheme); the derive
 //! macro writes parts alone.
 
-use crate::summation::Sums;
+use crate::sums::Sums;
 use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta, Space};
 
 /// The values of a system S, by the letters that formulas have for them: t, q, F, μ and u.

@@ -1,6 +1,6 @@
 //! The time of a state: nothing for autonomous systems, a clock for the others.
 
-use crate::summation::exact_sum;
+use crate::sums::exact_sum;
 use crate::{Scalar, Space};
 use core::fmt::Debug;
 

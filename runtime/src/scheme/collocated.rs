@@ -5,7 +5,7 @@ use super::substep::{Moving, moved};
 use super::{At, Pair};
 use crate::collocation::{GAUSS_16, collocate};
 use crate::parts::{HamiltonEquations, Mu, Q, Substep};
-use crate::summation::Sums;
+use crate::sums::Sums;
 use crate::{Error, Method, Scalar, Space};
 
 /// Steps of order 16 by collocation of (q, p), N numbers.

@@ -3,7 +3,7 @@
 use super::substep::{RestsOf, inverse_legendre, symmetric};
 use super::{At, Before, Pair, Parted, Scheme, one_by_one};
 use crate::parts::{Mu, Parts, Q, Substep};
-use crate::summation::Sums;
+use crate::sums::Sums;
 use crate::{Clebsch, Error, Method, Space};
 use core::marker::PhantomData;
 

@@ -3,7 +3,7 @@
 use super::sequence::{Carry, LeftBy, parted};
 use super::{At, Pair};
 use crate::parts::{Mu, Parts, Q, Substep};
-use crate::summation::{Rests, Sums};
+use crate::sums::{Rests, Sums};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 
 /// What rounding has taken off q and N of a system.

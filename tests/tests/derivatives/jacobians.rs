@@ -21,7 +21,8 @@ fn jacobians_of_all_implicit_equations() {
     let (mut implicit, mut explicit) = (0, 0);
     for file in files {
         let graph = Graph::new();
-        let program = program(&graph, &std::fs::read_to_string(&file).expect("a readable file"));
+        let text = std::fs::read_to_string(&file).expect("a readable file");
+        let Some(program) = program(&graph, &text) else { continue };
         // these kernels return whole matrices; by Newton's method too they are those that are written out (`clebsch-laws --test forms`)
         if program.form.keeps_matrices() {
             continue;

@@ -65,7 +65,7 @@ fn one_factor<S, const N: usize, const C: usize, const M: usize>(
         >,
 {
     let graph = Graph::new();
-    let program = program(&graph, text);
+    let program = program(&graph, text).expect("mechanics");
     let formulas = &program.formulas;
     let (q_symbol, f_symbol) = (formulas.model.configurations[0].symbol, formulas.model.factors[0].symbol);
     for _ in 0..SAMPLES {
@@ -159,7 +159,7 @@ fn neumann() {
 #[test]
 fn two_bodies() {
     let graph = Graph::new();
-    let program = program(&graph, fixture!("two_bodies"));
+    let program = program(&graph, fixture!("two_bodies")).expect("mechanics");
     let formulas = &program.formulas;
     let random = &mut Random::new(104);
     for _ in 0..SAMPLES {

@@ -11,44 +11,8 @@ use clebsch_symbolic::{
     integer,
 };
 
-use super::scalar::{Call, Callee, Input, Rate, Scalar, Scalars};
-
-/// A matrix of scalars, row by row.
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub struct Grid {
-    /// Rows and columns.
-    pub shape: Shape,
-    /// The entries, row by row.
-    pub entries: Vec<Scalar>,
-}
-
-/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
-#[derive(Default)]
-pub struct Grids {
-    grids: Table<usize, Rc<Grid>>,
-    constant: Table<usize, bool>,
-}
-
-impl Grid {
-    fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
-        Grid { shape, entries: shape.positions().map(entry).collect() }
-    }
-
-    /// A matrix of one entry.
-    pub fn scalar(entry: Scalar) -> Grid {
-        Grid::vector(vec![entry])
-    }
-
-    /// A column.
-    pub fn vector(entries: Vec<Scalar>) -> Grid {
-        Grid { shape: Shape::vector(entries.len()), entries }
-    }
-
-    /// The entry in row i and column j.
-    pub fn at(&self, i: usize, j: usize) -> Scalar {
-        self.entries[i * self.shape.columns + j]
-    }
-}
+use super::entries::{Grid, Scalar};
+use super::scalar::{Call, Callee, Input, Rate, Scalars};
 
 /// Lowers expressions to grids, remembering what it has lowered.
 pub struct Lowering<'a> {

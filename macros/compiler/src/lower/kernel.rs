@@ -6,7 +6,7 @@ mod shorten;
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
-use super::grid::Grid;
+use super::entries::Grid;
 use super::pairs::Pairs;
 use super::scalar::{Callee, Factors, Output};
 use super::signs;

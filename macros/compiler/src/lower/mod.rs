@@ -7,6 +7,7 @@ mod balance;
 mod code;
 mod control;
 mod cost;
+mod entries;
 mod factors;
 mod fixed_point;
 mod form;
@@ -32,10 +33,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::Feature;
 use crate::model::{Isotropy, System};
 
-use grid::{Grid, Lowering};
+use entries::{Grid, Scalar};
+use grid::Lowering;
 use kernel::{Hoisted, Hoisting};
 use made::{Maker, entries, grid as grid_of, plain, stack};
-use scalar::{Rate, Scalar, ScalarNode, Scalars};
+use scalar::{Rate, ScalarNode, Scalars};
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use cost::Cost;

@@ -7,11 +7,7 @@ use clebsch_symbolic::{
     Analytic, Function, Interner, One, Rational, Role, Shape, Symbol, Zero, integer, product, work,
 };
 
-use super::grid::{Grid, Grids};
-
-/// The identity of a scalar in its arena.
-#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct Scalar(u32);
+use super::entries::{Grid, Grids, Scalar};
 
 /// Factors with their exponents.
 pub(super) type Factors = Vec<(Scalar, u32)>;

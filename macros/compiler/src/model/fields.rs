@@ -8,8 +8,8 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
-use super::power;
 use super::scalar::Agreement;
+use super::site_types;
 use super::sizes::{ENTRIES, GROWS, size, type_parameter};
 use super::value::{Each, Value};
 use super::vectors::{hint, last_name, last_segment, vectors};
@@ -74,7 +74,7 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let entry = power::array(&field.ty, &declaration.generics)
+        let entry = site_types::array(&field.ty, &declaration.generics)
             .filter(|(length, _)| Some(*length) == sites)
             .map(|(_, entry)| entry);
         let ty = field_type(entry.unwrap_or(&field.ty), &declaration.generics);

@@ -22,6 +22,7 @@ mod print;
 mod quaternion;
 mod scalar;
 mod scope;
+mod site_types;
 mod sites;
 mod sizes;
 mod slots;
@@ -41,7 +42,7 @@ pub use features::features_as_markdown;
 pub use groups::is_large;
 pub use layout::Layout;
 pub use outline::{Outline, outline};
-pub use power::{Linear, Power, SiteIndex, Term};
+pub use power::{Linear, SiteIndex, Term};
 pub(crate) use sizes::IN_LOOPS;
 pub use types::*;
 
@@ -70,7 +71,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let names = GroupNames { generics: &declaration.generics, declared: &declared };
     let diagnostics = Diagnostics::new();
     let types = arguments::of_action(&declaration.action, &diagnostics);
-    let site = types.and_then(|types| diagnostics.take(power::of_site(types, &declaration.generics)));
+    let site = types.and_then(|types| diagnostics.take(site_types::of_site(types, &declaration.generics)));
     let (types, sites) = site.unzip();
     let sites = sites.flatten();
     if sites.is_some() {

@@ -5,7 +5,7 @@ use quote::ToTokens;
 
 use super::declared::DeclaredGroups;
 use super::groups::GroupNames;
-use super::{Layout, ScalarType, arguments, power, spaces};
+use super::{Layout, ScalarType, arguments, site_types, spaces};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
@@ -39,7 +39,7 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let declared = DeclaredGroups::read(graph, &declaration.groups, &ignored);
     let names = GroupNames { generics: &declaration.generics, declared: &declared };
     let types = arguments::of_action(&declaration.action, &ignored)?;
-    let (types, sites) = power::of_site(types, &declaration.generics).ok()?;
+    let (types, sites) = site_types::of_site(types, &declaration.generics).ok()?;
     let groups = spaces::read_groups(types.group, names, &ignored)?;
     let mut spaces = spaces::read_spaces(types.space, names, &ignored)?;
     let input = declaration.input().and_then(|argument| argument.ty.as_ref());

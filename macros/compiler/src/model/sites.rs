@@ -5,9 +5,9 @@ use proc_macro2::Ident;
 use syn::Generics;
 
 use super::features::{self, Feature, Found};
-use super::power::{Power, SiteIndex, Term, bounds, index_name};
+use super::power::{SiteIndex, Term, bounds, index_name};
 use super::value::Value;
-use super::{Configuration, Item, Layout, Leaf, Order, Parameter, ScalarType, System};
+use super::{Configuration, Item, Layout, Leaf, Order, Parameter, Power, ScalarType, System};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Closure, Declaration, Potential};
 

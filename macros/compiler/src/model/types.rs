@@ -4,9 +4,10 @@ use std::ops::Deref;
 use std::rc::Rc;
 
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
-use proc_macro2::Span;
+use proc_macro2::{Ident, Span};
 
-use super::{Access, Layout, Power};
+use super::power::{SiteIndex, Term};
+use super::{Access, Layout};
 use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Summation};
 
 /// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
@@ -386,4 +387,25 @@ pub struct Written {
     pub text: String,
     /// The closure's arguments, `|h, F|`.
     pub arguments: String,
+}
+
+/// What makes a power of the model of a site.
+#[derive(Clone)]
+pub struct Power<'g> {
+    /// The user's struct; that of the model is the site.
+    pub item: Item,
+    /// The const generic N.
+    pub length: Ident,
+    /// The symbol N.
+    pub sites: Expr<'g>,
+    /// The sites that terms read.
+    pub places: Vec<SiteIndex<'g>>,
+    /// The potential, a sum of terms.
+    pub terms: Vec<Term<'g>>,
+    /// The fields that terms read; those of the model are what the site reads.
+    pub parameters: Vec<Parameter<'g>>,
+    /// The user's fields that the site has copies of, in the order of the model's parameters.
+    pub copied: Vec<syn::Member>,
+    /// Whether all sites have the same kinetic energy.
+    pub is_uniform: bool,
 }

@@ -1,4 +1,4 @@
-use crate::lower::grid::Grid;
+use crate::lower::entries::Grid;
 use crate::lower::kernel::kernel;
 use crate::lower::{Hoisting, Input, Scalar, Scalars};
 use clebsch_symbolic::{Role, integer};

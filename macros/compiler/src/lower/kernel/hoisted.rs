@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Zero, integer, work};
 
 use super::{Hoisting, kernel};
-use crate::lower::grid::Grid;
+use crate::lower::entries::Grid;
 use crate::lower::{Code, Kernel, Scalar, ScalarNode, Scalars, signs};
 
 /// Values that are computed less often than the kernels that use them.

@@ -1,0 +1,46 @@
+//! Grids of scalars: what expressions are lowered to, and kernels are made of.
+
+use std::rc::Rc;
+
+use clebsch_symbolic::{Shape, Table};
+
+/// The identity of a scalar in its arena.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Scalar(pub(super) u32);
+
+/// A matrix of scalars, row by row.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Grid {
+    /// Rows and columns.
+    pub shape: Shape,
+    /// The entries, row by row.
+    pub entries: Vec<Scalar>,
+}
+
+/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
+#[derive(Default)]
+pub struct Grids {
+    pub(super) grids: Table<usize, Rc<Grid>>,
+    pub(super) constant: Table<usize, bool>,
+}
+
+impl Grid {
+    pub(super) fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
+        Grid { shape, entries: shape.positions().map(entry).collect() }
+    }
+
+    /// A matrix of one entry.
+    pub fn scalar(entry: Scalar) -> Grid {
+        Grid::vector(vec![entry])
+    }
+
+    /// A column.
+    pub fn vector(entries: Vec<Scalar>) -> Grid {
+        Grid { shape: Shape::vector(entries.len()), entries }
+    }
+
+    /// The entry in row i and column j.
+    pub fn at(&self, i: usize, j: usize) -> Scalar {
+        self.entries[i * self.shape.columns + j]
+    }
+}
