@@ -14,6 +14,9 @@ use std::marker::PhantomData;
 /// It keeps the first arcs, too short to determine the inertia, near to bodies that exist; the whole data say more by orders of magnitude.
 pub const PRIOR: f64 = 0.1;
 
+/// A stepper of the spacecraft, and the state that it starts from.
+pub type Begun<M> = (Stepper<Spacecraft, M>, State<Spacecraft, M>);
+
 /// What turns unknowns into predicted attitudes.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<M> {
@@ -64,7 +67,7 @@ impl<M: Differentiated<Spacecraft, 3>> Estimator<M> {
     ///
     /// # Errors
     /// What the stepper and the state refuse.
-    pub fn start(&self, x: &Unknowns, step_size: f64) -> Result<(Stepper<Spacecraft, M>, State<Spacecraft, M>), Error> {
+    pub fn start(&self, x: &Unknowns, step_size: f64) -> Result<Begun<M>, Error> {
         let start = self.chart.start(x);
         let stepper =
             Spacecraft { inertia: start.inertia, mean_motion: self.mean_motion }.into_stepper_by::<M>(step_size)?;

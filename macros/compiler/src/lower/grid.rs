@@ -7,8 +7,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Expr, Graph, One, Operation, Property, Rational, Shape, Sparse, Symbol, Table, View, WordTerm,
-    integer,
+    Algebra, Basis, Expr, Graph, One, Operation, Property, Rational, Shape, Sparse, Symbol, View, WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
