@@ -128,6 +128,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         Ok(())
     }
 
+    #[inline]
     fn steps(
         At { system, constants, t, .. }: At<'_, S>,
         _: S::Scalar,
