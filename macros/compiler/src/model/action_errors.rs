@@ -3,11 +3,10 @@
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
 use super::action_laws::Action;
-use super::elaborate::shortened;
 use super::membership::Verdict;
 use super::{Configuration, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostic, error};
-use crate::parse::{joined, spell};
+use crate::parse::{joined, shortened, spell};
 
 impl<'g> Action<'_, 'g> {
     /// The identity moves something.
@@ -39,7 +38,7 @@ impl<'g> Action<'_, 'g> {
             _ => "a unit vector".to_string(),
         };
         let which = if verdict == Verdict::Open { "cannot be shown to be always" } else { "is not always" };
-        let moved = self.formula(moved).unwrap_or_else(|| shortened(&spell(&self.closure.body)));
+        let moved = self.formula(moved).unwrap_or_else(|| shortened(&self.closure.body));
         let (key, name) = (&self.closure.key, &leaf.name);
         error!(&self.closure.body, "the {key} moves `{name}` to `{moved}`, which {which} {promise}";
             help "write `{name}: {}` if any value is a configuration", plain_name(leaf))

@@ -1,13 +1,16 @@
 //! Arguments go by name: the action fixes the names, the other closures use those that they need, in a fixed order.
 
 use clebsch_symbolic::{Expr, Group};
+use proc_macro2::Ident;
 use syn::ext::IdentExt;
+use syn::{Generics, Type};
 
 use super::scope::{Scope, check_reserved};
+use super::sizes::const_generic;
 use super::slots::{Matched, SharedNames, Slot};
 use super::value::{Each, Value};
-use crate::diagnostic::{Diagnostics, refuse, report};
-use crate::parse::{Argument, Closure, Pattern};
+use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse, report};
+use crate::parse::{Argument, Closure, Declaration, Pattern, spell, spell_type};
 
 /// The names that the action fixes, with their values.
 pub(super) struct Arguments<'d, 'g> {
@@ -18,19 +21,23 @@ pub(super) struct Arguments<'d, 'g> {
     pub members: Vec<(Expr<'g>, Group)>,
     pub step_size: Expr<'g>,
     pub time: Expr<'g>,
+    pub diagnostics: &'d Diagnostics,
 }
 
-/// The two arguments of the action: the group element and the configuration, with their types.
+/// The two arguments of the action: the group element and the configuration, with their types. Those of a power are those of one site.
 #[derive(Copy, Clone)]
 pub(super) struct TypedArguments<'d> {
     pub element: &'d Pattern,
-    pub group: &'d syn::Type,
+    pub group: &'d Type,
     pub configuration: &'d Pattern,
-    pub space: &'d syn::Type,
+    pub space: &'d Type,
+    /// The const generic N of a power.
+    pub sites: Option<&'d Ident>,
 }
 
 /// The patterns and types of the two arguments of the action.
-pub(super) fn of_action<'d>(action: &'d Closure, diagnostics: &Diagnostics) -> Option<TypedArguments<'d>> {
+pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &Diagnostics) -> Option<TypedArguments<'d>> {
+    let action = &declaration.action;
     let [element, configuration] = action.arguments.as_slice() else {
         let count = action.arguments.len();
         let plural = if count == 1 { "" } else { "s" };
@@ -58,7 +65,41 @@ pub(super) fn of_action<'d>(action: &'d Closure, diagnostics: &Diagnostics) -> O
     let group = typed(element, "SO<3>", "the group");
     let space = typed(configuration, "Unit<Vector3>", "the space of configurations");
     let (element, configuration) = (&element.pattern, &configuration.pattern);
-    Some(TypedArguments { element, group: group?, configuration, space: space? })
+    let types = TypedArguments { element, group: group?, configuration, space: space?, sites: None };
+    diagnostics.take(types.of_site(&declaration.generics))
+}
+
+impl<'d> TypedArguments<'d> {
+    /// What stands inside `[…; N]` of both types, where these have a const generic N for their length.
+    ///
+    /// # Errors
+    /// Where only one of them has, or another one.
+    fn of_site(self, generics: &'d Generics) -> Result<TypedArguments<'d>, Diagnostic> {
+        match (sites_of(self.group, generics), sites_of(self.space, generics)) {
+            (None, None) => Ok(self),
+            (Some((length, group)), Some((other, space))) if length == other => {
+                Ok(TypedArguments { group, space, sites: Some(length), ..self })
+            }
+            (Some((length, inner)), _) => Err(unequal(self.space, inner, length)),
+            (None, Some((length, inner))) => Err(unequal(self.group, inner, length)),
+        }
+    }
+}
+
+fn unequal(ty: &Type, inner: &Type, length: &Ident) -> Diagnostic {
+    error!(ty, "`{}` is no power with {length} sites", spell_type(ty);
+        help "write `[…; {length}]` for both, the group and the space that it moves";
+        note "the other argument has {length} times `{}`, and each site is moved by its own element", spell_type(inner))
+}
+
+/// N and `T` of `[T; N]` with a const generic N.
+pub(super) fn sites_of<'t, 'd>(ty: &'t Type, generics: &'d Generics) -> Option<(&'d Ident, &'t Type)> {
+    match ty {
+        Type::Group(group) => sites_of(&group.elem, generics),
+        Type::Paren(paren) => sites_of(&paren.elem, generics),
+        Type::Array(array) => Some((const_generic(&spell(&array.len), generics)?, &*array.elem)),
+        _ => None,
+    }
 }
 
 impl<'d, 'g> Arguments<'d, 'g> {
@@ -70,10 +111,10 @@ impl<'d, 'g> Arguments<'d, 'g> {
     }
 
     /// The names in the action itself.
-    pub fn action_scope(&self, diagnostics: &Diagnostics) -> Scope<'g> {
+    pub fn action_scope(&self) -> Scope<'g> {
         let mut scope = Scope::new(&self.members);
-        scope.add_argument(self.names.element, self.element_value.clone(), diagnostics);
-        scope.add_argument(self.names.configuration, self.configuration_value.clone(), diagnostics);
+        scope.add_argument(self.names.element, self.element_value.clone(), self.diagnostics);
+        scope.add_argument(self.names.configuration, self.configuration_value.clone(), self.diagnostics);
         let (f, q) = (self.names.element.spell(), self.names.configuration.spell());
         let help = format!("the action depends on `{f}` and `{q}` alone");
         scope.add_missing(["h", "t"].map(|name| (name.to_string(), help.clone())));
@@ -81,22 +122,17 @@ impl<'d, 'g> Arguments<'d, 'g> {
     }
 
     /// The arguments of a closure, with the slot that each takes.
-    pub fn matched(&self, closure: &'d Closure, slots: &'static [Slot], diagnostics: &Diagnostics) -> Matched<'d> {
-        Matched::new(self.names, closure, slots, diagnostics)
+    pub fn matched(&self, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
+        Matched::new(self.names, closure, slots, self.diagnostics)
     }
 
     /// The names in a closure that introduces none.
-    pub fn scope_of(&self, closure: &'d Closure, slots: &'static [Slot], diagnostics: &Diagnostics) -> Scope<'g> {
-        self.scope(&self.matched(closure, slots, diagnostics), &[], diagnostics)
+    pub fn scope_of(&self, closure: &'d Closure, slots: &'static [Slot]) -> Scope<'g> {
+        self.scope(&self.matched(closure, slots), &[])
     }
 
     /// The scope in which arguments have the values of their slots, and what is left out has a reason.
-    pub fn scope(
-        &self,
-        matched: &Matched,
-        introduced: &[(Slot, Option<Value<'g>>)],
-        diagnostics: &Diagnostics,
-    ) -> Scope<'g> {
+    pub fn scope(&self, matched: &Matched, introduced: &[(Slot, Option<Value<'g>>)]) -> Scope<'g> {
         let mut scope = Scope::new(&self.members);
         for (argument, slot) in matched.arguments() {
             let value = slot.and_then(|slot| match slot {
@@ -106,7 +142,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
                 Slot::Element => self.element_value.clone(),
                 new => introduced.iter().find(|(slot, _)| *slot == new).and_then(|(_, value)| value.clone()),
             });
-            scope.add_argument(&argument.pattern, value, diagnostics);
+            scope.add_argument(&argument.pattern, value, self.diagnostics);
         }
         scope.add_missing(matched.missing());
         scope

@@ -1,21 +1,21 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
 use clebsch_symbolic::{Expr, Graph, Shape};
-use syn::{BinOp, Expr as Syntax, Stmt};
+use syn::{BinOp, Expr as Syntax};
 
 use super::arguments::Arguments;
 use super::elaborate::{Context, Elaborator};
 use super::groups::without_cayley_map;
-use super::leaves::{leaves, new_value_of};
 use super::power::Term;
 use super::scope::Scope;
 use super::sites;
 use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
+use super::space::new_value_of;
 use super::typed::{Typed, Velocity};
 use super::value::{Each, Value};
 use super::{Discretization, Factor, Kinetic, Spans, Written};
 use crate::diagnostic::{Location, error, refuse, report};
-use crate::parse::{self, Closure, Declaration, spell};
+use crate::parse::{self, Closure, Declaration, spell, tail};
 
 /// What an optional closure gives, if it is there; `None` where it has an error, which was reported.
 pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
@@ -34,12 +34,10 @@ impl<'g> Closures<'_, '_, 'g> {
     /// Φ_F(q), leaf by leaf.
     pub fn action(&mut self) -> Option<Vec<Expr<'g>>> {
         let Closure { key, body, .. } = &self.declaration.action;
-        let scope = self.arguments.action_scope(&self.context.diagnostics);
-        let value = self.context.value(&self.declaration.action, scope)?;
+        let value = self.context.value(&self.declaration.action, self.arguments.action_scope())?;
         let value = self.of_site(body, value)?;
         let is = new_value_of(self.arguments.names.configuration);
-        let configurations = self.typed.configurations.as_deref()?;
-        leaves((key, body), &value, &self.typed.configuration, configurations, &is, &self.context.diagnostics)
+        self.typed.space.as_ref()?.leaves_of((key, body), &value, &is, self.context.diagnostics)
     }
 
     /// What the action of a power gives for each site; any other value as it is.
@@ -48,8 +46,8 @@ impl<'g> Closures<'_, '_, 'g> {
         match value {
             Value::Sequence(range, each) if range == (self.context.graph.integer(0), power.count) => Some(*each),
             other => {
-                let (place, is) = (tail(body).0, other.describe());
-                refuse!(self.context.diagnostics, place, "the action gives {is}, but it has to give a value for each site";
+                let is = other.describe();
+                refuse!(self.context.diagnostics, tail(body), "the action gives {is}, but it has to give a value for each site";
                     help "write `(0..{}).map(|i| …)`", power.name)
             }
         }
@@ -66,8 +64,8 @@ impl<'g> Closures<'_, '_, 'g> {
     }
 
     fn cost(&mut self, closure: &Closure) -> Option<Expr<'g>> {
-        let scope = self.arguments.scope_of(closure, COST, &self.context.diagnostics);
-        let cost = scalar(self.context, closure, scope, "a discrete Lagrangian is a scalar")?;
+        let cost =
+            scalar(self.context, closure, self.arguments.scope_of(closure, COST), "a discrete Lagrangian is a scalar")?;
         let factors = self.typed.factors.as_deref()?;
         for Factor { name, group, .. } in factors.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
             let example = if group.is_translation() {
@@ -75,7 +73,7 @@ impl<'g> Closures<'_, '_, 'g> {
             } else {
                 format!("self.mass * ({name} - I).norm_squared() / (4 * h)")
             };
-            report!(self.context.diagnostics, tail(&closure.body).0, "the cost does not depend on `{name}`";
+            report!(self.context.diagnostics, tail(&closure.body), "the cost does not depend on `{name}`";
                 help "add the kinetic energy of `{name}`, as in `{example}`";
                 note "the momentum of `{name}` is the derivative of the cost, and cannot be inverted where that is 0");
         }
@@ -84,16 +82,16 @@ impl<'g> Closures<'_, '_, 'g> {
 
     fn lagrangian(&mut self, closure: &Closure) -> Option<Kinetic<'g>> {
         let (graph, factors) = (self.context.graph, self.typed.factors.as_deref());
-        let diagnostics = &self.context.diagnostics;
-        let matched = self.arguments.matched(closure, LAGRANGIAN, diagnostics);
+        let diagnostics = self.context.diagnostics;
+        let matched = self.arguments.matched(closure, LAGRANGIAN);
         let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
         let velocity = factors
             .zip(pattern)
-            .and_then(|(factors, pattern)| Velocity { graph, factors }.of(pattern, &self.typed.element, diagnostics));
+            .and_then(|(factors, pattern)| Velocity { graph, factors, diagnostics }.of(pattern, &self.typed.element));
         let (value, velocities) = velocity.unzip();
         let is_power = self.context.power.is_some();
         let value = value.map(|own| if is_power { Value::PerSite(Each::Motion, Box::new(own)) } else { own });
-        let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, value)], diagnostics);
+        let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, value)]);
         if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
             scope.set_velocities(velocities, factors);
         }
@@ -102,8 +100,7 @@ impl<'g> Closures<'_, '_, 'g> {
         let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
         if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
             let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
-            let place = tail(&closure.body).0;
-            refuse!(self.context.diagnostics, place, "the lagrangian does not depend on the velocity `{velocity}`{of}";
+            refuse!(diagnostics, tail(&closure.body), "the lagrangian does not depend on the velocity `{velocity}`{of}";
                 help "add the kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`");
         }
         let discretization = chosen_discretization(graph, self.declaration, factors);
@@ -114,12 +111,11 @@ impl<'g> Closures<'_, '_, 'g> {
     pub fn potential(&mut self) -> Option<Expr<'g>> {
         match self.declaration.potential.as_ref()? {
             parse::Potential::Closure(closure) => {
-                let scope = self.arguments.scope_of(closure, POTENTIAL, &self.context.diagnostics);
-                scalar(self.context, closure, scope, "an energy is a scalar")
+                scalar(self.context, closure, self.arguments.scope_of(closure, POTENTIAL), "an energy is a scalar")
             }
             parse::Potential::Opaque(opaque) => {
                 let time = opaque.takes_time.then_some(self.arguments.time);
-                let points = self.typed.configurations.as_deref()?.iter().map(|leaf| leaf.symbol);
+                let points = self.typed.space.as_ref()?.leaves.iter().map(|leaf| leaf.symbol);
                 let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
                 let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
                 Some(self.context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
@@ -131,11 +127,10 @@ impl<'g> Closures<'_, '_, 'g> {
     pub fn potential_of_power(&mut self) -> Option<Vec<Term<'g>>> {
         // by construction: an opaque potential has been refused
         let closure = self.declaration.potential.as_ref()?.closure()?;
-        let scope = self.arguments.scope_of(closure, POTENTIAL, &self.context.diagnostics);
-        let value = self.context.value(closure, scope)?;
+        let value = self.context.value(closure, self.arguments.scope_of(closure, POTENTIAL))?;
         if value.terms().is_none() {
-            let (place, is) = (tail(&closure.body).0, value.describe());
-            report!(self.context.diagnostics, place, "the potential is {is}, but an energy is a scalar";
+            let is = value.describe();
+            report!(self.context.diagnostics, tail(&closure.body), "the potential is {is}, but an energy is a scalar";
                 help "add what sites have, as in `(0..N).map(|i| …).sum()`");
         }
         value.terms()
@@ -161,14 +156,14 @@ pub(super) fn scalar<'g>(
     let key = closure.key.to_string();
     let mut elaborator = Elaborator::new(context, &key, scope);
     let value = elaborator.elaborate(&closure.body)?;
-    let (place, tail) = tail(&closure.body);
+    let tail = tail(&closure.body);
     if let Some(count) = elaborator.context.power.as_ref().map(|power| power.count)
         && let Some(terms) = value.terms()
     {
         match sites::of_one_site(&terms, count, context.graph) {
             Ok(sum) => return Some(sum),
             Err(reason) => {
-                refuse!(context.diagnostics, place, "the {key} of a power is a sum over its sites, and {reason}";
+                refuse!(context.diagnostics, tail, "the {key} of a power is a sum over its sites, and {reason}";
                 help "write `(0..{count}).map(|i| …).sum()` with what site `i` has alone";
                 note "the equation of a step is solved site by site; what ties sites to each other belongs to the potential")
             }
@@ -178,7 +173,7 @@ pub(super) fn scalar<'g>(
         return Some(expr);
     }
     let reason = elaborator.quietly(|elaborator| because(elaborator, tail, &value));
-    let error = error!(place, "the {key} is {}, but {needs}", value.describe()).maybe_help(to_scalar(tail, &value));
+    let error = error!(tail, "the {key} is {}, but {needs}", value.describe()).maybe_help(to_scalar(tail, &value));
     context.diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
 }
 
@@ -210,19 +205,6 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
     let [left, right] = [left, right].map(|factor| Value::Matrix(factor).describe());
     let (a, b, text) = (spell(&product.left), spell(&product.right), spell(tail));
     Some(format!("`{text}` is {} because `{a}` is {left} and `{b}` is {right}", value.describe()))
-}
-
-/// The expression that gives a body its value, and where it is.
-pub(super) fn tail(body: &Syntax) -> (Location, &Syntax) {
-    match body {
-        Syntax::Block(block) => match block.block.stmts.last() {
-            Some(Stmt::Expr(value, None)) => tail(value),
-            _ => (body.into(), body),
-        },
-        Syntax::Paren(inner) => tail(&inner.expr),
-        Syntax::Group(inner) => tail(&inner.expr),
-        _ => (body.into(), body),
-    }
 }
 
 pub(super) fn spans(declaration: &Declaration) -> Spans {

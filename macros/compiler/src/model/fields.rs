@@ -8,8 +8,8 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
+use super::arguments::sites_of;
 use super::scalar::Agreement;
-use super::site_types;
 use super::sizes::{ENTRIES, GROWS, size, type_parameter};
 use super::value::{Each, Value};
 use super::vectors::{hint, last_name, last_segment, vectors};
@@ -58,15 +58,13 @@ struct FieldType<'t> {
 pub(super) fn read<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
-    spaces: &[Option<&Type>],
+    spaces: &[&Type],
     sites: Option<&syn::Ident>,
     diagnostics: &Diagnostics,
 ) -> Fields<'g> {
     let used = first_uses(declaration);
     let mut scalar = Agreement::new(declaration, diagnostics);
-    for ty in spaces.iter().flatten() {
-        scalar.meet(ty, "the configuration", diagnostics);
-    }
+    spaces.iter().for_each(|ty| scalar.meet(ty, "the configuration"));
     let (mut known, mut parameters, mut leaf_count) = (BTreeMap::new(), Vec::new(), 0);
     for field in &declaration.fields {
         let name = field.name();
@@ -74,13 +72,13 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let entry = site_types::array(&field.ty, &declaration.generics)
+        let entry = sites_of(&field.ty, &declaration.generics)
             .filter(|(length, _)| Some(*length) == sites)
             .map(|(_, entry)| entry);
         let ty = field_type(entry.unwrap_or(&field.ty), &declaration.generics);
         let ty = diagnostics.take(ty.map_err(|error| error.unwrap_or_else(|| explain(field))));
         if let Some(written) = ty.as_ref().and_then(|ty| ty.scalar) {
-            scalar.meet(written, &format!("`{name}`"), diagnostics);
+            scalar.meet(written, &format!("`{name}`"));
         }
         let parameter = ty.and_then(|ty| {
             let parameter = diagnostics.take(parameter(graph, field, ty, first_use, leaf_count))?;

@@ -1,64 +1,50 @@
 //! Forces: the closures `force` and `force_on`, with the velocity and the input that they introduce.
 
-use clebsch_symbolic::{Expr, Role, Shape};
+use clebsch_symbolic::{Expr, Graph, Role, Shape};
 
-use super::closures::{optional, tail, written};
-use super::elaborate::{Context, shortened};
+use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
-use super::leaves::leaves;
 use super::slots::{FORCE, Slot};
-use super::spaces::read_spaces;
-use super::typed::{self, ActedSystem, Velocity};
+use super::space::Space;
+use super::spaces::{SpaceType, read_spaces};
+use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
-use super::{Configuration, Factor, Force, Layout, LeafSpace};
+use super::{Factor, Force, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse};
-use crate::parse::{Argument, Closure, Declaration, spell};
+use crate::parse::{Argument, Closure, Declaration, shortened, tail};
 
 /// The forces of a declaration with their input.
 pub(super) struct Forces<'g> {
     pub force: Option<Force<'g>>,
-    pub input: Input<'g>,
-}
-
-/// The leaves of an input, and how they nest.
-#[derive(Clone)]
-pub(super) struct Input<'g> {
-    pub structure: Layout,
-    pub leaves: Vec<Configuration<'g>>,
-}
-
-impl<'g> Input<'g> {
-    pub fn value(&self) -> Value<'g> {
-        typed::value_of(&self.structure, &self.leaves)
-    }
+    pub input: Space<'g>,
 }
 
 /// A closure that has been read.
 struct ReadForce<'g> {
     value: Vec<Expr<'g>>,
     velocities: Vec<Expr<'g>>,
-    input: Option<Input<'g>>,
+    input: Option<Space<'g>>,
 }
 
-impl<'g> ActedSystem<'_, 'g> {
+impl<'g> ActedSystem<'_, '_, 'g> {
     /// Reads both closures; `None` if one has an error, which was reported.
-    pub fn forces(&self, context: &mut Context<'_, 'g>, declaration: &Declaration) -> Option<Forces<'g>> {
-        let of_group = optional(declaration.force.as_ref(), |closure| self.force(context, closure));
-        let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(context, closure));
+    pub fn forces(&mut self, declaration: &Declaration) -> Option<Forces<'g>> {
+        let of_group = optional(declaration.force.as_ref(), |closure| self.force(closure));
+        let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(closure));
         let takes_input =
             |force: &Option<Option<ReadForce<'g>>>| force.iter().flatten().any(|read| read.input.is_some());
-        if let Some(closure) =
-            declaration.force_on.as_ref().filter(|_| takes_input(&of_group) && takes_input(&on_leaves))
+        if let Some(closure) = &declaration.force_on
+            && takes_input(&of_group)
+            && takes_input(&on_leaves)
         {
-            refuse!(context.diagnostics, closure.head, "both `force` and `force_on` take an input";
+            refuse!(self.context.diagnostics, closure.head, "both `force` and `force_on` take an input";
                 help "let one of the two take the whole input, as a tuple where it has parts";
                 note "a step has one input, `stepper.step_with(&state, &input)`");
         }
         let (of_group, on_leaves) = of_group.zip(on_leaves)?;
         let mut all = of_group.iter().chain(&on_leaves);
         let velocities = all.clone().next().map(|read| read.velocities.clone());
-        let none = Input { structure: Layout::Tuple(Vec::new()), leaves: Vec::new() };
-        let input = all.find_map(|read| read.input.clone()).unwrap_or(none);
+        let input = all.find_map(|read| read.input.clone()).unwrap_or_else(Space::point);
         // both closures speak of one velocity, each under its own name
         let renamed = |read: &ReadForce<'g>| -> Vec<Expr<'g>> {
             let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
@@ -74,51 +60,48 @@ impl<'g> ActedSystem<'_, 'g> {
         Some(Forces { force, input })
     }
 
-    fn force(&self, context: &mut Context<'_, 'g>, closure: &Closure) -> Option<ReadForce<'g>> {
-        let matched = self.arguments.matched(closure, FORCE, &context.diagnostics);
-        let velocity = Velocity { graph: context.graph, factors: self.factors };
+    fn force(&mut self, closure: &Closure) -> Option<ReadForce<'g>> {
+        let diagnostics = self.context.diagnostics;
+        let matched = self.arguments.matched(closure, FORCE);
+        let velocity = Velocity { graph: self.context.graph, factors: self.factors, diagnostics };
         let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
-        let named = optional(pattern, |pattern| velocity.of(pattern, self.element, &context.diagnostics))?;
-        let (value, velocities) = named.unzip();
+        let (value, velocities) = optional(pattern, |pattern| velocity.of(pattern, self.element))?.unzip();
         let velocities = velocities.unwrap_or_else(|| velocity.unnamed());
-        let input = optional(matched.argument(Slot::Input), |argument| self.read_input(context, argument))?;
-        let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Input::value))];
-        let mut scope = self.arguments.scope(&matched, &introduced, &context.diagnostics);
+        let input = optional(matched.argument(Slot::Input), |argument| self.read_input(argument))?;
+        let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Space::value))];
+        let mut scope = self.arguments.scope(&matched, &introduced);
         scope.set_velocities(&velocities, self.factors);
-        let value = context.value(closure, scope)?;
+        let value = self.context.value(closure, scope)?;
         let value = if closure.key == "force" {
-            self.components(context, closure, &value)?
+            self.components(closure, &value)?
         } else {
             let is = format!("a covector at `{}`, which has its shape", self.arguments.names.configuration.spell());
-            let place = (&closure.key, &closure.body);
-            leaves(place, &value, self.configuration, self.configurations, &is, &context.diagnostics)?
+            self.space.leaves_of((&closure.key, &closure.body), &value, &is, diagnostics)?
         };
         Some(ReadForce { value, velocities, input })
     }
 
     /// The leaves of a typed argument: spaces of vectors.
-    pub fn read_input(&self, context: &Context<'_, 'g>, argument: &Argument) -> Option<Input<'g>> {
-        let diagnostics = &context.diagnostics;
-        let product = read_spaces(argument.ty.as_ref()?, self.names, diagnostics)?;
-        if let Some((_, ty)) =
-            product.leaves.iter().find(|(leaf, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion)
-        {
+    pub fn read_input(&self, argument: &Argument) -> Option<Space<'g>> {
+        let diagnostics = self.context.diagnostics;
+        let product = read_spaces(argument.ty.as_ref()?, self.names)?;
+        let is_other = |(leaf, _): &&(SpaceType, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion;
+        if let Some((_, ty)) = product.leaves.iter().find(is_other) {
             refuse!(diagnostics, *ty, "an input is made of vectors and matrices";
                 help "write `u: Vector3`, or a tuple of such, `(torque, thrust): (Vector3, Vector1)`";
                 note "forces are linear spaces: sums and multiples of inputs are inputs");
         }
-        let leaves = typed::leaves(context.graph, &argument.pattern, &product, Role::Input, diagnostics)?;
-        Some(Input { structure: product.structure, leaves })
+        Space::new(self.context.graph, &argument.pattern, product, Role::Input, diagnostics)
     }
 
     /// The components of each factor: a vector, or a tuple with a vector for each block of its algebra, `(torque, force)` on SE(3).
-    pub fn components(&self, context: &Context<'_, 'g>, closure: &Closure, value: &Value<'g>) -> Option<Vec<Expr<'g>>> {
+    pub fn components(&self, closure: &Closure, value: &Value<'g>) -> Option<Vec<Expr<'g>>> {
         let leaf = |value: &Value<'g>, k: usize| {
             let factor = &self.factors[k];
             let shape = Shape::vector(factor.group.dimension());
             let vector = match value {
                 Value::Matrix(expr) => Some(*expr).filter(|expr| expr.shape() == shape),
-                Value::Tuple(values) => stacked(context, factor, values),
+                Value::Tuple(values) => stacked(self.context.graph, factor, values),
                 _ => None,
             };
             vector.ok_or_else(|| format!("{shape} for `{}`", factor.name))
@@ -132,18 +115,18 @@ impl<'g> ActedSystem<'_, 'g> {
         } else {
             ("the force gives", "it has", "a covector of the group: it has the components of the momentum")
         };
-        refuse!(context.diagnostics, tail(&closure.body).0, "{gives} {found}, but {has} to give {needed}";
-            note "`{}` is {is}", shortened(&spell(&closure.body)))
+        refuse!(self.context.diagnostics, tail(&closure.body), "{gives} {found}, but {has} to give {needed}";
+            note "`{}` is {is}", shortened(&closure.body))
     }
 }
 
 /// One vector from those of the blocks.
-fn stacked<'g>(context: &Context<'_, 'g>, factor: &Factor<'g>, values: &[Value<'g>]) -> Option<Expr<'g>> {
-    let (blocks, shape) = (context.graph.blocks(factor.group), Shape::vector(factor.group.dimension()));
+fn stacked<'g>(graph: &'g Graph, factor: &Factor<'g>, values: &[Value<'g>]) -> Option<Expr<'g>> {
+    let (blocks, shape) = (graph.blocks(factor.group), Shape::vector(factor.group.dimension()));
     if blocks.len() != values.len() {
         return None;
     }
-    blocks.iter().zip(values).try_fold(context.graph.zero(shape), |sum, (block, value)| {
+    blocks.iter().zip(values).try_fold(graph.zero(shape), |sum, (block, value)| {
         let part = value.matrix().filter(|part| part.shape() == Shape::vector(block.algebra.dimension()))?;
         Some(sum + part.embed(shape, block.offset, 0))
     })

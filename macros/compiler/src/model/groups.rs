@@ -1,21 +1,51 @@
 //! The groups by name, built in and declared.
 
-use clebsch_symbolic::{Graph, Group};
-use syn::{GenericArgument, Generics, PathSegment, Type};
+use std::cell::Cell;
 
-use super::declared::DeclaredGroups;
+use clebsch_symbolic::{Graph, Group};
+use proc_macro2::Ident;
+use syn::ext::IdentExt;
+use syn::{GenericArgument, Generics, Type};
+
 use super::features::{self, Feature, Found};
 use super::sizes::{GROWS, LARGEST, size_argument};
 use super::vectors::{arguments, last_name, last_segment, named_shape};
 use super::{ChartChoice, Configuration, Factor, LeafSpace};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, report};
 use crate::parse::{Declaration, Dials, listed, spell_type};
 
-/// What the names in types refer to.
+/// What the names in types refer to, and what collects the errors of types.
 #[derive(Copy, Clone)]
 pub(super) struct GroupNames<'d> {
     pub generics: &'d Generics,
     pub declared: &'d DeclaredGroups,
+    pub diagnostics: &'d Diagnostics,
+}
+
+/// The groups of the user's own: the name of each, and whether a type names it.
+#[derive(Default)]
+pub(super) struct DeclaredGroups {
+    known: Vec<(Ident, Group, Cell<bool>)>,
+}
+
+impl DeclaredGroups {
+    pub fn add(&mut self, name: Ident, group: Group) {
+        self.known.push((name, group, Cell::new(false)));
+    }
+
+    pub fn find(&self, name: &Ident) -> Option<Group> {
+        let (_, group, used) = self.known.iter().find(|(known, ..)| known.unraw() == name.unraw())?;
+        used.set(true);
+        Some(*group)
+    }
+
+    /// Reports groups that no type names.
+    pub fn check_used(&self, diagnostics: &Diagnostics) {
+        for (name, ..) in self.known.iter().filter(|(.., used)| !used.get()) {
+            report!(diagnostics, name.span(), "the group `{name}` is declared and not used";
+                help "write `F: {name}` in the action, or remove the group");
+        }
+    }
 }
 
 /// How a group is made from its sizes.
@@ -76,20 +106,21 @@ pub(super) fn is_built_in(name: &str) -> bool {
 /// Reads a group by its name; `None` if the type has another name.
 pub(super) fn group(ty: &Type, names: GroupNames) -> Option<Result<Group, Diagnostic>> {
     let segment = last_segment(ty)?;
-    if let Some(group) = names.declared.find(&segment.ident) {
-        return Some(declared(ty, segment, group));
+    let ident = &segment.ident;
+    match names.declared.find(ident) {
+        Some(_) if !segment.arguments.is_none() => Some(Err(error!(ty, "`{ident}` has no size to choose";
+            help "write `{ident}`"; note "a group that is declared here is one group"))),
+        Some(group) => Some(Ok(group)),
+        None => {
+            let maker = GROUPS.iter().find(|maker| ident == maker.name)?;
+            Some(built_in(ty, maker, &arguments(segment), names).and_then(|group| check_dimension(ty, group)))
+        }
     }
-    let maker = GROUPS.iter().find(|maker| segment.ident == maker.name)?;
-    Some(built_in(ty, maker, &arguments(segment), names).and_then(|group| check_dimension(ty, group)))
 }
 
-/// A declared group is a name without sizes.
-fn declared(ty: &Type, PathSegment { ident, arguments }: &PathSegment, group: Group) -> Result<Group, Diagnostic> {
-    if !arguments.is_none() {
-        bail!(ty, "`{ident}` has no size to choose";
-            help "write `{ident}`"; note "a group that is declared here is one group");
-    }
-    Ok(group)
+/// Reads a group where no other type can stand.
+pub(super) fn known_group(ty: &Type, names: GroupNames) -> Result<Group, Diagnostic> {
+    group(ty, names).unwrap_or_else(|| Err(unknown_group(ty, names)))
 }
 
 fn built_in(ty: &Type, maker: &Maker, sizes: &[&GenericArgument], names: GroupNames) -> Result<Group, Diagnostic> {
@@ -162,7 +193,7 @@ pub(super) fn without_cayley_map<'f, 'g>(graph: &Graph, factors: &'f [Factor<'g>
 }
 
 /// The error for a type that is no group, where a group is expected.
-pub(super) fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
+fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
     let (text, name) = (spell_type(ty), last_name(ty));
     if let Some(shape) = named_shape(&name) {
         let (n, error) =
@@ -184,7 +215,7 @@ pub(super) fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
 
 /// The group that a name like `SO3`, `So` or `Rotation3` most likely means.
 pub(super) fn suggestion(name: &str, names: GroupNames) -> Option<String> {
-    let own: Vec<String> = names.declared.names().collect();
+    let own: Vec<String> = names.declared.known.iter().map(|(name, ..)| name.unraw().to_string()).collect();
     if let Some(similar) = nearest(name, own.iter().map(String::as_str)).filter(|_| name.len() > 2) {
         return Some(similar.to_string());
     }

@@ -1,6 +1,5 @@
 //! The second stage: the declaration as mathematics, with names resolved, shapes checked and the action's laws verified.
 
-mod access;
 mod action_errors;
 mod action_laws;
 mod arguments;
@@ -13,7 +12,6 @@ mod fields;
 mod forces;
 mod groups;
 mod layout;
-mod leaves;
 mod membership;
 mod momentum;
 mod outline;
@@ -22,10 +20,10 @@ mod print;
 mod quaternion;
 mod scalar;
 mod scope;
-mod site_types;
 mod sites;
 mod sizes;
 mod slots;
+mod space;
 mod spaces;
 mod symmetries;
 #[cfg(test)]
@@ -37,10 +35,9 @@ mod vectors;
 
 pub use crate::parse::dials::*;
 pub use crate::parse::{Located, Opaque};
-pub use access::{Access, Part};
 pub use features::features_as_markdown;
 pub use groups::is_large;
-pub use layout::Layout;
+pub use layout::{Access, Layout, Part};
 pub use outline::{Outline, outline};
 pub use power::{Linear, SiteIndex, Term};
 pub(crate) use sizes::IN_LOOPS;
@@ -53,7 +50,6 @@ use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 use self::action_laws::{Action, Law};
 use self::arguments::Arguments;
 use self::closures::{Closures, optional};
-use self::declared::DeclaredGroups;
 use self::elaborate::Context;
 use self::forces::Forces;
 use self::groups::GroupNames;
@@ -65,49 +61,45 @@ use crate::parse::{Declaration, Potential};
 /// The model of a declaration.
 pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
     let diagnostics = Diagnostics::new();
-    let declared = DeclaredGroups::read(graph, &declaration.groups, &diagnostics);
+    let declared = declared::read_all(graph, &declaration.groups, &diagnostics);
     // a type cannot name a group that has an error
     diagnostics.propagate(())?;
-    let names = GroupNames { generics: &declaration.generics, declared: &declared };
     let diagnostics = Diagnostics::new();
-    let types = arguments::of_action(&declaration.action, &diagnostics);
-    let site = types.and_then(|types| diagnostics.take(site_types::of_site(types, &declaration.generics)));
-    let (types, sites) = site.unzip();
-    let sites = sites.flatten();
+    let names = GroupNames { generics: &declaration.generics, declared: &declared, diagnostics: &diagnostics };
+    let types = arguments::of_action(declaration, &diagnostics);
+    let sites = types.and_then(|types| types.sites);
     if sites.is_some() {
         sites::check(declaration, &diagnostics);
     }
-    let groups = types.and_then(|types| spaces::read_groups(types.group, names, &diagnostics));
-    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names, &diagnostics));
-    let scalars: Vec<Option<&syn::Type>> =
-        spaces.iter().flat_map(|spaces| spaces.leaves.iter().map(|(leaf, _)| leaf.scalar)).collect();
+    let groups = types.and_then(|types| spaces::read_groups(types.group, names));
+    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names));
+    let scalars: Vec<&syn::Type> =
+        spaces.iter().flat_map(|spaces| &spaces.leaves).filter_map(|(leaf, _)| leaf.scalar).collect();
     let fields = fields::read(graph, declaration, &scalars, sites, &diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
     let typed = Typed::new(graph, types, groups, spaces, &diagnostics);
     // before the laws of the action are looked at in all directions
-    if let Some((factors, configurations)) = typed.factors.as_deref().zip(typed.configurations.as_deref())
-        && let Err(error) = groups::check_large(declaration, factors, configurations)
+    if let (Some(factors), Some(space)) = (&typed.factors, &typed.space)
+        && let Err(error) = groups::check_large(declaration, factors, &space.leaves)
     {
         diagnostics.push(error);
         return Err(diagnostics);
     }
     let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
     let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
-    let mut arguments = typed.arguments(types, declaration.input(), (step_size, time));
-    let power = sites.zip(typed.configurations.clone()).map(|(length, leaves)| {
+    let mut arguments = typed.arguments(types, declaration.input(), (step_size, time), &diagnostics);
+    let power = sites.zip(typed.space.clone()).map(|(length, space)| {
         arguments.of_each_site();
-        let (structure, leaf_count) = (typed.configuration.clone(), fields.leaf_count());
-        Sites::new(graph, length, (structure, leaves), arguments.names.configuration.spell(), leaf_count)
+        Sites::new(graph, length, space, arguments.names.configuration.spell(), fields.leaf_count())
     });
-    let mut context = Context { graph, fields: &fields, constants: Vec::new(), power, diagnostics };
+    let mut context = Context::new(graph, &fields, power, &diagnostics);
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
-    let Context { constants, power, diagnostics, .. } = context;
+    let Context { constants, power, .. } = context;
     declared.check_used(&diagnostics);
     groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
     // by construction: what is missing has an error, and there were none
-    let (Some(formulas), Some(mut factors), Some(configurations)) = (formulas, typed.factors, typed.configurations)
-    else {
+    let (Some(formulas), Some(mut factors), Some(space)) = (formulas, typed.factors, typed.space) else {
         return Err(Diagnostics::new());
     };
     for (factor, law) in factors.iter_mut().zip(formulas.laws) {
@@ -123,11 +115,11 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         time,
         factors,
         element: typed.element,
-        configurations,
-        configuration: typed.configuration,
+        configurations: space.leaves,
+        configuration: space.layout,
         action: formulas.action,
         inputs: formulas.forces.input.leaves,
-        input: formulas.forces.input.structure,
+        input: formulas.forces.input.layout,
         control: formulas.control,
         endpoint: formulas.endpoint,
         emit: dials.emit,
@@ -189,7 +181,6 @@ impl<'g> ClosureValues<'g> {
         typed: &Typed<'g>,
         names: GroupNames,
     ) -> Option<ClosureValues<'g>> {
-        let (factors, configurations) = (typed.factors.as_deref(), typed.configurations.as_deref());
         let mut closures = Closures { context, declaration, arguments, typed };
         let action = closures.action();
         let kinetic = closures.kinetic();
@@ -198,24 +189,25 @@ impl<'g> ClosureValues<'g> {
         } else {
             (closures.potential(), Vec::new())
         };
-        let (action, factors, configurations) = (action?, factors?, configurations?);
-        let (graph, closure) = (context.graph, &declaration.action);
-        let acting = Action { graph, closure, factors, configurations, value: &action };
-        let laws = action_laws::check(&acting, &context.diagnostics);
-        let (element, configuration) = (&typed.element, &typed.configuration);
-        let system = ActedSystem { arguments, names, element, factors, configuration, configurations, action: &action };
-        let symmetries = system.symmetries(context, &declaration.symmetries);
-        forces::check_dials(declaration, &context.diagnostics);
-        let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(context, closure));
-        let forces = system.forces(context, declaration);
-        let (mover, forces) = match system.motion(context, declaration) {
+        let (action, factors, space) = (action?, typed.factors.as_deref()?, typed.space.as_ref()?);
+        let (graph, diagnostics, closure) = (context.graph, context.diagnostics, &declaration.action);
+        let acting = Action { graph, closure, factors, configurations: &space.leaves, value: &action };
+        let laws = action_laws::check(&acting, diagnostics);
+        let element = &typed.element;
+        let mut system = ActedSystem { context, arguments, names, element, factors, space, action: &action };
+        let offered = declaration.symmetries.iter().enumerate();
+        let symmetries = offered.filter_map(|symmetry| system.symmetry(symmetry)).collect();
+        forces::check_dials(declaration, diagnostics);
+        let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
+        let forces = system.forces(declaration);
+        let (mover, forces) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), Some(Forces { force: None, input })),
             // what moves has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
             None => (kinetic.map(Mover::Momenta), forces),
         };
         let forces = forces?;
-        let control = optional(declaration.control.as_ref(), |control| system.choice(context, control, &forces.input))?;
+        let control = optional(declaration.control.as_ref(), |control| system.choice(control, &forces.input))?;
         Some(ClosureValues {
             action,
             laws: laws?,

@@ -3,9 +3,8 @@
 use clebsch_symbolic::{Graph, Group, Shape};
 use quote::ToTokens;
 
-use super::declared::DeclaredGroups;
 use super::groups::GroupNames;
-use super::{Layout, ScalarType, arguments, site_types, spaces};
+use super::{Layout, ScalarType, arguments, declared, spaces};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
@@ -36,24 +35,23 @@ pub struct Outline {
 /// The outline of a declaration whose action has readable types.
 pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let ignored = Diagnostics::new();
-    let declared = DeclaredGroups::read(graph, &declaration.groups, &ignored);
-    let names = GroupNames { generics: &declaration.generics, declared: &declared };
-    let types = arguments::of_action(&declaration.action, &ignored)?;
-    let (types, sites) = site_types::of_site(types, &declaration.generics).ok()?;
-    let groups = spaces::read_groups(types.group, names, &ignored)?;
-    let mut spaces = spaces::read_spaces(types.space, names, &ignored)?;
+    let declared = declared::read_all(graph, &declaration.groups, &ignored);
+    let names = GroupNames { generics: &declaration.generics, declared: &declared, diagnostics: &ignored };
+    let types = arguments::of_action(declaration, &ignored)?;
+    let groups = spaces::read_groups(types.group, names)?;
+    let mut spaces = spaces::read_spaces(types.space, names)?;
     let input = declaration.input().and_then(|argument| argument.ty.as_ref());
-    let input = input.and_then(|ty| spaces::read_spaces(ty, names, &ignored));
+    let input = input.and_then(|ty| spaces::read_spaces(ty, names));
     if declaration.dials.emit.momentum {
-        (spaces.structure, spaces.leaves) = (Layout::Tuple(Vec::new()), Vec::new());
+        (spaces.layout, spaces.leaves) = (Layout::Tuple(Vec::new()), Vec::new());
     }
     Some(Outline {
-        sites: sites.cloned(),
+        sites: types.sites.cloned(),
         inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
-        input: input.map_or(Layout::Tuple(Vec::new()), |input| input.structure),
-        element: groups.structure,
+        input: input.map_or(Layout::Tuple(Vec::new()), |input| input.layout),
+        element: groups.layout,
         groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
-        configuration: spaces.structure,
+        configuration: spaces.layout,
         shapes: spaces.leaves.iter().map(|(space, _)| space.shape).collect(),
         quaternions: spaces.leaves.iter().map(|(space, _)| space.is_quaternion).collect(),
         takes_time: takes_time(declaration),

@@ -11,25 +11,26 @@ use crate::parse::{Declaration, spell_type};
 pub(super) struct Agreement<'d> {
     generics: &'d Generics,
     found: Option<(ScalarType, String)>,
+    diagnostics: &'d Diagnostics,
 }
 
 impl<'d> Agreement<'d> {
     /// Begins with the dial `scalar`.
-    pub fn new(declaration: &'d Declaration, diagnostics: &Diagnostics) -> Agreement<'d> {
+    pub fn new(declaration: &'d Declaration, diagnostics: &'d Diagnostics) -> Agreement<'d> {
         let generics = &declaration.generics;
         let named = |ident: &Ident| match named_scalar(&ident.to_string(), generics) {
             Some(scalar) => Some((scalar, "`scalar`".to_string())),
             None => refuse!(diagnostics, ident, "`{ident}` is no scalar";
                 help "write `f64`, `f32` or a type parameter of the struct"),
         };
-        Agreement { generics, found: declaration.dials.scalar.as_ref().and_then(named) }
+        Agreement { generics, found: declaration.dials.scalar.as_ref().and_then(named), diagnostics }
     }
 
     /// Compares one more scalar with those before.
-    pub fn meet(&mut self, ty: &Type, whose: &str, diagnostics: &Diagnostics) {
+    pub fn meet(&mut self, ty: &Type, whose: &str) {
         let text = spell_type(ty);
         let Some(scalar) = named_scalar(&last_name(ty), self.generics) else {
-            report!(diagnostics, ty, "the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter";
+            report!(self.diagnostics, ty, "the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter";
                 help "write `f64`"; note "a macro cannot see what an alias stands for");
             return;
         };
@@ -37,7 +38,7 @@ impl<'d> Agreement<'d> {
             None => self.found = Some((scalar, whose.to_string())),
             Some((other, first)) if *other != scalar => {
                 let other = spell_scalar(other);
-                report!(diagnostics, ty, "the scalar of {whose} is `{text}`, that of {first} is `{other}`";
+                report!(self.diagnostics, ty, "the scalar of {whose} is `{text}`, that of {first} is `{other}`";
                     help "write `{other}`"; note "a system has one scalar type");
             }
             Some(_) => {}

@@ -6,8 +6,9 @@ use syn::Generics;
 
 use super::features::{self, Feature, Found};
 use super::power::{SiteIndex, Term, bounds, index_name};
+use super::space::Space;
 use super::value::Value;
-use super::{Configuration, Item, Layout, Leaf, Order, Parameter, Power, ScalarType, System};
+use super::{Configuration, Item, Leaf, Order, Parameter, Power, ScalarType, System};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Closure, Declaration, Potential};
 
@@ -15,8 +16,8 @@ use crate::parse::{Closure, Declaration, Potential};
 pub(super) struct Sites<'g> {
     pub name: String,
     pub count: Expr<'g>,
-    /// How the configuration of a site nests, and its leaves.
-    configuration: (Layout, Vec<Configuration<'g>>),
+    /// The configuration of a site.
+    space: Space<'g>,
     pattern: String,
     /// What the sums around the expression that is read run through, the outermost first.
     pub ranges: Vec<(Expr<'g>, Expr<'g>)>,
@@ -37,17 +38,11 @@ pub(super) struct Entry<'g> {
 
 impl<'g> Sites<'g> {
     /// Nothing met so far.
-    pub fn new(
-        graph: &'g Graph,
-        length: &Ident,
-        configuration: (Layout, Vec<Configuration<'g>>),
-        pattern: String,
-        next_leaf: usize,
-    ) -> Sites<'g> {
+    pub fn new(graph: &'g Graph, length: &Ident, space: Space<'g>, pattern: String, next_leaf: usize) -> Sites<'g> {
         let name = length.to_string();
         let count = graph.symbol(&name, Shape::scalar(), Role::Sites, Property::General);
         let (ranges, places, entries) = (Vec::new(), Vec::new(), Vec::new());
-        Sites { name, count, configuration, pattern, ranges, places, entries, next_leaf }
+        Sites { name, count, space, pattern, ranges, places, entries, next_leaf }
     }
 
     /// The symbol of the index of the sum inside those around.
@@ -66,14 +61,13 @@ impl<'g> Sites<'g> {
 
     /// The configuration at a place.
     pub fn configuration_at(&self, place: usize) -> Value<'g> {
-        let (structure, leaves) = &self.configuration;
         let text = self.places[place].text();
         let leaf = |(number, leaf): (usize, &Configuration<'g>)| {
             let name = format!("{}[{text}]{}", self.pattern, leaf.accessor);
             Value::leaf(like(leaf.symbol, &name, Role::At(place, number)), leaf.is_quaternion)
         };
-        let leaves: Vec<Value<'g>> = leaves.iter().enumerate().map(leaf).collect();
-        Value::nested(structure, &leaves)
+        let leaves: Vec<Value<'g>> = self.space.leaves.iter().enumerate().map(leaf).collect();
+        Value::nested(&self.space.layout, &leaves)
     }
 
     /// What a field has at a place, with new symbols like those of the site itself where it is met first.

@@ -2,20 +2,20 @@
 
 use clebsch_symbolic::{Group, Property, Shape};
 use proc_macro2::Span;
-use syn::{GenericArgument, Generics, Type};
+use syn::{GenericArgument, Type};
 
-use super::groups::{GroupNames, group, suggestion, unknown_group};
+use super::groups::{GroupNames, group, known_group, suggestion};
 use super::quaternion;
 use super::sizes::{IN_LOOPS, LEAVES, length};
 use super::vectors::{Vectors, arguments, hint, last_name, last_segment, vectors};
 use super::{Layout, LeafSpace};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
+use crate::diagnostic::{Diagnostic, Location, error};
 use crate::parse::spell_type;
 
 /// A type as a product of leaves.
 #[derive(Clone)]
 pub(super) struct Product<'t, L> {
-    pub structure: Layout,
+    pub layout: Layout,
     /// Each leaf with its type.
     pub leaves: Vec<(L, &'t Type)>,
 }
@@ -42,32 +42,23 @@ impl SpaceType<'_> {
 }
 
 /// Reads the type of the group element.
-pub(super) fn read_groups<'t>(
-    ty: &'t Type,
-    names: GroupNames,
-    diagnostics: &Diagnostics,
-) -> Option<Product<'t, Group>> {
-    let leaf = |ty: &'t Type| group(ty, names).unwrap_or_else(|| Err(unknown_group(ty, names)));
-    Product::read(ty, names.generics, &leaf, diagnostics)
+pub(super) fn read_groups<'t>(ty: &'t Type, names: GroupNames) -> Option<Product<'t, Group>> {
+    Product::read(ty, names, &|ty| known_group(ty, names))
 }
 
 /// Reads the type of the configuration.
-pub(super) fn read_spaces<'t>(
-    ty: &'t Type,
-    names: GroupNames,
-    diagnostics: &Diagnostics,
-) -> Option<Product<'t, SpaceType<'t>>> {
-    Product::read(ty, names.generics, &|ty| read_space(ty, names), diagnostics)
+pub(super) fn read_spaces<'t>(ty: &'t Type, names: GroupNames) -> Option<Product<'t, SpaceType<'t>>> {
+    Product::read(ty, names, &|ty| read_space(ty, names))
 }
 
 impl<'t, L: Clone> Product<'t, L> {
     fn read(
         ty: &'t Type,
-        generics: &Generics,
+        names: GroupNames,
         leaf: &impl Fn(&'t Type) -> Result<L, Diagnostic>,
-        diagnostics: &Diagnostics,
     ) -> Option<Product<'t, L>> {
-        let read = |ty: &'t Type| Product::read(ty, generics, leaf, diagnostics);
+        let read = |ty: &'t Type| Product::read(ty, names, leaf);
+        let diagnostics = names.diagnostics;
         let product = match ty {
             Type::Group(group) => read(&group.elem)?,
             Type::Paren(paren) => read(&paren.elem)?,
@@ -76,10 +67,10 @@ impl<'t, L: Clone> Product<'t, L> {
                 (factors.len() == tuple.elems.len()).then(|| Product::of(factors, Layout::Tuple))?
             }
             Type::Array(array) => {
-                let length = diagnostics.take(length(&array.len, generics))?;
+                let length = diagnostics.take(length(&array.len, names.generics))?;
                 Product::of(vec![read(&array.elem)?; length], Layout::Array)
             }
-            _ => Product { structure: Layout::Leaf(0), leaves: vec![(diagnostics.take(leaf(ty))?, ty)] },
+            _ => Product { layout: Layout::Leaf(0), leaves: vec![(diagnostics.take(leaf(ty))?, ty)] },
         };
         if product.leaves.len() > LEAVES {
             return diagnostics.refuse(too_many(ty, product.leaves.len()));
@@ -89,12 +80,12 @@ impl<'t, L: Clone> Product<'t, L> {
 
     fn of(factors: Vec<Product<'t, L>>, nest: fn(Vec<Layout>) -> Layout) -> Product<'t, L> {
         let mut leaves = Vec::new();
-        let mut structures = Vec::new();
+        let mut layouts = Vec::new();
         for factor in factors {
-            structures.push(factor.structure.shifted(leaves.len()));
+            layouts.push(factor.layout.shifted(leaves.len()));
             leaves.extend(factor.leaves);
         }
-        Product { structure: nest(structures), leaves }
+        Product { layout: nest(layouts), leaves }
     }
 }
 

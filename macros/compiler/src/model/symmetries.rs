@@ -5,42 +5,36 @@ use syn::Type;
 
 use super::action_errors::ascii;
 use super::action_laws::{self, Action};
-use super::closures::{self, tail};
-use super::elaborate::Context;
-use super::groups::{group, unknown_group};
-use super::leaves::{leaves, new_value_of};
+use super::closures;
+use super::groups::known_group;
 use super::slots::{Matched, SYMMETRY, Slot};
+use super::space::{Space, new_value_of};
 use super::spaces::{space_of, span_of};
 use super::typed::ActedSystem;
 use super::value::Value;
 use super::{Access, Configuration, Factor, OfferedSymmetry, Side};
-use crate::diagnostic::{Diagnostics, refuse};
-use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
+use crate::diagnostic::refuse;
+use crate::parse::{Argument, Closure, Pattern, joined, spell_type, tail};
 
-impl<'g> ActedSystem<'_, 'g> {
-    /// All symmetries of a declaration.
-    pub fn symmetries(&self, context: &mut Context<'_, 'g>, closures: &[Closure]) -> Vec<OfferedSymmetry<'g>> {
-        closures.iter().enumerate().filter_map(|(index, closure)| self.symmetry(context, closure, index)).collect()
-    }
-
-    /// Reads and checks one symmetry.
-    fn symmetry(&self, context: &mut Context<'_, 'g>, closure: &Closure, index: usize) -> Option<OfferedSymmetry<'g>> {
-        let matched = self.arguments.matched(closure, SYMMETRY, &context.diagnostics);
-        let argument = self.offered_argument(&matched, &context.diagnostics)?;
-        let offered = self.offered(context, argument, index);
+impl<'g> ActedSystem<'_, '_, 'g> {
+    /// Reads and checks a symmetry, by its number among those of the declaration.
+    pub fn symmetry(&mut self, (index, closure): (usize, &Closure)) -> Option<OfferedSymmetry<'g>> {
+        let matched = self.arguments.matched(closure, SYMMETRY);
+        let argument = self.offered_argument(&matched)?;
+        let offered = self.offered(argument, index);
         let value = offered.as_ref().map(|factor| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions));
-        let scope = self.arguments.scope(&matched, &[(Slot::Offered, value)], &context.diagnostics);
-        let value = context.value(closure, scope)?;
-        let (configurations, elements) = self.images(context, closure, &value)?;
+        let scope = self.arguments.scope(&matched, &[(Slot::Offered, value)]);
+        let value = self.context.value(closure, scope)?;
+        let (configurations, elements) = self.images(closure, &value)?;
         let offered = offered?;
-        let side = self.check(context, closure, &offered, &configurations, &elements)?;
+        let side = self.check(closure, &offered, &configurations, &elements)?;
         let Factor { group, symbol, name, .. } = offered;
         let written = closures::written(closure);
         Some(OfferedSymmetry { group, symbol, name, side, configurations, elements, written })
     }
 
     /// The argument for the element of the symmetry's group; a symmetry needs the others too.
-    fn offered_argument<'c>(&self, matched: &Matched<'c>, diagnostics: &Diagnostics) -> Option<&'c Argument> {
+    fn offered_argument<'c>(&self, matched: &Matched<'c>) -> Option<&'c Argument> {
         if matched.has_error() {
             return None;
         }
@@ -49,7 +43,7 @@ impl<'g> ActedSystem<'_, 'g> {
             let name = names.pattern(slot).map_or("element of its group".into(), |name| format!("`{}`", name.spell()));
             let offered = matched.argument(Slot::Offered).map_or("S: SO<3>".into(), Argument::spell);
             let known = joined([offered, names.configuration.spell(), names.element.spell()]);
-            refuse!(diagnostics, matched.closure.head, "the symmetry has no {name}";
+            refuse!(self.context.diagnostics, matched.closure.head, "the symmetry has no {name}";
                 help "write `|{known}| …`";
                 note "it moves configurations and group elements together, so it takes both");
         }
@@ -57,8 +51,8 @@ impl<'g> ActedSystem<'_, 'g> {
     }
 
     /// The element of the symmetry's group, as a factor.
-    fn offered(&self, context: &Context<'_, 'g>, argument: &Argument, index: usize) -> Option<Factor<'g>> {
-        let diagnostics = &context.diagnostics;
+    fn offered(&self, argument: &Argument, index: usize) -> Option<Factor<'g>> {
+        let diagnostics = self.context.diagnostics;
         let Pattern::Name(ident) = &argument.pattern else {
             refuse!(diagnostics, argument.pattern.place(), "a symmetry has one group";
                 help "offer a product as several symmetries, `symmetry = [|S: SO<3>, …| …, …]`");
@@ -72,29 +66,23 @@ impl<'g> ActedSystem<'_, 'g> {
             refuse!(diagnostics, ty, "`{}` is a product, but a symmetry has one group", spell_type(ty);
                 help "offer several symmetries, `symmetry = [|S: SO<3>, …| …, …]`");
         }
-        let group = group(ty, self.names).unwrap_or_else(|| Err(unknown_group(ty, self.names)));
-        let group = diagnostics.take(group)?;
+        let group = diagnostics.take(known_group(ty, self.names))?;
         let (role, whole) = (Role::OfferedElement(index), Access::default());
-        Some(Factor::new(context.graph, group, name, role, whole, span_of(ty)))
+        Some(Factor::new(self.context.graph, group, name, role, whole, span_of(ty)))
     }
 
     /// q′ and F′ of the pair that the closure gives.
-    fn images(
-        &self,
-        context: &Context<'_, 'g>,
-        closure: &Closure,
-        value: &Value<'g>,
-    ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
-        let diagnostics = &context.diagnostics;
+    fn images(&self, closure: &Closure, value: &Value<'g>) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+        let diagnostics = self.context.diagnostics;
         let (configuration, element) = (self.arguments.names.configuration, self.arguments.names.element);
         let (q, f) = (configuration.spell(), element.spell());
         let parts = match value {
             Value::Tuple(parts) => parts.as_slice(),
             _ => &[],
         };
-        let (place, body) = tail(&closure.body);
+        let body = tail(&closure.body);
         let [point, moved] = parts else {
-            refuse!(diagnostics, place, "the symmetry gives {}, but it has to give a pair", value.describe();
+            refuse!(diagnostics, body, "the symmetry gives {}, but it has to give a pair", value.describe();
                 help "give the moved `{q}` and the moved `{f}`, as in `(S * {q}, {f})`");
         };
         // the two halves of the pair that gives a body its value, or twice the body
@@ -102,21 +90,20 @@ impl<'g> ActedSystem<'_, 'g> {
             syn::Expr::Tuple(tuple) if tuple.elems.len() == 2 => [&tuple.elems[0], &tuple.elems[1]],
             other => [other, other],
         };
-        let elements: Vec<Configuration<'g>> = self.factors.iter().map(as_leaf).collect();
-        let (is, key) = (new_value_of(configuration), &closure.key);
-        let points = leaves((key, first), point, self.configuration, self.configurations, &is, diagnostics);
-        let is = new_value_of(element);
-        let moved = leaves((key, second), moved, self.element, &elements, &is, diagnostics);
+        let elements = Space { layout: self.element.clone(), leaves: self.factors.iter().map(as_leaf).collect() };
+        let key = &closure.key;
+        let points = self.space.leaves_of((key, first), point, &new_value_of(configuration), diagnostics);
+        let moved = elements.leaves_of((key, second), moved, &new_value_of(element), diagnostics);
         let (points, moved) = points.zip(moved)?;
-        let foreign = |images: &[Expr<'g>], leaves: &[Configuration<'g>]| {
+        let foreign = |images: &[Expr<'g>], space: &Space<'g>| {
             let is_read = |symbol: &Expr<'g>| images.iter().any(|image| image.depends_on(*symbol));
-            leaves.iter().map(|leaf| leaf.symbol).find(is_read)
+            space.leaves.iter().map(|leaf| leaf.symbol).find(is_read)
         };
         if let Some(symbol) = foreign(&points, &elements) {
             refuse!(diagnostics, first, "the symmetry moves `{q}` by `{symbol}`";
                 note "it moves a configuration to the same place whatever the step is");
         }
-        if let Some(symbol) = foreign(&moved, self.configurations) {
+        if let Some(symbol) = foreign(&moved, self.space) {
             refuse!(diagnostics, second, "the symmetry moves `{f}` by `{symbol}`";
                 note "it moves a group element in the same way wherever the configuration is");
         }
@@ -126,28 +113,24 @@ impl<'g> ActedSystem<'_, 'g> {
     /// The symmetry is an action on configurations and elements together, and agrees with the action of the system.
     fn check(
         &self,
-        context: &Context<'_, 'g>,
         closure: &Closure,
         offered: &Factor<'g>,
         points: &[Expr<'g>],
         elements: &[Expr<'g>],
     ) -> Option<Side> {
-        let leaves: Vec<Configuration<'g>> =
-            self.configurations.iter().cloned().chain(self.factors.iter().map(as_leaf)).collect();
+        let mut leaves = self.space.leaves.clone();
+        leaves.extend(self.factors.iter().map(as_leaf));
         let value = [points, elements].concat();
         let factors = [offered.clone()];
-        let graph = context.graph;
+        let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
         let action = Action { graph, closure, factors: &factors, configurations: &leaves, value: &value };
-        let law = *action_laws::check(&action, &context.diagnostics)?.first()?;
+        let law = *action_laws::check(&action, diagnostics)?.first()?;
         if !law.moves {
-            refuse!(context.diagnostics, &closure.body, "the symmetry by `{}` moves nothing", offered.name; help "leave it out");
+            refuse!(diagnostics, &closure.body, "the symmetry by `{}` moves nothing", offered.name; help "leave it out");
         }
         // (Φ_F q)′ and Φ_{F′}(q′)
-        let at = |values: &[Expr<'g>]| -> Vec<_> {
-            leaves.iter().map(|leaf| leaf.symbol).zip(values.iter().copied()).collect()
-        };
         let substituted = |images: &[Expr<'g>], values: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            let rules = at(values);
+            let rules: Vec<_> = leaves.iter().map(|leaf| leaf.symbol).zip(values.iter().copied()).collect();
             images.iter().map(|image| image.substitute(&rules)).collect()
         };
         let stepped_then_moved = substituted(points, self.action);
@@ -155,9 +138,9 @@ impl<'g> ActedSystem<'_, 'g> {
         if !identity::equal(&stepped_then_moved, &moved_then_stepped) {
             let differs = |(a, b): (&Expr<'g>, &Expr<'g>)| !identity::equal(&[*a], &[*b]);
             let leaf = stepped_then_moved.iter().zip(&moved_then_stepped).position(differs).unwrap_or(0);
-            let (q, s, f) = (&self.configurations[leaf].name, &offered.name, self.arguments.names.element.spell());
+            let (q, s, f) = (&self.space.leaves[leaf].name, &offered.name, self.arguments.names.element.spell());
             let [one, other] = [&stepped_then_moved, &moved_then_stepped].map(|images| ascii(images[leaf]));
-            refuse!(context.diagnostics, &closure.body, "the symmetry does not agree with the action";
+            refuse!(diagnostics, &closure.body, "the symmetry does not agree with the action";
                 note "a step by `{f}` and then `{s}` moves {q} to {one}, `{s}` first and then the moved step to {other}";
                 help "{}", self.example(offered, leaf));
         }
@@ -168,7 +151,7 @@ impl<'g> ActedSystem<'_, 'g> {
     fn example(&self, offered: &Factor<'g>, leaf: usize) -> String {
         let moves = |factor: &&Factor<'g>| self.action[leaf].depends_on(factor.symbol);
         let factor = self.factors.iter().find(moves).unwrap_or(&self.factors[0]);
-        let (q, s, f) = (&self.configurations[leaf].name, &offered.name, &factor.name);
+        let (q, s, f) = (&self.space.leaves[leaf].name, &offered.name, &factor.name);
         match (offered.group, factor.group) {
             (Group::Translation(_), _) => format!("for `{q} + {f}` write `({q} + {s}, {f})`"),
             (_, Group::Translation(_)) => format!("for `{q} + {f}` write `({s} * {q}, {s} * {f})`"),

@@ -4,12 +4,13 @@ use clebsch_symbolic::{Block, Expr, Graph, Group, Property, Role, Shape};
 use proc_macro2::Span;
 
 use super::arguments::{Arguments, TypedArguments};
+use super::elaborate::Context;
 use super::groups::GroupNames;
-use super::leaves::leaf_names;
 use super::slots::SharedNames;
+use super::space::{Space, leaf_names};
 use super::spaces::{Product, SpaceType, span_of};
 use super::value::Value;
-use super::{Access, Configuration, Factor, Layout, LeafSpace, Side};
+use super::{Access, Factor, Layout, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Pattern};
 
@@ -17,19 +18,17 @@ use crate::parse::{Argument, Pattern};
 pub(super) struct Typed<'g> {
     pub element: Layout,
     pub factors: Option<Vec<Factor<'g>>>,
-    pub configuration: Layout,
-    pub configurations: Option<Vec<Configuration<'g>>>,
+    pub space: Option<Space<'g>>,
 }
 
 /// A system whose action has been read: what symmetries, forces and inputs are read for.
-#[derive(Copy, Clone)]
-pub(super) struct ActedSystem<'a, 'g> {
+pub(super) struct ActedSystem<'a, 'c, 'g> {
+    pub context: &'a mut Context<'c, 'g>,
     pub arguments: &'a Arguments<'a, 'g>,
     pub names: GroupNames<'a>,
     pub element: &'a Layout,
     pub factors: &'a [Factor<'g>],
-    pub configuration: &'a Layout,
-    pub configurations: &'a [Configuration<'g>],
+    pub space: &'a Space<'g>,
     /// Φ_F(q), leaf by leaf.
     pub action: &'a [Expr<'g>],
 }
@@ -38,14 +37,20 @@ impl<'g> Typed<'g> {
     /// The symbols of all factors and leaves.
     pub fn new(
         graph: &'g Graph,
-        arguments: TypedArguments,
+        typed: TypedArguments,
         groups: Product<Group>,
         spaces: Product<SpaceType>,
         diagnostics: &Diagnostics,
     ) -> Typed<'g> {
-        let factors = factors(graph, arguments.element, &groups, diagnostics);
-        let configurations = leaves(graph, arguments.configuration, &spaces, Role::Configuration, diagnostics);
-        Typed { element: groups.structure, factors, configuration: spaces.structure, configurations }
+        let factors = leaf_names(typed.element, &groups.layout, diagnostics).map(|names| {
+            let names = names.into_iter().zip(groups.layout.accessors());
+            let factors = names.zip(&groups.leaves).enumerate().map(|(k, ((name, accessor), (group, ty)))| {
+                Factor::new(graph, *group, name, Role::Element(k), accessor, span_of(ty))
+            });
+            factors.collect()
+        });
+        let space = Space::new(graph, typed.configuration, spaces, Role::Configuration, diagnostics);
+        Typed { element: groups.layout, factors, space }
     }
 
     /// The arguments of all closures.
@@ -54,26 +59,30 @@ impl<'g> Typed<'g> {
         typed: TypedArguments<'d>,
         input: Option<&'d Argument>,
         (step_size, time): (Expr<'g>, Expr<'g>),
+        diagnostics: &'d Diagnostics,
     ) -> Arguments<'d, 'g> {
-        let (factors, configurations) = (self.factors.as_deref(), self.configurations.as_deref());
-        let element = |all: &[Factor<'g>]| {
+        let element = |all: &Vec<Factor<'g>>| {
             let leaf = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
             Value::nested(&self.element, &all.iter().map(leaf).collect::<Vec<_>>())
         };
-        let of_group = |factor: &Factor<'g>| (!factor.group.is_translation()).then_some((factor.symbol, factor.group));
-        let on_group = |leaf: &Configuration<'g>| match leaf.space {
-            LeafSpace::Group(group) => Some((leaf.symbol, group)),
-            LeafSpace::Vectors | LeafSpace::Unit => None,
-        };
-        let members = factors.into_iter().flatten().filter_map(of_group);
+        let mut members = Vec::new();
+        for factor in self.factors.iter().flatten().filter(|factor| !factor.group.is_translation()) {
+            members.push((factor.symbol, factor.group));
+        }
+        for leaf in self.space.iter().flat_map(|space| &space.leaves) {
+            if let LeafSpace::Group(group) = leaf.space {
+                members.push((leaf.symbol, group));
+            }
+        }
         let input = input.map(|argument| &argument.pattern);
         Arguments {
             names: SharedNames { element: typed.element, configuration: typed.configuration, input },
-            element_value: factors.map(element),
-            configuration_value: configurations.map(|all| value_of(&self.configuration, all)),
-            members: members.chain(configurations.into_iter().flatten().filter_map(on_group)).collect(),
+            element_value: self.factors.as_ref().map(element),
+            configuration_value: self.space.as_ref().map(Space::value),
+            members,
             step_size,
             time,
+            diagnostics,
         }
     }
 }
@@ -93,60 +102,20 @@ impl<'g> Factor<'g> {
     }
 }
 
-/// What a configuration or an input is in a closure.
-pub(super) fn value_of<'g>(structure: &Layout, leaves: &[Configuration<'g>]) -> Value<'g> {
-    let values: Vec<_> = leaves.iter().map(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion)).collect();
-    Value::nested(structure, &values)
-}
-
-fn factors<'g>(
-    graph: &'g Graph,
-    pattern: &Pattern,
-    groups: &Product<Group>,
-    diagnostics: &Diagnostics,
-) -> Option<Vec<Factor<'g>>> {
-    let names = leaf_names(pattern, &groups.structure, diagnostics)?.into_iter().zip(groups.structure.accessors());
-    let factors = names.zip(&groups.leaves).enumerate().map(|(k, ((name, accessor), (group, ty)))| {
-        Factor::new(graph, *group, name, Role::Element(k), accessor, span_of(ty))
-    });
-    Some(factors.collect())
-}
-
-/// The leaves of the configuration or of an input, by their role.
-pub(super) fn leaves<'g>(
-    graph: &'g Graph,
-    pattern: &Pattern,
-    spaces: &Product<SpaceType>,
-    role: fn(usize) -> Role,
-    diagnostics: &Diagnostics,
-) -> Option<Vec<Configuration<'g>>> {
-    let names = leaf_names(pattern, &spaces.structure, diagnostics)?.into_iter().zip(spaces.structure.accessors());
-    let leaves = names.zip(&spaces.leaves).enumerate().map(|(i, ((name, accessor), (leaf, _)))| {
-        let symbol = graph.symbol(&name, leaf.shape, role(i), leaf.property());
-        let SpaceType { space, shape, is_quaternion, .. } = *leaf;
-        Configuration { symbol, name, space, shape, is_quaternion, accessor }
-    });
-    Some(leaves.collect())
-}
-
 /// What velocities are made for.
 pub(super) struct Velocity<'a, 'g> {
     pub graph: &'g Graph,
     pub factors: &'a [Factor<'g>],
+    pub diagnostics: &'a Diagnostics,
 }
 
 impl<'g> Velocity<'_, 'g> {
     /// The value of a pattern, and the symbols of the factors. One name stands for all that is in its place, a tuple for the parts of a
     /// product or for the blocks of one factor: `(omega, v)` for SE(3).
-    pub fn of(
-        &self,
-        pattern: &Pattern,
-        structure: &Layout,
-        diagnostics: &Diagnostics,
-    ) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
-        match (pattern, structure) {
+    pub fn of(&self, pattern: &Pattern, layout: &Layout) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
+        match (pattern, layout) {
             (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
-                let parts = patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part, diagnostics));
+                let parts = patterns.iter().zip(parts).map(|(pattern, part)| self.of(pattern, part));
                 let (values, symbols): (Vec<_>, Vec<_>) = parts.collect::<Option<Vec<_>>>()?.into_iter().unzip();
                 Some((Value::Tuple(values), symbols.concat()))
             }
@@ -159,13 +128,13 @@ impl<'g> Velocity<'_, 'g> {
                 Some((Value::Tuple(parts.collect()), vec![symbol]))
             }
             _ => {
-                let names = leaf_names(pattern, structure, diagnostics)?;
-                let leaves = structure.numbers();
+                let names = leaf_names(pattern, layout, self.diagnostics)?;
+                let leaves = layout.numbers();
                 let symbols: Vec<Expr<'g>> = leaves.iter().zip(&names).map(|(k, name)| self.symbol(*k, name)).collect();
                 // the leaves of a part of a product are numbered as in the whole
                 let mut values = vec![Value::Tuple(Vec::new()); self.factors.len()];
                 leaves.iter().zip(&symbols).for_each(|(k, symbol)| values[*k] = Value::Matrix(*symbol));
-                Some((Value::nested(structure, &values), symbols))
+                Some((Value::nested(layout, &values), symbols))
             }
         }
     }

@@ -32,23 +32,23 @@ impl<'g> Value<'g> {
         if is_quaternion { Value::Quaternion(expr) } else { Value::Matrix(expr) }
     }
 
-    /// Nests values as a structure says.
-    pub fn nested(structure: &Layout, leaves: &[Value<'g>]) -> Value<'g> {
+    /// Nests values as a layout says.
+    pub fn nested(layout: &Layout, leaves: &[Value<'g>]) -> Value<'g> {
         let parts = |parts: &[Layout]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
-        match structure {
+        match layout {
             Layout::Leaf(leaf) => leaves[*leaf].clone(),
             Layout::Tuple(inner) => Value::Tuple(parts(inner)),
             Layout::Array(inner) => Value::Array(parts(inner)),
         }
     }
 
-    /// Takes a value apart as a structure nests; or says what was found and what was expected, as leaves do.
+    /// Takes a value apart as a layout nests; or says what was found and what was expected, as leaves do.
     pub fn leaves(
         &self,
-        structure: &Layout,
+        layout: &Layout,
         leaf: &impl Fn(&Value<'g>, usize) -> Result<Expr<'g>, String>,
     ) -> Result<Vec<Expr<'g>>, (String, String)> {
-        match (self, structure) {
+        match (self, layout) {
             (value, Layout::Leaf(k)) => {
                 leaf(value, *k).map(|expr| vec![expr]).map_err(|needed| (value.describe(), needed))
             }
@@ -58,7 +58,7 @@ impl<'g> Value<'g> {
                 let leaves = values.iter().zip(parts).map(|(value, part)| value.leaves(part, leaf));
                 Ok(leaves.collect::<Result<Vec<_>, _>>()?.concat())
             }
-            (value, structure) => Err((value.describe(), structure.describe())),
+            (value, layout) => Err((value.describe(), layout.describe())),
         }
     }
 

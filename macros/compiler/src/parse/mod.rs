@@ -25,7 +25,7 @@ pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Located, keys_as_markdown};
 pub use methods::DeclaredMethod;
 pub use opaque::Opaque;
-pub(crate) use spelling::{joined, listed, tokens as spell_tokens};
+pub(crate) use spelling::{joined, listed, parenthesized, shortened, tail, tokens as spell_tokens};
 pub use spelling::{spell, spell_type};
 
 use proc_macro2::TokenStream;

@@ -17,6 +17,29 @@ pub(crate) fn listed<T: std::fmt::Display>(items: impl IntoIterator<Item = T>) -
     joined(items.into_iter().map(|item| format!("`{item}`")))
 }
 
+/// The text of an expression, short enough for the first line of a message.
+pub(crate) fn shortened(expr: &Expr) -> String {
+    const LIMIT: usize = 80;
+    let text = spell(expr);
+    if text.chars().count() <= LIMIT {
+        return text;
+    }
+    text.chars().take(LIMIT - 1).chain(['…']).collect()
+}
+
+/// The expression that gives a body its value.
+pub(crate) fn tail(body: &Expr) -> &Expr {
+    match body {
+        Expr::Block(block) => match block.block.stmts.last() {
+            Some(Stmt::Expr(value, None)) => tail(value),
+            _ => body,
+        },
+        Expr::Paren(inner) => tail(&inner.expr),
+        Expr::Group(inner) => tail(&inner.expr),
+        _ => body,
+    }
+}
+
 /// The text of an expression; what is deeper than any message needs is left out.
 pub fn spell(expr: &Expr) -> String {
     spell_within(expr, LEVELS)
@@ -78,6 +101,14 @@ fn spell_statement(statement: &Stmt, levels: usize) -> String {
         },
         Stmt::Expr(expr, semicolon) => format!("{}{}", spell(expr), if semicolon.is_some() { ";" } else { "" }),
         other => tokens(other),
+    }
+}
+
+/// The text of an operand, in parentheses where a method needs them.
+pub(crate) fn parenthesized(syntax: &Expr) -> String {
+    match syntax {
+        Expr::Binary(_) | Expr::Unary(_) | Expr::Reference(_) | Expr::Range(_) => format!("({})", spell(syntax)),
+        _ => spell(syntax),
     }
 }
 

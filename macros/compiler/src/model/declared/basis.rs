@@ -4,12 +4,11 @@ use clebsch_symbolic::{Expr, Graph, Group, Rational, Shape, Sparse, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
-use super::super::elaborate::shortened;
 use super::super::value::Value;
 use super::follow::at_identity;
 use super::{check_literal, check_size, elaborate, empty_scope, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostics, Location, bail, error};
-use crate::parse::{joined, spell};
+use crate::parse::{joined, shortened};
 
 /// Reads `basis([E1, E2])`.
 pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Location) -> Result<Group, Diagnostics> {
@@ -44,7 +43,7 @@ fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matr
         bail!(element, "`E{}` of `{name}` is {}, not a matrix", k + 1, value.describe(); help "write `{example}`");
     };
     let entries = exact(expr).ok_or_else(|| {
-        error!(element, "the entries of `{}` are not rational", shortened(&spell(element));
+        error!(element, "the entries of `{}` are not rational", shortened(element);
             note "whether brackets stay in the span is decided exactly, over the rational numbers")
     })?;
     Ok(Matrix { shape: expr.shape(), entries })

@@ -3,16 +3,15 @@
 
 use clebsch_symbolic::{Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, reduce};
 use quote::ToTokens;
+use syn::Expr as Syntax;
 
-use super::super::closures::tail;
-use super::super::elaborate::shortened;
 use super::super::scope::{Scope, check_reserved};
 use super::super::value::Value;
 use super::super::vectors::vectors;
 use super::kernel::kernel;
 use super::{check_literal, check_size, dense, elaborate, empty_scope, follow, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
-use crate::parse::{Closure, Pattern, spell, spell_type};
+use crate::parse::{Closure, Pattern, shortened, spell_type, tail};
 
 /// Reads `|F: Matrix4| a == b`.
 pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group, Diagnostics> {
@@ -23,8 +22,8 @@ pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group
     let symbol = graph.symbol(&pattern.spell(), Shape::square(n), Role::DeclaredElement, Property::General);
     let scope = scope(pattern, symbol)?;
     let (left, right) = elaborate(graph, &key, scope, |elaborator| elaborator.equation(&closure.body))?;
-    let (place, body) = tail(&closure.body);
-    let equation = GroupEquation { graph, name, symbol, place, text: spell(body) };
+    let body = tail(&closure.body);
+    let equation = GroupEquation { graph, name, symbol, body };
     Ok(equation.group(&equation.sides(&left, &right)?)?)
 }
 
@@ -65,8 +64,7 @@ struct GroupEquation<'a, 'g> {
     graph: &'g Graph,
     name: &'a str,
     symbol: Expr<'g>,
-    place: Location,
-    text: String,
+    body: &'a Syntax,
 }
 
 impl<'g> GroupEquation<'_, 'g> {
@@ -85,7 +83,7 @@ impl<'g> GroupEquation<'_, 'g> {
             (left, right) => {
                 let is_number = |value: &Value<'g>| value.matrix().is_some_and(|expr| expr.as_number().is_some());
                 let (a, b) = (left.describe(), right.describe());
-                let error = error!(self.place, "the left side is {a} and the right side is {b}: they cannot be equal");
+                let error = error!(self.body, "the left side is {a} and the right side is {b}: they cannot be equal");
                 let identity = (is_number(right) || is_number(left)).then_some("write `I` for the identity matrix");
                 Err(error
                     .maybe_help(identity)
@@ -108,7 +106,7 @@ impl<'g> GroupEquation<'_, 'g> {
     }
 
     fn no_value(&self) -> Diagnostic {
-        error!(self.place, "the equation of `{}` has no value at the identity", self.name;
+        error!(self.body, "the equation of `{}` has no value at the identity", self.name;
             help "write it without quotients and inverses";
             note "with {} = I it divides by 0, or its numbers have more than 38 digits", self.symbol)
     }
@@ -116,11 +114,11 @@ impl<'g> GroupEquation<'_, 'g> {
     fn is_rational(&self, equation: Expr<'g>) -> Result<(), Diagnostic> {
         let (name, symbol) = (self.name, self.symbol);
         if !equation.depends_on(symbol) {
-            bail!(self.place, "the equation of `{name}` does not depend on `{symbol}`";
+            bail!(self.body, "the equation of `{name}` does not depend on `{symbol}`";
                 help "write an equation for `{symbol}`, as in `{symbol}.transpose() * {symbol} == I`");
         }
         if !equation.is_rational() {
-            bail!(self.place, "the equation of `{name}` is not rational";
+            bail!(self.body, "the equation of `{name}` is not rational";
                 note "its Lie algebra is found exactly, over the rational numbers, so roots, functions and π cannot stand in it");
         }
         Ok(())
@@ -135,9 +133,9 @@ impl<'g> GroupEquation<'_, 'g> {
                 let shape = left.shape();
                 let [a, b] =
                     [a, b].map(|side| if shape.is_scalar() { side[0].to_string() } else { spell_matrix(shape, &side) });
-                bail!(self.place, "the identity is not in `{}`", self.name;
+                bail!(self.body, "the identity is not in `{}`", self.name;
                     help "write an equation that `{symbol} = I` solves";
-                    note "with {symbol} = I the left side of `{}` is {a} and the right side {b}", shortened(&self.text));
+                    note "with {symbol} = I the left side of `{}` is {a} and the right side {b}", shortened(self.body));
             }
         }
         Ok(())
@@ -148,7 +146,7 @@ impl<'g> GroupEquation<'_, 'g> {
         let shape = self.symbol.shape();
         let kernel = kernel(derivative, shape.len());
         if kernel.is_empty() {
-            bail!(self.place, "`{}` has no element near the identity but the identity itself", self.name;
+            bail!(self.body, "`{}` has no element near the identity but the identity itself", self.name;
                 note "the derivative of its equation at the identity has full rank, so its Lie algebra is 0");
         }
         let by_rows = |columns: &Vec<Rational>| -> Vec<Rational> {
@@ -163,7 +161,7 @@ impl<'g> GroupEquation<'_, 'g> {
         let Some((i, j, bracket)) = open_bracket(self.graph, shape, basis) else { return Ok(()) };
         let [e, f] = [i, j].map(|k| spell_matrix(shape, &dense(shape, &[(1, &basis[k])])));
         let (i, j, bracket) = (i + 1, j + 1, spell_matrix(shape, &bracket));
-        bail!(self.place, "the matrices with `{}` are no group", shortened(&self.text);
+        bail!(self.body, "the matrices with `{}` are no group", shortened(self.body);
             note "near the identity they move along E{i} = {e} and E{j} = {f}, but not along [E{i}, E{j}] = {bracket}")
     }
 
@@ -187,11 +185,11 @@ impl<'g> GroupEquation<'_, 'g> {
         let general_rank = follow::general_rank(equation, self.symbol);
         let f = self.symbol;
         if rank < general_rank {
-            bail!(self.place, "the equation of `{}` is not regular at the identity", self.name;
+            bail!(self.body, "the equation of `{}` is not regular at the identity", self.name;
                 help "write each condition once and not squared, as in `F.determinant() == 1`";
                 note "its derivative there has rank {rank}, at other matrices {general_rank}; it vanishes along E = {along}, but {f} = exp(s*E) leaves the solutions at order s^{order}");
         }
-        bail!(self.place, "the matrices with `{}` are no group", shortened(&self.text);
+        bail!(self.body, "the matrices with `{}` are no group", shortened(self.body);
             note "near the identity they move along E = {along}, but {f} = exp(s*E) leaves them at order s^{order}")
     }
 

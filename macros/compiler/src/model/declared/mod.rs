@@ -9,8 +9,6 @@ mod series;
 #[cfg(test)]
 mod tests;
 
-use std::cell::Cell;
-
 use clebsch_symbolic::{Graph, Group, Rational, Shape, Sparse, Zero, integer};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -18,54 +16,24 @@ use syn::ext::IdentExt;
 use super::Constant;
 use super::elaborate::{Context, Elaborator};
 use super::fields::Fields;
-use super::groups::is_built_in;
+use super::groups::{DeclaredGroups, is_built_in};
 use super::scope::Scope;
 use super::vectors::named_shape;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, report};
-use crate::parse::{DeclaredGroup, Definition, joined};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
+use crate::parse::{DeclaredGroup, Definition, joined, spell_tokens};
 
 /// The largest matrices of a declared group, whose Lie algebra is found at compile time.
 const LARGEST: usize = 10;
 
-struct Known {
-    name: Ident,
-    group: Group,
-    used: Cell<bool>,
-}
-
-#[derive(Default)]
-pub(super) struct DeclaredGroups {
-    known: Vec<Known>,
-}
-
-impl DeclaredGroups {
-    pub fn read(graph: &Graph, groups: &[DeclaredGroup], diagnostics: &Diagnostics) -> DeclaredGroups {
-        let mut known = Vec::new();
-        for declared in groups {
-            let group = check_name(&declared.name).and_then(|()| read(graph, declared));
-            let named = |group| Known { name: declared.name.clone(), group, used: Cell::new(false) };
-            known.extend(diagnostics.take(group).map(named));
-        }
-        DeclaredGroups { known }
-    }
-
-    pub fn find(&self, name: &Ident) -> Option<Group> {
-        let found = self.known.iter().find(|known| known.name.unraw() == name.unraw())?;
-        found.used.set(true);
-        Some(found.group)
-    }
-
-    pub fn names(&self) -> impl Iterator<Item = String> {
-        self.known.iter().map(|known| known.name.unraw().to_string())
-    }
-
-    /// Reports groups that no type names.
-    pub fn check_used(&self, diagnostics: &Diagnostics) {
-        for Known { name, .. } in self.known.iter().filter(|known| !known.used.get()) {
-            report!(diagnostics, name.span(), "the group `{name}` is declared and not used";
-                help "write `F: {name}` in the action, or remove the group");
+/// The groups of a declaration.
+pub(super) fn read_all(graph: &Graph, groups: &[DeclaredGroup], diagnostics: &Diagnostics) -> DeclaredGroups {
+    let mut known = DeclaredGroups::default();
+    for declared in groups {
+        if let Some(group) = diagnostics.take(check_name(&declared.name).and_then(|()| read(graph, declared))) {
+            known.add(declared.name.clone(), group);
         }
     }
+    known
 }
 
 /// Refuses a name that means something already.
@@ -95,15 +63,13 @@ fn elaborate<'g, R>(
     scope: Scope<'g>,
     work: impl FnOnce(&mut Elaborator<'_, '_, 'g>) -> Option<R>,
 ) -> Result<R, Diagnostics> {
-    let fields = Fields::none();
-    let mut context =
-        Context { graph, fields: &fields, constants: Vec::new(), power: None, diagnostics: Diagnostics::new() };
+    let (fields, diagnostics) = (Fields::none(), Diagnostics::new());
+    let mut context = Context::new(graph, &fields, None, &diagnostics);
     let value = work(&mut Elaborator::new(&mut context, key, scope));
     for Constant { path, .. } in &context.constants {
-        let text = crate::parse::spell_tokens(path);
-        context.diagnostics.push(not_literal(path.into(), key, &format!("the constant `{text}`")));
+        diagnostics.push(not_literal(path.into(), key, &format!("the constant `{}`", spell_tokens(path))));
     }
-    context.diagnostics.propagate(())?;
+    diagnostics.propagate(())?;
     // by construction: what has no value has an error
     value.ok_or_else(Diagnostics::new)
 }

@@ -3,8 +3,8 @@
 use clebsch_symbolic::{Expr, Graph, Group, integer, rational};
 use proc_macro2::Span;
 
-use super::DeclaredGroups;
 use super::kernel::kernel;
+use super::read_all;
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;
 
@@ -14,7 +14,7 @@ fn declare(graph: &Graph, definition: &str) -> Result<Group, Diagnostics> {
         format!("#[clebsch(group Own = {definition}, action = |F: Own, q: Own| F * q, cost = |h, F| h)] struct S;");
     let declaration = parse(source.parse().expect("the table holds Rust"))?;
     let diagnostics = Diagnostics::new();
-    let groups = DeclaredGroups::read(graph, &declaration.groups, &diagnostics);
+    let groups = read_all(graph, &declaration.groups, &diagnostics);
     diagnostics.propagate(())?;
     Ok(groups.find(&syn::Ident::new("Own", Span::call_site())).expect("a group, since there are no errors"))
 }

@@ -4,10 +4,9 @@ use clebsch_symbolic::{Expr, Rational, Shape};
 use quote::ToTokens;
 use syn::{Expr as Syntax, ExprField, ExprIndex, Index, Member};
 
-use super::operators::parenthesized;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{error, nearest, refuse};
-use crate::parse::{listed, spell};
+use crate::parse::{listed, parenthesized, spell};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 

@@ -3,9 +3,9 @@
 use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
 use super::super::scope::bindings;
-use super::{Elaborator, Value, shortened};
+use super::{Elaborator, Value};
 use crate::diagnostic::{error, refuse, report};
-use crate::parse::{Pattern, spell};
+use crate::parse::{Pattern, shortened};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn block(&mut self, block: &Block) -> Option<Value<'g>> {
@@ -29,7 +29,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Stmt::Expr(value, None) => self.elaborate(value),
             Stmt::Macro(written) if written.semi_token.is_none() => self.macro_call(&written.mac),
             Stmt::Expr(value, Some(semicolon)) => refuse!(self, semicolon.span, "the block ends without a value";
-                help "remove the semicolon after `{}`", shortened(&spell(value))),
+                help "remove the semicolon after `{}`", shortened(value)),
             other => {
                 self.statement(other);
                 refuse!(self, other, "the block ends without a value"; help "end it with an expression")
@@ -46,7 +46,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn local(&mut self, local: &Local) {
-        let diagnostics = &self.context.diagnostics;
+        let diagnostics = self.context.diagnostics;
         let pattern = match &local.pat {
             syn::Pat::Type(typed) => {
                 report!(diagnostics, &typed.ty, "a `let` has no type";
@@ -68,7 +68,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// Introduces the names of a pattern; those of a value with an error have an error too.
     pub(super) fn bind(&mut self, pattern: &Pattern, value: Option<Value<'g>>, what: &str) {
-        let diagnostics = &self.context.diagnostics;
+        let diagnostics = self.context.diagnostics;
         for (ident, value) in bindings(pattern, value, diagnostics) {
             self.scope.add(&ident, value, what, diagnostics);
         }
@@ -96,7 +96,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             other => {
                 let is_chain = matches!(other, Syntax::Binary(link) if matches!(link.op, BinOp::And(_)));
                 let equation = if is_chain { "several equations as one, `(a, b) == (c, d)`" } else { "`a == b`" };
-                refuse!(self, other, "`{}` is no equation", shortened(&spell(other)); help "write {equation}")
+                refuse!(self, other, "`{}` is no equation", shortened(other); help "write {equation}")
             }
         }
     }

@@ -8,11 +8,10 @@ use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident, 
 use super::super::sizes::{LARGEST, size_argument};
 use super::super::vectors::{arguments, named_shape};
 use super::access::strip;
-use super::operators::parenthesized;
 use super::tables::METHODS;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, nearest, refuse};
-use crate::parse::{listed, spell};
+use crate::parse::{listed, parenthesized, spell};
 
 #[derive(Copy, Clone, PartialEq, Eq)]
 enum Constructor {

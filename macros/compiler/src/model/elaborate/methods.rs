@@ -4,12 +4,11 @@ use clebsch_symbolic::{Expr, Function, Rational, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall};
 
 use super::access::{is_self, strip};
-use super::operators::parenthesized;
 use super::quaternions::is_of_quaternions;
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
-use super::{Elaborator, Growth, Value, open_identity, shortened};
+use super::{Elaborator, Growth, Value, open_identity};
 use crate::diagnostic::{Diagnostic, error, nearest, refuse};
-use crate::parse::{listed, spell};
+use crate::parse::{listed, parenthesized, shortened, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// `receiver.method(arguments)`.
@@ -165,7 +164,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 }
 
 pub(super) fn no_real_value(call: &ExprMethodCall) -> Diagnostic {
-    let text = shortened(&spell(&Syntax::MethodCall(call.clone())));
+    let text = shortened(&Syntax::MethodCall(call.clone()));
     error!(call, "`{text}` has no real value";
         note "a potential or a cost is a real function, wherever it is evaluated")
 }

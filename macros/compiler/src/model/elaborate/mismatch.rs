@@ -4,9 +4,8 @@ use clebsch_symbolic::{Expr, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::Value;
-use super::operators::parenthesized;
 use crate::diagnostic::{Diagnostic, error};
-use crate::parse::spell;
+use crate::parse::{parenthesized, spell};
 
 /// A sum of matrices of different shapes.
 pub(super) fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr, verb: &str) -> Diagnostic {

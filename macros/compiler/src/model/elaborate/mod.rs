@@ -27,7 +27,7 @@ use super::scope::Scope;
 use super::sites::Sites;
 use super::value::Value;
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
-use crate::parse::{Closure, spell};
+use crate::parse::{Closure, parenthesized, shortened, spell};
 
 /// Operators and methods inside each other.
 const DEPTH: usize = 200;
@@ -45,10 +45,20 @@ pub(super) struct Context<'c, 'g> {
     pub constants: Vec<Constant<'g>>,
     /// The sites of a power; `None` where the declaration is none.
     pub power: Option<Sites<'g>>,
-    pub diagnostics: Diagnostics,
+    pub diagnostics: &'c Diagnostics,
 }
 
-impl<'g> Context<'_, 'g> {
+impl<'c, 'g> Context<'c, 'g> {
+    /// No constants met so far.
+    pub fn new(
+        graph: &'g Graph,
+        fields: &'c Fields<'g>,
+        power: Option<Sites<'g>>,
+        diagnostics: &'c Diagnostics,
+    ) -> Context<'c, 'g> {
+        Context { graph, fields, constants: Vec::new(), power, diagnostics }
+    }
+
     /// The value of a closure with these names; `None` if it has an error, which was reported.
     pub fn value(&mut self, closure: &Closure, scope: Scope<'g>) -> Option<Value<'g>> {
         Elaborator::new(self, &closure.key.to_string(), scope).elaborate(&closure.body)
@@ -201,7 +211,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         if !expr.shape().is_scalar() {
             let entry = if expr.shape().is_column() { "[0]" } else { "[(0, 0)]" };
             refuse!(self, syntax, "`{}` is {}, where a scalar is needed", spell(syntax), expr.shape();
-                help "take an entry, as in `{}{entry}`", operators::parenthesized(syntax));
+                help "take an entry, as in `{}{entry}`", parenthesized(syntax));
         }
         Some(expr)
     }
@@ -271,7 +281,7 @@ fn open_identity(syntax: &Syntax) -> Diagnostic {
 
 /// The error for a sum over sites within another function.
 fn open_sum(syntax: &Syntax) -> Diagnostic {
-    error!(syntax, "`{}` is a sum over sites: it can be added and scaled alone", shortened(&spell(syntax));
+    error!(syntax, "`{}` is a sum over sites: it can be added and scaled alone", shortened(syntax);
         note "each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
 }
 
@@ -283,13 +293,4 @@ fn first_part(value: &Value) -> &'static str {
         Value::Tuple(_) => ".0",
         _ => "[0]",
     }
-}
-
-/// A text that is short enough for the first line of a message.
-pub(super) fn shortened(text: &str) -> String {
-    const LIMIT: usize = 80;
-    if text.chars().count() <= LIMIT {
-        return text.to_string();
-    }
-    text.chars().take(LIMIT - 1).chain(['…']).collect()
 }

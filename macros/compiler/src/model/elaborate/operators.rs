@@ -6,7 +6,7 @@ use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 use super::mismatch::{no_product, point_moved, unequal_shapes};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
-use crate::parse::{spell, spell_tokens};
+use crate::parse::{parenthesized, spell, spell_tokens};
 
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(super) enum Operator {
@@ -216,14 +216,4 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
 pub(super) fn division_by_zero(divisor: &Syntax) -> Diagnostic {
     error!(divisor, "`{}` is zero: nothing can be divided by it", spell(divisor))
-}
-
-/// The text of an operand, in parentheses where a method needs them.
-pub(super) fn parenthesized(syntax: &Syntax) -> String {
-    match syntax {
-        Syntax::Binary(_) | Syntax::Unary(_) | Syntax::Reference(_) | Syntax::Range(_) => {
-            format!("({})", spell(syntax))
-        }
-        _ => spell(syntax),
-    }
 }

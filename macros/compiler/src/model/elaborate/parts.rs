@@ -6,7 +6,7 @@ use syn::{BinOp, Expr as Syntax, ExprMethodCall, GenericArgument};
 use super::tables::Part;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, refuse};
-use crate::parse::spell;
+use crate::parse::{parenthesized, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// Rows, columns, blocks.
@@ -80,7 +80,7 @@ fn first_of_difference(call: &ExprMethodCall) -> Option<String> {
     let part = |syntax: &Syntax| match (syntax, call.method == "rotation") {
         (Syntax::Path(path), true) if path.path.is_ident("I") => Some("I".to_string()),
         (Syntax::Path(path), false) if path.path.is_ident("I") => None,
-        _ => Some(format!("{}.{}()", super::operators::parenthesized(syntax), call.method)),
+        _ => Some(format!("{}.{}()", parenthesized(syntax), call.method)),
     };
     let text = match (part(left), part(right)) {
         (Some(left), Some(right)) => format!("{left} {sign} {right}"),

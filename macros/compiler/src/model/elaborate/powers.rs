@@ -4,10 +4,9 @@ use clebsch_symbolic::{Expr, Function, Group, Rational, Shape, integer, rational
 use syn::ExprMethodCall;
 
 use super::methods::no_real_value;
-use super::operators::parenthesized;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{error, refuse};
-use crate::parse::spell;
+use crate::parse::{parenthesized, spell};
 
 /// The largest exponent of `powi`.
 const EXPONENT: i64 = 64;

@@ -4,10 +4,10 @@ use clebsch_symbolic::{Expr, Shape};
 use syn::{ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
 
 use super::super::quaternion as algebra;
-use super::operators::{Operator, division_by_zero, parenthesized};
+use super::operators::{Operator, division_by_zero};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, nearest, refuse};
-use crate::parse::{listed, spell};
+use crate::parse::{listed, parenthesized, spell};
 
 /// A method of a quaternion q: how many operands it counts as, how it grows, its value, and whether that is a quaternion.
 type QuaternionRule = (usize, Growth, for<'g> fn(Expr<'g>) -> Expr<'g>, bool);

@@ -93,7 +93,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if closure.inputs.len() != 1 {
             refuse!(self, closure, "the closure of `map` has one argument"; help "write `.map(|i| …)`");
         }
-        Some((Pattern::read(&closure.inputs[0], &self.context.diagnostics)?, closure))
+        Some((Pattern::read(&closure.inputs[0], self.context.diagnostics)?, closure))
     }
 
     /// `.sum()`.

@@ -5,10 +5,10 @@ use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, Rang
 
 use super::super::power::{Linear, SiteIndex, Term};
 use super::super::value::{Each, Value};
+use super::Elaborator;
 use super::operators::{Operator, division_by_zero};
-use super::{Elaborator, shortened};
 use crate::diagnostic::refuse;
-use crate::parse::spell;
+use crate::parse::{shortened, spell};
 
 /// Sums inside each other.
 const SUMS: usize = 4;
@@ -116,7 +116,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn factor(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
         let expr = self.as_matrix(syntax, value)?;
         if !expr.shape().is_scalar() {
-            let text = shortened(&spell(syntax));
+            let text = shortened(syntax);
             refuse!(self, syntax, "`{text}` is {}, and a sum over sites is a scalar", expr.shape();
                 note "sums over sites are added, and multiplied by scalars");
         }

@@ -39,7 +39,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     diagnostics.propagate(())?;
     let diagnostics = Diagnostics::new();
     let TypedArguments { element, configuration, .. } =
-        arguments::of_action(&declaration.action, &diagnostics).expect("two typed arguments");
+        arguments::of_action(&declaration, &diagnostics).expect("two typed arguments");
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
@@ -57,13 +57,13 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
         members: Vec::new(),
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
+        diagnostics: &diagnostics,
     };
     let closure = declaration.kinetic.closure();
-    let matched = arguments.matched(closure, COST, &diagnostics);
-    let scope = arguments.scope(&matched, &[], &diagnostics);
-    let mut context = Context { graph: &graph, fields: &fields, constants: Vec::new(), power: None, diagnostics };
+    let scope = arguments.scope_of(closure, COST);
+    let mut context = Context::new(&graph, &fields, None, &diagnostics);
     let value = Elaborator::new(&mut context, "cost", scope).elaborate(&closure.body);
-    context.diagnostics.propagate(())?;
+    diagnostics.propagate(())?;
     Ok(look(&value.expect("a value, since there are no errors")))
 }
 

@@ -1,0 +1,101 @@
+//! Products of spaces: their leaves, what a value gives for each, and the names that a pattern gives them.
+
+use clebsch_symbolic::{Expr, Graph, Role};
+use syn::ext::IdentExt;
+use syn::{Expr as Syntax, Ident};
+
+use super::spaces::{Product, SpaceType};
+use super::value::Value;
+use super::{Configuration, Layout, quaternion};
+use crate::diagnostic::{Diagnostics, refuse};
+use crate::parse::{Pattern, shortened, tail};
+
+/// A configuration or an input: its leaves, and how they nest.
+#[derive(Clone)]
+pub(super) struct Space<'g> {
+    pub layout: Layout,
+    pub leaves: Vec<Configuration<'g>>,
+}
+
+impl<'g> Space<'g> {
+    /// The leaves that a pattern names, by their role; `None` where it does not fit the type, which was reported.
+    pub fn new(
+        graph: &'g Graph,
+        pattern: &Pattern,
+        product: Product<SpaceType>,
+        role: fn(usize) -> Role,
+        diagnostics: &Diagnostics,
+    ) -> Option<Space<'g>> {
+        let layout = product.layout;
+        let names = leaf_names(pattern, &layout, diagnostics)?.into_iter().zip(layout.accessors());
+        let leaves = names.zip(&product.leaves).enumerate().map(|(i, ((name, accessor), (leaf, _)))| {
+            let symbol = graph.symbol(&name, leaf.shape, role(i), leaf.property());
+            let SpaceType { space, shape, is_quaternion, .. } = *leaf;
+            Configuration { symbol, name, space, shape, is_quaternion, accessor }
+        });
+        Some(Space { leaves: leaves.collect(), layout })
+    }
+
+    /// The space of a single point.
+    pub fn point() -> Space<'g> {
+        Space { layout: Layout::Tuple(Vec::new()), leaves: Vec::new() }
+    }
+
+    /// What it is in a closure.
+    pub fn value(&self) -> Value<'g> {
+        let values: Vec<_> = self.leaves.iter().map(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion)).collect();
+        Value::nested(&self.layout, &values)
+    }
+
+    /// The value of a closure, or of a part of its body, leaf by leaf; or an error that says what does not fit. `is` says what the value is.
+    pub fn leaves_of(
+        &self,
+        (key, body): (&Ident, &Syntax),
+        value: &Value<'g>,
+        is: &str,
+        diagnostics: &Diagnostics,
+    ) -> Option<Vec<Expr<'g>>> {
+        let leaf = |value: &Value<'g>, k: usize| {
+            let Configuration { name, shape, is_quaternion, .. } = &self.leaves[k];
+            match value {
+                Value::Matrix(expr) if expr.shape() == *shape && !is_quaternion => Ok(*expr),
+                Value::Quaternion(expr) if *is_quaternion => Ok(*expr),
+                Value::Identity(scale) if *is_quaternion => Ok(quaternion::real(scale.graph(), *scale)),
+                Value::Identity(scale) if shape.is_square() => Ok(*scale * scale.graph().identity(shape.rows)),
+                _ if *is_quaternion => Err(format!("a quaternion for `{name}`")),
+                _ => Err(format!("{shape} for `{name}`")),
+            }
+        };
+        match value.leaves(&self.layout, &leaf) {
+            Ok(leaves) => Some(leaves),
+            Err((found, needed)) => {
+                refuse!(diagnostics, tail(body), "the {key} gives {found}, but it has to give {needed}";
+                note "`{}` is {is}", shortened(body))
+            }
+        }
+    }
+}
+
+/// What an image under an action is.
+pub(super) fn new_value_of(old: &Pattern) -> String {
+    format!("the new value of `{}`, which has the shape of the old one", old.spell())
+}
+
+/// The name of each leaf: the pattern's names, with accessors where one name stands for several leaves.
+pub(super) fn leaf_names(pattern: &Pattern, layout: &Layout, diagnostics: &Diagnostics) -> Option<Vec<String>> {
+    match (pattern, layout) {
+        (Pattern::Name(ident), _) => {
+            let name = ident.unraw();
+            Some(layout.accessors().iter().map(|accessor| format!("{name}{accessor}")).collect())
+        }
+        (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
+            let names = patterns.iter().zip(parts).map(|(pattern, part)| leaf_names(pattern, part, diagnostics));
+            Some(names.collect::<Option<Vec<_>>>()?.concat())
+        }
+        (Pattern::Tuple(patterns, place), layout) => {
+            let (text, count, is) = (pattern.spell(), patterns.len(), layout.describe());
+            refuse!(diagnostics, *place, "`{text}` has {count} names, but its type is {is}";
+                help "write one name, or as many as the tuple has parts")
+        }
+    }
+}
