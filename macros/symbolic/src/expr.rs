@@ -49,7 +49,7 @@ impl<'g> Expr<'g> {
     }
 
     /// What is promised about a symbol; nothing about other expressions.
-    pub(crate) fn property(self) -> Property {
+    pub fn property(self) -> Property {
         match &*self.node() {
             ExprNode::Symbol(symbol) => symbol.property,
             _ => Property::General,

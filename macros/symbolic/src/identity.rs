@@ -174,8 +174,7 @@ impl<'g> Point<'g> {
     fn sample(&self, symbol: Expr<'g>) -> Matrix<Residue> {
         let shape = symbol.shape();
         let random = |i: usize, j: usize| Residue::mixed(&[4, self.seed, symbol.id.0 as u64, i as u64, j as u64]);
-        // by construction: only symbols are sampled
-        match symbol.as_symbol().map_or(Property::General, |data| data.property) {
+        match symbol.property() {
             Property::General => Matrix::from_fn(shape, |(i, j)| random(i, j)),
             Property::Symmetric => Matrix::from_fn(shape, |(i, j)| random(i.min(j), i.max(j))),
             Property::Diagonal => Matrix::from_fn(shape, |(i, j)| if i == j { random(i, i) } else { zero() }),

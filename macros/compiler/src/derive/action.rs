@@ -18,6 +18,16 @@ impl<'g> SystemFormulas<'g> {
         self.generator.iter().map(|motion| motion.substitute(&replaced)).collect()
     }
 
+    /// How q moves with ξ.
+    pub(super) fn leaves_by_generator(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.generator.iter().copied()).collect()
+    }
+
+    /// The replacement of q by q⁺.
+    pub(super) fn images_of_leaves(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.symbols.images.iter().copied()).collect()
+    }
+
     /// The gradients with respect to the leaves of the configuration.
     pub(super) fn gradients(&self, part: Expr<'g>) -> Vec<Expr<'g>> {
         self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect()

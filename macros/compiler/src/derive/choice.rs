@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::edges::Inserted;
+use super::matrices::Inserted;
 use super::{Bend, Endpoint, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas, Steering, SystemFormulas};
 
 /// Makes the matrices of a choice.

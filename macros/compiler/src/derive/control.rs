@@ -25,15 +25,6 @@ pub struct InputStep<'g> {
 }
 
 impl<'g> SystemFormulas<'g> {
-    /// Each element of the basis as a motion of q.
-    fn motions(&self) -> Vec<Direction<'g>> {
-        let leaves = || self.model.configurations.iter().zip(&self.generator);
-        let motion = |element: &Direction<'g>| {
-            leaves().map(|(leaf, velocity)| (leaf.symbol, velocity.substitute(element))).collect()
-        };
-        self.symbols.basis().iter().map(motion).collect()
-    }
-
     /// Each entry of the input.
     fn inputs(&self) -> Vec<Direction<'g>> {
         let entries = |symbol: Expr<'g>| {
@@ -51,7 +42,7 @@ impl<'g> SystemFormulas<'g> {
     /// Everything that a declared choice of inputs needs.
     pub(super) fn chosen_by(&self) -> Option<Steering<'g>> {
         let control = self.model.control.as_ref()?;
-        let all = [self.motions(), self.inputs()].concat();
+        let all = [self.symbols.along_basis(&self.leaves_by_generator()), self.inputs()].concat();
         let count = Shape::vector(control.bounds.len().max(1));
         let leaves = self.model.configurations.iter().zip(&self.symbols.images);
         Some(Steering {
@@ -67,7 +58,7 @@ impl<'g> SystemFormulas<'g> {
     pub(super) fn price_of_end(&self) -> Option<Endpoint<'g>> {
         let price = self.model.endpoint?;
         let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
-        Some(Endpoint { price: Jet::of(price, &self.motions()), by_time })
+        Some(Endpoint { price: Jet::of(price, &self.symbols.along_basis(&self.leaves_by_generator())), by_time })
     }
 }
 
@@ -115,7 +106,7 @@ fn coordinates<'g>(group: Group, element: Expr<'g>) -> Expr<'g> {
 /// The step that inputs make, with its derivatives.
 pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> InputStep<'g> {
     let (graph, dimension) = (model.graph, model.dimension());
-    let directions = [formulas.motions(), formulas.inputs()].concat();
+    let directions = [formulas.symbols.along_basis(&formulas.leaves_by_generator()), formulas.inputs()].concat();
     let increment = element(model);
     let factored = |(k, factor): (usize, &'_ Factor<'g>)| {
         let basis = formulas.symbols.basis();

@@ -4,8 +4,8 @@ use clebsch_symbolic::{Expr, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
 use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Configuration, Factor, Kinetic, Mechanics, System};
+use crate::diagnostic::{Diagnostics, bail};
+use crate::model::{Factor, Kinetic, Mechanics, System};
 
 /// The Lagrangian ℓ(t, q, ξ) = ½ ξ·Σξ + A·ξ − V(t, q) that is the limit of ℓd(t, h, q, exp hξ)/h, less the potential.
 pub struct Energy<'g> {
@@ -44,13 +44,12 @@ fn general<'g>(system: &SystemFormulas<'g>, cost: Expr<'g>) -> Result<Expr<'g>, 
     };
     let elements: Vec<_> = model.factors.iter().zip(&system.symbols.algebra).map(along).collect();
     let action = cost.substitute(&elements) - cost.substitute(&identities(model));
-    limit(action.expand_all() / h, h).ok_or_else(|| {
-        let f = &model.factors[0].name;
-        Diagnostic::new(model.spans.kinetic.place, "cannot read the Lagrangian off this cost")
-            .help(format!("write it in terms of `({f} - I) / h`, or give a `lagrangian` instead of a cost"))
-            .note("the cost is not quadratic, and its limit K(h, I + h ξ)/h for h to 0 is hidden in a function of h")
-            .into()
-    })
+    if let Some(limit) = limit(action.expand_all() / h, h) {
+        return Ok(limit);
+    }
+    bail!(model.spans.kinetic.place, "cannot read the Lagrangian off this cost";
+        help "write it in terms of `({} - I) / h`, or give a `lagrangian` instead of a cost", model.factors[0].name;
+        note "the cost is not quadratic, and its limit K(h, I + h ξ)/h for h to 0 is hidden in a function of h");
 }
 
 /// The parts of a declared Lagrangian ℓ(t, q, ξ): of second and of first order in ξ.
@@ -75,9 +74,13 @@ fn declared<'g>(system: &SystemFormulas<'g>, lagrangian: Expr<'g>) -> Result<Ene
 
 /// ξ·Hξ with the Hessian H at rest.
 fn twice_second_order<'g>(algebra: &[Expr<'g>], rest: &[(Expr<'g>, Expr<'g>)], lagrangian: Expr<'g>) -> Expr<'g> {
-    let pairs = algebra.iter().flat_map(|xi| algebra.iter().map(move |eta| (*xi, *eta)));
-    let term = |(xi, eta): (Expr<'g>, Expr<'g>)| xi.dot(lagrangian.gradient(xi).jacobian(eta).substitute(rest) * eta);
-    lagrangian.graph().total(Shape::scalar(), pairs.map(term))
+    let mut sum = lagrangian.graph().integer(0);
+    for xi in algebra {
+        for eta in algebra {
+            sum = sum + xi.dot(lagrangian.gradient(*xi).jacobian(*eta).substitute(rest) * *eta);
+        }
+    }
+    sum
 }
 
 /// The first to fourth derivatives of K(h, exp εξ) at ε = 0.
@@ -104,14 +107,10 @@ fn gyroscopic<'g>(model: &System<'g>, slope: Expr<'g>) -> Result<Expr<'g>, Diagn
     {
         return Ok(limit);
     }
-    let f = &model.factors[0].name;
-    let error = Diagnostic::new(
-        model.spans.kinetic.place,
-        format!("the cost has a slope at `{f}` = I, so a body at rest would start to move"),
-    )
-    .help("use a cost with a minimum there, as in `(F - I).norm_squared() / (2 * h)`")
-    .note(format!("its derivative along exp(ε ξ) at the identity is {}", slope.expand()));
-    Err(error.into())
+    let place = model.spans.kinetic.place;
+    bail!(place, "the cost has a slope at `{}` = I, so a body at rest would start to move", model.factors[0].name;
+        help "use a cost with a minimum there, as in `(F - I).norm_squared() / (2 * h)`";
+        note "its derivative along exp(ε ξ) at the identity is {}", slope.expand());
 }
 
 /// The limit for h → 0 of a sum of powers of h; `None` if it does not exist or cannot be read off.
@@ -142,26 +141,22 @@ fn check_scaling<'g>(model: &System<'g>, energy: Expr<'g>) -> Result<Expr<'g>, D
     }
     let scaled = energy.substitute(&[(h, 2 * h)]);
     let power = (-6..=6).find(|&k| identity::equal(&[scaled], &[energy * energy.graph().integer(2).powi(k)]));
-    let error = Diagnostic::new(model.spans.kinetic.place, "the cost does not scale like an action");
-    let f = &model.factors[0].name;
-    let error = match power {
-        Some(power) => {
-            let of_step = if power.abs() == 1 { "h".into() } else { format!("h.powi({})", power.abs()) };
-            let (help, limit) = if power > 0 {
-                (format!("divide by `{of_step}`, as in `… / (2 * h)`"), "vanishes")
-            } else {
-                (format!("multiply by `{of_step}`"), "grows without bound")
-            };
-            error.help(help).note(format!(
-                "with {f} = exp(h*xi) it is h^{} * …, so its Lagrangian {limit} as h goes to 0",
-                power + 1
-            ))
-        }
-        None => error.help("divide a quadratic form of `F - I` by `2 * h`").note(format!(
-            "with {f} = exp(h*xi) its part of second order in xi is h * ({energy}), which still depends on h"
-        )),
+    let of_step = match power.map_or(0, i32::abs) {
+        1 => "h".to_string(),
+        power => format!("h.powi({power})"),
     };
-    Err(error.into())
+    let (help, limit) = match power {
+        Some(1..) => (format!("divide by `{of_step}`, as in `… / (2 * h)`"), "vanishes"),
+        Some(_) => (format!("multiply by `{of_step}`"), "grows without bound"),
+        None => ("divide a quadratic form of `F - I` by `2 * h`".to_string(), ""),
+    };
+    let why = match power {
+        Some(power) => format!("it is h^{} * …, so its Lagrangian {limit} as h goes to 0", power + 1),
+        None => format!("its part of second order in xi is h * ({energy}), which still depends on h"),
+    };
+    let f = &model.factors[0].name;
+    bail!(model.spans.kinetic.place, "the cost does not scale like an action";
+        help "{help}"; note "with {f} = exp(h*xi) {why}");
 }
 
 /// Whether derivatives of third and fourth order of the cost vanish faster than those of an action that is not quadratic.
@@ -183,31 +178,25 @@ fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), D
     if rank == dimension {
         return Ok(());
     }
-    let (name, shape) = (&model.factors[0].name, Shape::vector(dimension));
-    let refused = |message: String| Diagnostic::new(model.spans.kinetic.place, message);
-    let is_lost = |leaf: &&Configuration<'g>| leaf.shape == shape && identity::vanishes(inertia * leaf.symbol);
-    if let Some(axis) = model.configurations.iter().find(|leaf| rank > 0 && is_lost(leaf)).map(|leaf| &leaf.name) {
-        let error = refused(format!("the cost does not fix the rotation about `{axis}`"))
-            .note(format!("its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}"))
-            .help(format!("use the chord of the group: `self.mass * ({name} - I).norm_squared() / (4 * h)`, which has the same motion"));
-        return Err(error.into());
+    let (place, name, shape) = (model.spans.kinetic.place, &model.factors[0].name, Shape::vector(dimension));
+    for leaf in model.configurations.iter().filter(|leaf| rank > 0 && leaf.shape == shape) {
+        if identity::vanishes(inertia * leaf.symbol) {
+            let axis = &leaf.name;
+            bail!(place, "the cost does not fix the rotation about `{axis}`";
+                note "its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}";
+                help "use the chord of the group: `self.mass * ({name} - I).norm_squared() / (4 * h)`, which has the same motion");
+        }
     }
     let is_lost = |j: &usize| rank > 0 && identity::vanishes(inertia.block(0, *j, shape));
     let directions: Vec<_> = (0..dimension).filter(is_lost).map(|j| naming::basis_direction(model, j)).collect();
-    let why = format!(
-        "its Hessian at the identity has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}"
-    );
-    let error = if directions.is_empty() {
-        refused("the cost does not fix the group element".into())
-            .note(why)
-            .help(format!("add a term such as `({name} - I).norm_squared() / (2 * h)`"))
-    } else {
-        let chord = format!("`… + self.inertia * ({name} - I).norm_squared() / (4 * h)`");
-        refused(format!("the cost does not depend on {}", directions.join(" and ")))
-            .help(format!("add the chord of the group, as in {chord}"))
-            .note(why)
-    };
-    Err(error.into())
+    let why = format!("has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}");
+    if directions.is_empty() {
+        bail!(place, "the cost does not fix the group element";
+            note "its Hessian at the identity {why}"; help "add a term such as `({name} - I).norm_squared() / (2 * h)`");
+    }
+    bail!(place, "the cost does not depend on {}", directions.join(" and ");
+        help "add the chord of the group, as in `… + self.inertia * ({name} - I).norm_squared() / (4 * h)`";
+        note "its Hessian at the identity {why}");
 }
 
 /// Whether a matrix is written as a multiple of the identity that does not vanish.
@@ -244,11 +233,8 @@ pub(super) fn potential<'g>(model: &System<'g>, lagrangian: &DiscreteLagrangian<
     {
         return Ok(limit);
     }
-    let error = Diagnostic::new(
-        model.spans.kinetic.place,
-        "the part of the cost that depends on the configuration does not scale like an action",
-    )
-    .help("multiply a potential energy by `h`, as in `- h * self.weight * q.z`")
-    .note(format!("divided by h it is {}, which depends on h", -energy));
-    Err(error.into())
+    let place = model.spans.kinetic.place;
+    bail!(place, "the part of the cost that depends on the configuration does not scale like an action";
+        help "multiply a potential energy by `h`, as in `- h * self.weight * q.z`";
+        note "divided by h it is {}, which depends on h", -energy);
 }

@@ -17,7 +17,6 @@ mod cost;
 mod derivation;
 mod discrete_lagrangian;
 mod displacement;
-mod edges;
 mod energy;
 mod equation;
 mod equations;
@@ -27,7 +26,7 @@ mod formula;
 mod formulas;
 mod increments;
 mod latex;
-mod matrix_form;
+mod matrices;
 mod moves;
 mod naming;
 mod power;
@@ -50,7 +49,7 @@ mod velocity;
 
 use std::rc::Rc;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Mechanics, Model, Order, Steered, System};
 
@@ -60,7 +59,6 @@ pub use collocation::Collocation;
 pub use control::{Bend, InputStep};
 pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
 pub use discrete_lagrangian::DiscreteLagrangian;
-pub use edges::EdgeMatrices;
 pub use energy::Energy;
 use equation::Sources;
 pub use equation::{MomentumEquation, Solution, Structure};
@@ -68,7 +66,7 @@ pub use force::EdgeForce;
 pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
 pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas};
-pub use matrix_form::MatrixForm;
+pub use matrices::MatrixForm;
 pub use power::{Home, SiteTerm, Stencil, stencil};
 pub use prices::{Endpoint, Jet, Steering};
 pub use reference::Reference;
@@ -193,9 +191,7 @@ fn check_offers(model: &Mechanics<'_>, symmetries: &Symmetries<'_>) -> Result<()
     } else {
         ("the cost and the potential", "leaves both unchanged")
     };
-    let message = format!("`{}` is not a symmetry of {what}", offered.written.text);
-    let error = Diagnostic::new(offered.written.place, message)
-    .help(format!("leave it out, or offer the part of the group that {unchanged}"))
-    .note("it has to leave them unchanged for all values of the configuration, the group element and the parameters, and to move the configuration as some motion of the declared group does");
-    Err(error.into())
+    bail!(offered.written.place, "`{}` is not a symmetry of {what}", offered.written.text;
+        help "leave it out, or offer the part of the group that {unchanged}";
+        note "it has to leave them unchanged for all values of the configuration, the group element and the parameters, and to move the configuration as some motion of the declared group does");
 }

@@ -1,6 +1,6 @@
 //! What ties the sites of a power to each other: the gradient of each term, differentiated once for all indices.
 
-use clebsch_symbolic::{Expr, Property, Role};
+use clebsch_symbolic::{Expr, Role};
 
 use crate::model::{Configuration, Linear, Mechanics, Power, SiteIndex, Term};
 
@@ -94,9 +94,8 @@ impl<'g> Stencil<'g> {
         if known.is_none() {
             self.places.push(place);
         }
-        let property = symbol.as_symbol().map_or(Property::General, |data| data.property);
         let name = format!("{}[{text}]", model.configurations[leaf].name);
-        Some(model.graph.symbol(&name, symbol.shape(), Role::At(power.places.len() + number, leaf), property))
+        Some(model.graph.symbol(&name, symbol.shape(), Role::At(power.places.len() + number, leaf), symbol.property()))
     }
 }
 

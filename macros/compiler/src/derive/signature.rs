@@ -22,8 +22,7 @@ fn typical(symbol: Expr<'_>, seed: u64) -> Matrix<f64> {
         (mixed >> 33) as f64 / (1_u64 << 31) as f64
     };
     let small = 0.1 / shape.rows as f64;
-    let property = symbol.as_symbol().map_or(Property::General, |data| data.property);
-    Matrix::from_fn(shape, |(i, j)| match (shape.is_column(), i == j, property) {
+    Matrix::from_fn(shape, |(i, j)| match (shape.is_column(), i == j, symbol.property()) {
         (true, ..) => 0.5 + number(i, j),
         (_, true, _) => 1.0 + 0.5 * number(i, i),
         (_, false, Property::Diagonal) => 0.0,

@@ -6,7 +6,7 @@ use super::equation::{MomentumEquation, Solution, Sources};
 use super::force::total;
 use super::trivialisation::{self, Covector};
 use super::{DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, variation};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Mechanics, System};
 
@@ -104,10 +104,9 @@ pub(super) fn check_unmoved<'g>(model: &System<'g>, lagrangian: &DiscreteLagrang
     let Some(k) = (0..model.factors.len()).find(has_sides) else { return Ok(()) };
     let factor = &model.factors[k];
     let (name, group) = (&factor.name, factor.group.name(model.graph));
-    let error = Diagnostic::new(factor.span, format!("the factor `{name}: {group}` moves nothing"))
-        .help(format!("let it move a configuration, as in `R * {name}`, or give it a cost that is invariant under conjugation, as `({name} - I).norm_squared() / (2 * h)`"))
-        .note(format!("without a configuration to move it has no side, and this cost is not the same for {name} and g*{name}*g⁻¹"));
-    Err(error.into())
+    bail!(factor.span, "the factor `{name}: {group}` moves nothing";
+        help "let it move a configuration, as in `R * {name}`, or give it a cost that is invariant under conjugation, as `({name} - I).norm_squared() / (2 * h)`";
+        note "without a configuration to move it has no side, and this cost is not the same for {name} and g*{name}*g⁻¹");
 }
 
 /// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.

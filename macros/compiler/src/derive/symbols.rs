@@ -81,15 +81,24 @@ impl<'g> Symbols<'g> {
 
     /// The replacements of ξ by each element of the basis, factor after factor.
     pub fn basis(&self) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
-        let element = |k: usize, i: usize| {
-            let part = |(j, xi): (usize, &Expr<'g>)| {
-                let graph = xi.graph();
-                (*xi, if j == k { graph.unit(xi.shape(), i, 0) } else { graph.zero(xi.shape()) })
-            };
-            self.algebra.iter().enumerate().map(part).collect()
+        let zero = at_zero(self.algebra.iter().copied());
+        let mut elements = Vec::new();
+        for (k, xi) in self.algebra.iter().enumerate() {
+            for i in 0..xi.shape().rows {
+                let mut element = zero.clone();
+                element[k].1 = xi.graph().unit(xi.shape(), i, 0);
+                elements.push(element);
+            }
+        }
+        elements
+    }
+
+    /// Motions that are linear in ξ, along each element of the basis.
+    pub(super) fn along_basis(&self, motions: &[(Expr<'g>, Expr<'g>)]) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
+        let along = |element: &Vec<(Expr<'g>, Expr<'g>)>| {
+            motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()
         };
-        let factors = self.algebra.iter().enumerate();
-        factors.flat_map(|(k, xi)| (0..xi.shape().rows).map(move |i| (k, i))).map(|(k, i)| element(k, i)).collect()
+        self.basis().iter().map(along).collect()
     }
 
     /// The gradient with respect to the velocities of all factors, in one vector.
@@ -177,8 +186,7 @@ pub(super) fn at_zero<'g>(symbols: impl IntoIterator<Item = Expr<'g>>) -> Vec<(E
 
 /// The symbol of a leaf of q⁺, which lies in the same space as that of q.
 fn image<'g>(model: &System<'g>, i: usize, leaf: &Configuration<'g>) -> Expr<'g> {
-    let property = leaf.symbol.as_symbol().map_or(Property::General, |symbol| symbol.property);
-    model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), property)
+    model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
 }
 
 /// The symbol of the coordinates of log F.

@@ -9,47 +9,21 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Mechanics, Side, System};
 
-/// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors.
+/// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors, and each
+/// derivative is a vector that is linear in η, the symbols of the algebra.
 pub struct EdgeDerivatives<'g> {
-    /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, q⁺).
-    pub lagrangian: Expr<'g>,
-    /// F⁻ℓd.
-    pub before: Expr<'g>,
-    /// F⁺ℓd.
-    pub after: Expr<'g>,
-    /// ∂F⁻ℓd/∂η η for the motion Φ_{exp η} of q, as all derivatives here a vector that is linear in η, the symbols of the algebra.
-    pub before_by_start: Expr<'g>,
-    /// ∂F⁻ℓd/∂η′ η′ for the motion of q⁺.
-    pub before_by_end: Expr<'g>,
-    /// ∂F⁺ℓd/∂η η, where forces act; else that of −(∂F⁻ℓd/∂η′)ᵀ.
-    pub after_by_start: Option<Expr<'g>>,
-    /// ∂F⁺ℓd/∂η′ η′.
-    pub after_by_end: Expr<'g>,
-    /// The same along motions that leave F as it is.
-    pub carried: Carried<'g>,
+    /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, q⁺), F⁻ℓd and F⁺ℓd.
+    pub momenta: [Expr<'g>; 3],
+    /// ∂F⁻ℓd/∂η η for the motion Φ_{exp η} of q, ∂F⁻ℓd/∂η′ η′ and ∂F⁺ℓd/∂η′ η′ for that of q⁺. Where forces act ∂F⁺ℓd/∂η η follows, else
+    /// that is −(∂F⁻ℓd/∂η′)ᵀ.
+    pub derivatives: Vec<Expr<'g>>,
+    /// η′, ∂F⁻ℓd η and ∂F⁺ℓd η for the motions η of q that carry q⁺ along, by η′ = Ad_F η for a left action and Ad_{F⁻¹} η for a right one,
+    /// and leave F as it is. Where the cost does not couple only potentials and forces are left of the derivatives.
+    pub carried: [Expr<'g>; 3],
     /// What a choice of inputs needs, where there is one.
     pub bend: Option<Bend<'g>>,
-    /// The derivatives of both Legendre transforms with respect to each of the [`Quantity`]s, where they are asked for.
-    pub slopes: Option<Slopes<'g>>,
-}
-
-/// The derivatives along the motions η of q that carry q⁺ along, by η′ = Ad_F η for a left action and Ad_{F⁻¹} η for a right one, and leave F
-/// as it is. Where the cost does not couple only potentials and forces are left of them.
-pub struct Carried<'g> {
-    /// η′.
-    pub adjoint: Expr<'g>,
-    /// ∂F⁻ℓd η.
-    pub before: Expr<'g>,
-    /// ∂F⁺ℓd η.
-    pub after: Expr<'g>,
-}
-
-/// What becomes of the momenta at both ends of an edge when a quantity changes that is fixed during a step.
-pub struct Slopes<'g> {
-    /// ∂F⁻ℓd.
-    pub before: Vec<Expr<'g>>,
-    /// ∂F⁺ℓd.
-    pub after: Vec<Expr<'g>>,
+    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to each of the [`Quantity`]s, where they are asked for.
+    pub slopes: Option<[Vec<Expr<'g>>; 2]>,
 }
 
 /// A scalar that is fixed during a step: an entry of a parameter, the step size, the time.
@@ -62,34 +36,38 @@ pub struct Quantity<'g> {
 
 /// The parameters, entry by entry, the step size, the time where it matters, and the input. Both entries of a symmetric matrix are one.
 pub(super) fn quantities<'g>(model: &System<'g>, is_timed: bool) -> Vec<Quantity<'g>> {
-    let of_leaf = |(name, symbol, is_scalar): (String, Expr<'g>, bool)| {
-        let property = symbol.as_symbol().map_or(Property::General, |symbol| symbol.property);
-        // not where another entry or a promise determines an entry
-        let is_free = move |(i, j): &(usize, usize)| match property {
-            Property::Symmetric => i <= j,
-            Property::Diagonal => i == j,
-            _ => true,
-        };
-        symbol.shape().positions().filter(is_free).map(move |(i, j)| {
-            let unit = |i: usize, j: usize| symbol.graph().unit(symbol.shape(), i, j);
-            let index = match symbol.shape().columns {
+    let mut symbols = Vec::new();
+    for parameter in &model.parameters {
+        let leaves = parameter.leaves.iter();
+        symbols
+            .extend(leaves.map(|leaf| (format!("{}{}", parameter.name, leaf.accessor), leaf.symbol, leaf.is_scalar)));
+    }
+    symbols.push(("h".to_string(), model.step_size, true));
+    if is_timed {
+        symbols.push(("t".to_string(), model.time, true));
+    }
+    symbols.extend(model.inputs.iter().map(|leaf| (leaf.name.clone(), leaf.symbol, false)));
+    let mut quantities = Vec::new();
+    for (name, symbol, is_scalar) in symbols {
+        let (shape, property) = (symbol.shape(), symbol.property());
+        for (i, j) in shape.positions() {
+            let unit = |i: usize, j: usize| symbol.graph().unit(shape, i, j);
+            let direction = match property {
+                // another entry or a promise determines this one
+                Property::Symmetric if i > j => continue,
+                Property::Diagonal if i != j => continue,
+                Property::Symmetric if i < j => unit(i, j) + unit(j, i),
+                _ => unit(i, j),
+            };
+            let index = match shape.columns {
                 _ if is_scalar => String::new(),
                 1 => format!("[{i}]"),
                 _ => format!("[({i}, {j})]"),
             };
-            let mirrored = i != j && property == Property::Symmetric;
-            let direction = if mirrored { unit(i, j) + unit(j, i) } else { unit(i, j) };
-            Quantity { name: format!("{name}{index}"), symbol, direction }
-        })
-    };
-    let parameters = model.parameters.iter().flat_map(|parameter| {
-        let name = |accessor| format!("{}{accessor}", parameter.name);
-        parameter.leaves.iter().map(move |leaf| (name(&leaf.accessor), leaf.symbol, leaf.is_scalar))
-    });
-    let step = [("h".to_string(), model.step_size, true)];
-    let time = is_timed.then(|| ("t".to_string(), model.time, true));
-    let inputs = model.inputs.iter().map(|leaf| (leaf.name.clone(), leaf.symbol, false));
-    parameters.chain(step).chain(time).chain(inputs).flat_map(of_leaf).collect()
+            quantities.push(Quantity { name: format!("{name}{index}"), symbol, direction });
+        }
+    }
+    quantities
 }
 
 /// Second derivatives need a potential that can be differentiated twice.
@@ -122,17 +100,18 @@ impl<'g> Source<'_, 'g> {
         let rational = cayley::replacements(model);
         let lagrangian = &DiscreteLagrangian { kinetic: lagrangian.kinetic.substitute(&rational), ..*lagrangian };
         let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
-        let (start, end) = (self.later(lagrangian.start, begins), self.at_image(self.later(lagrangian.end, ends)));
+        let (start, end) = (self.later(lagrangian.start, begins), self.later(lagrangian.end, ends));
+        let end_at_image = self.at_image(end);
         let stack = |parts: &[Expr<'g>]| model.graph.below(parts);
         let mut first = stack(&trivialisation::components(model, &before));
         if lagrangian.couples {
             first = first + stack(&system.coupling(lagrangian.kinetic));
         }
-        if let Some(kick) = system.impulse(self.later(lagrangian.start, begins)) {
+        if let Some(kick) = system.impulse(start) {
             first = first - stack(&kick);
         }
         let mut last = stack(&trivialisation::components(model, &after));
-        if let Some(kick) = system.impulse(self.later(lagrangian.end, ends)) {
+        if let Some(kick) = system.impulse(end) {
             last = last + self.at_image(stack(&kick));
         }
         if let Some(force) = force {
@@ -142,54 +121,27 @@ impl<'g> Source<'_, 'g> {
             last = last + self.at_image(self.later(stack(&force.end), ends)).substitute(&rational);
         }
         let (at_start, at_end) = (self.at_start(), self.at_end());
-        EdgeDerivatives {
-            lagrangian: lagrangian.kinetic + start + end,
-            before_by_start: first.differential(&at_start),
-            before_by_end: first.differential(&at_end),
-            after_by_start: force.map(|_| last.differential(&at_start)),
-            after_by_end: last.differential(&at_end),
-            carried: self.carried(first, last),
-            slopes: (!self.quantities.is_empty())
-                .then(|| Slopes { before: self.slopes(first), after: self.slopes(last) }),
-            before: first,
-            after: last,
-            bend: model.control.as_ref().map(|_| self.bend((first, last))),
-        }
-    }
-
-    fn bend(&self, momenta: (Expr<'g>, Expr<'g>)) -> Bend<'g> {
-        let along = |motions: &[(Expr<'g>, Expr<'g>)]| -> Vec<Direction<'g>> {
-            let motion = |element: &Direction<'g>| {
-                motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()
-            };
-            self.system.symbols.basis().iter().map(motion).collect()
+        let momenta = [lagrangian.kinetic + start + end_at_image, first, last];
+        let mut derivatives = vec![first.differential(&at_start), first.differential(&at_end)];
+        let after_by_start = force.map(|_| last.differential(&at_start));
+        derivatives.push(last.differential(&at_end));
+        derivatives.extend(after_by_start);
+        let adjoint: Vec<_> = (0..model.factors.len()).map(|k| system.adjoint(k)).collect();
+        let together = self.carried_motions(&adjoint);
+        let along = |quantity: &Quantity<'g>, momentum: Expr<'g>| {
+            momentum.differential(&[(quantity.symbol, quantity.direction)])
         };
-        let ends = [along(&self.carried_motions()), along(&self.at_end())].concat();
-        control::bend(self.system, momenta, ends)
-    }
-
-    fn carried(&self, before: Expr<'g>, after: Expr<'g>) -> Carried<'g> {
-        let motions = self.carried_motions();
-        let adjoint = self.system.model.graph.below(&self.moved_along());
-        Carried { adjoint, before: before.differential(&motions), after: after.differential(&motions) }
-    }
-
-    /// Ad η for each factor, what q⁺ moves by when F stays as it is.
-    fn moved_along(&self) -> Vec<Expr<'g>> {
-        (0..self.system.model.factors.len()).map(|k| self.system.adjoint(k)).collect()
-    }
-
-    /// How q and q⁺ move with η at q while F stays as it is.
-    fn carried_motions(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let (symbols, moved) = (&self.system.symbols, self.moved_along());
-        let along: Vec<_> = symbols.algebra.iter().copied().zip(moved).collect();
-        let images = self.system.generator.iter().map(|part| self.at_image(*part).substitute(&along));
-        self.leaves_by_generator().chain(symbols.images.iter().copied().zip(images)).collect()
-    }
-
-    fn slopes(&self, momentum: Expr<'g>) -> Vec<Expr<'g>> {
-        let slope = |quantity: &Quantity<'g>| momentum.differential(&[(quantity.symbol, quantity.direction)]);
-        self.quantities.iter().map(slope).collect()
+        let slopes = |momentum| self.quantities.iter().map(|quantity| along(quantity, momentum)).collect();
+        EdgeDerivatives {
+            momenta,
+            derivatives,
+            carried: [model.graph.below(&adjoint), first.differential(&together), last.differential(&together)],
+            slopes: (!self.quantities.is_empty()).then(|| [first, last].map(slopes)),
+            bend: model.control.as_ref().map(|_| {
+                let ends = [&together, &at_end].map(|motions| system.symbols.along_basis(motions));
+                control::bend(system, (first, last), ends.concat())
+            }),
+        }
     }
 
     fn later(&self, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
@@ -198,31 +150,38 @@ impl<'g> Source<'_, 'g> {
 
     /// A function of q at q⁺.
     fn at_image(&self, part: Expr<'g>) -> Expr<'g> {
-        let leaves = self.system.model.configurations.iter().zip(&self.system.symbols.images);
-        part.substitute(&leaves.map(|(leaf, image)| (leaf.symbol, *image)).collect::<Vec<_>>())
+        part.substitute(&self.system.images_of_leaves())
     }
 
-    /// How q moves with η.
-    fn leaves_by_generator(&self) -> impl Iterator<Item = (Expr<'g>, Expr<'g>)> {
-        let leaves = self.system.model.configurations.iter().map(|leaf| leaf.symbol);
-        leaves.zip(self.system.generator.iter().copied())
+    /// How q⁺ moves with η.
+    fn images_by_generator(&self) -> Direction<'g> {
+        let images = self.system.symbols.images.iter().zip(&self.system.generator);
+        images.map(|(image, part)| (*image, self.at_image(*part))).collect()
+    }
+
+    /// How q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor.
+    fn carried_motions(&self, adjoint: &[Expr<'g>]) -> Direction<'g> {
+        let along: Vec<_> = self.system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).collect();
+        let images = self.images_by_generator().into_iter().map(|(image, part)| (image, part.substitute(&along)));
+        self.system.leaves_by_generator().into_iter().chain(images).collect()
     }
 
     /// How q and F move with η at q: F exp(−η) for a left action, exp(−η) F for a right one.
-    fn at_start(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let elements = (0..self.system.model.factors.len()).flat_map(|k| self.motion(k, true));
-        self.leaves_by_generator().chain(elements).collect()
+    fn at_start(&self) -> Direction<'g> {
+        let mut motions = self.system.leaves_by_generator();
+        (0..self.system.model.factors.len()).for_each(|k| motions.extend(self.motion(k, true)));
+        motions
     }
 
     /// How q⁺ and F move with η′ at q⁺: exp(η′) F for a left action, F exp(η′) for a right one.
-    fn at_end(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let generator = self.system.generator.iter().map(|part| self.at_image(*part));
-        let images = self.system.symbols.images.iter().copied().zip(generator);
-        images.chain((0..self.system.model.factors.len()).flat_map(|k| self.motion(k, false))).collect()
+    fn at_end(&self) -> Direction<'g> {
+        let mut motions = self.images_by_generator();
+        (0..self.system.model.factors.len()).for_each(|k| motions.extend(self.motion(k, false)));
+        motions
     }
 
     /// δF = ηF or Fη, and how log F moves with it: by dexp_y⁻¹ η or dexp_{−y}⁻¹ η; at the start of a step with −η.
-    fn motion(&self, k: usize, at_start: bool) -> impl Iterator<Item = (Expr<'g>, Expr<'g>)> + use<'g> {
+    fn motion(&self, k: usize, at_start: bool) -> Direction<'g> {
         let (model, symbols) = (&self.system.model, &self.system.symbols);
         let (group, f, y) = (model.factors[k].group, model.factors[k].symbol, symbols.logarithms[k]);
         let eta = if at_start { -symbols.algebra[k] } else { symbols.algebra[k] };
@@ -234,6 +193,6 @@ impl<'g> Source<'_, 'g> {
             (group.translate_left(f, wedge), group.exponential_slope(-y))
         };
         let rational = cayley::motion(model, k, eta, from_left);
-        [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational)
+        [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! The kernels of variations: motions of configurations, and edges with their second derivatives.
 
 use super::made::{Maker, of_matrices};
-use super::{Hoisting, Kernel, matrices};
-use crate::derive::{EdgeDerivatives, EdgeMatrices, Id, MatrixForm, MechanicsFormulas};
+use super::{Hoisting, matrices};
+use crate::derive::{Id, MechanicsFormulas};
 
 impl<'g> Maker<'_, 'g> {
     /// The kernels of variations, where they are asked for.
@@ -13,7 +13,12 @@ impl<'g> Maker<'_, 'g> {
         self.rows([Id::Retraction, Id::Composition, Id::Generator]);
         self.orbit_metric();
         let edges = formulas.substeps.iter().take(formulas.stepped).filter_map(|substep| substep.variation.as_ref());
-        edges.enumerate().for_each(|(index, variation)| self.edge(formulas, index, variation));
+        for (index, variation) in edges.enumerate() {
+            for (id, matrices) in formulas.edge_kernels(index, variation, self.scalars.keeps_matrices) {
+                let kernel = of_matrices(&mut self.scalars, &matrices, Hoisting::Constants(&mut self.hoisted));
+                self.add(id, kernel);
+            }
+        }
     }
 
     /// J(q, (E_j)_Q(q)), column by column; with whole matrices J(q, ξ_Q(q)).
@@ -22,20 +27,5 @@ impl<'g> Maker<'_, 'g> {
             Some(momenta) => self.add(Id::OrbitMetric, matrices::kernel(&matrices::below(momenta))),
             None => self.matrices(Id::OrbitMetric, &[self.system.orbit_metric()]),
         }
-    }
-
-    fn edge(&mut self, formulas: &MechanicsFormulas<'g>, index: usize, variation: &EdgeDerivatives<'g>) {
-        let EdgeMatrices { momenta, derivatives, carried, slopes } =
-            formulas.edge_matrices(variation, self.scalars.keeps_matrices);
-        let mut made = |id: Id, matrices: &[MatrixForm<'_>]| -> (Id, Kernel) {
-            (id, of_matrices(&mut self.scalars, matrices, Hoisting::Constants(&mut self.hoisted)))
-        };
-        let mut kernels = vec![
-            made(Id::EdgeMomenta(index), &momenta),
-            made(Id::Edge(index), &[momenta, derivatives].concat()),
-            made(Id::Carried(index), &carried),
-        ];
-        kernels.extend(slopes.map(|slopes| made(Id::EdgeSlopes(index), &slopes)));
-        self.table.extend(kernels);
     }
 }

@@ -95,7 +95,7 @@ impl<'g> Sites<'g> {
 
 /// A symbol of the shape and the property of another one.
 fn like<'g>(symbol: Expr<'g>, name: &str, role: Role) -> Expr<'g> {
-    let property = symbol.as_symbol().map_or(Property::General, |data| data.property);
+    let property = symbol.property();
     symbol.graph().symbol(name, symbol.shape(), role, property)
 }
 

@@ -53,8 +53,8 @@ impl<'g> MechanicsFormulas<'g> {
     /// A function of (t, q) at the end of a step: of (t⁺, q⁺).
     fn end_of_step(&self, function: Expr<'g>) -> Expr<'g> {
         let time = self.model.graph.symbol("t⁺", Shape::scalar(), Role::Letter, Property::General);
-        let leaves = self.model.configurations.iter().zip(&self.symbols.images);
-        let moved = leaves.map(|(leaf, image)| (leaf.symbol, *image)).chain([(self.model.time, time)]);
-        function.substitute(&moved.collect::<Vec<_>>())
+        let mut moved = self.images_of_leaves();
+        moved.push((self.model.time, time));
+        function.substitute(&moved)
     }
 }
