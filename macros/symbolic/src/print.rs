@@ -7,6 +7,22 @@ use num_traits::One;
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
 
+/// A notation of formulas.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Notation {
+    /// For doc comments and terminals.
+    Unicode,
+    /// For papers.
+    Latex,
+}
+
+impl Notation {
+    /// What is written in this notation.
+    pub fn either<T>(self, unicode: T, latex: T) -> T {
+        if self == Notation::Latex { latex } else { unicode }
+    }
+}
+
 /// How tightly the outermost operation binds.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
@@ -17,20 +33,20 @@ enum Binding {
 
 impl fmt::Display for Expr<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&Printer { graph: self.graph, is_latex: false }.print(self.id, Binding::Sum))
+        f.write_str(&self.written(Notation::Unicode))
     }
 }
 
 impl Expr<'_> {
-    /// The formula in LaTeX.
-    pub fn latex(self) -> String {
-        Printer { graph: self.graph, is_latex: true }.print(self.id, Binding::Sum)
+    /// The formula in a notation.
+    pub fn written(self, notation: Notation) -> String {
+        Printer { graph: self.graph, notation }.print(self.id, Binding::Sum)
     }
 }
 
 struct Printer<'g> {
     graph: &'g Graph,
-    is_latex: bool,
+    notation: Notation,
 }
 
 impl Printer<'_> {
@@ -42,13 +58,8 @@ impl Printer<'_> {
         if binding < place { self.parenthesized(&text) } else { text }
     }
 
-    /// The same in Unicode and in LaTeX.
-    fn either<T>(&self, unicode: T, latex: T) -> T {
-        if self.is_latex { latex } else { unicode }
-    }
-
     fn enclosed(&self, text: &str, unicode: [&str; 2], latex: [&str; 2]) -> String {
-        let [open, close] = self.either(unicode, latex);
+        let [open, close] = self.notation.either(unicode, latex);
         format!("{open}{text}{close}")
     }
 
@@ -60,24 +71,24 @@ impl Printer<'_> {
         let shape = self.graph.shape(id);
         let text = match &*self.graph.node(id) {
             ExprNode::Symbol(symbol) => self.symbol(&symbol.name),
-            ExprNode::Pi => self.either("π", "\\pi").into(),
+            ExprNode::Pi => self.notation.either("π", "\\pi").into(),
             ExprNode::Sum(terms) => return self.sum(terms, shape),
             ExprNode::Literal(entries) => self.rows(shape, entries.iter().map(|entry| self.rational(entry)).collect()),
             ExprNode::Stack(entries) => self.rows(shape, self.all(entries)),
             ExprNode::Word(word) => return (self.word(word), Binding::Product),
             ExprNode::Trace(word) => {
-                self.either("tr", "\\operatorname{tr}").to_string() + &self.parenthesized(&self.word(word))
+                self.notation.either("tr", "\\operatorname{tr}").to_string() + &self.parenthesized(&self.word(word))
             }
             ExprNode::Opaque(name, output, arguments) => {
                 let name = self.symbol(name);
                 let number = if arguments.len() > 1 { output.to_string() } else { String::new() };
-                let nabla = self.either("∇", "\\nabla ");
+                let nabla = self.notation.either("∇", "\\nabla ");
                 let name = if *output == 0 { name } else { format!("{nabla}{number}{name}") };
                 format!("{name}({})", self.all(arguments).join(", "))
             }
             ExprNode::Hadamard(a, b) => {
                 let [a, b] = [a, b].map(|factor| self.print(*factor, Binding::Atom));
-                return (a + self.either(" ∘ ", " \\circ ") + &b, Binding::Sum);
+                return (a + self.notation.either(" ∘ ", " \\circ ") + &b, Binding::Sum);
             }
             ExprNode::Of(operation, a) => self.operation(*operation, *a, shape),
         };
@@ -86,27 +97,31 @@ impl Printer<'_> {
 
     fn operation(&self, operation: Operation, a: Id, shape: Shape) -> String {
         let inner = || self.print(a, Binding::Sum);
-        let name = match operation {
+        let (unicode, latex) = match operation {
             Operation::Transpose => return self.raised(a, "ᵀ", "\\mathsf T"),
             Operation::Inverse => return self.raised(a, "⁻¹", "-1"),
             Operation::Wedge(_) => return self.raised(a, "^", "\\wedge"),
             Operation::Components(_) => return self.enclosed(&inner(), ["⟨", ", E⟩"], ["\\langle ", ", E \\rangle"]),
             Operation::Block(row, column) => return self.block(a, row, column, shape),
             Operation::Embed(row, column) => {
-                return format!("{}({}, {row}, {column})", self.either("embed", "\\operatorname{embed}"), inner());
+                let name = self.notation.either("embed", "\\operatorname{embed}");
+                return format!("{name}({}, {row}, {column})", inner());
             }
-            Operation::Determinant => self.either("det", "\\det").into(),
             Operation::Function(Function::Stumpff(k)) => {
-                self.either(format!("c{}", in_digits(k.into(), "₋₀₁₂₃₄₅₆₇₈₉")), format!("c_{{{k}}}"))
+                let unicode = format!("c{}", in_digits(k.into(), "₋₀₁₂₃₄₅₆₇₈₉"));
+                return self.notation.either(unicode, format!("c_{{{k}}}")) + &self.parenthesized(&inner());
             }
-            Operation::Function(function) => self.either("", "\\").to_string() + &function.name(),
-            Operation::Analytic(Analytic::Exponential) => self.either("exp", "\\exp").into(),
-            Operation::Analytic(Analytic::Phi) => self.either("φ", "\\varphi").into(),
-            Operation::Analytic(Analytic::Logarithm) => self.either("log", "\\log").into(),
-            Operation::DiagonalMatrix => self.either("diag", "\\operatorname{diag}").into(),
-            Operation::Diagonal => self.either("diagonal", "\\operatorname{diagonal}").into(),
+            Operation::Function(function) => {
+                return self.notation.either("", "\\").to_string() + &function.name() + &self.parenthesized(&inner());
+            }
+            Operation::Determinant => ("det", "\\det"),
+            Operation::Analytic(Analytic::Exponential) => ("exp", "\\exp"),
+            Operation::Analytic(Analytic::Phi) => ("φ", "\\varphi"),
+            Operation::Analytic(Analytic::Logarithm) => ("log", "\\log"),
+            Operation::DiagonalMatrix => ("diag", "\\operatorname{diag}"),
+            Operation::Diagonal => ("diagonal", "\\operatorname{diagonal}"),
         };
-        name + &self.parenthesized(&inner())
+        self.notation.either(unicode, latex).to_string() + &self.parenthesized(&inner())
     }
 
     fn all(&self, ids: &[Id]) -> Vec<String> {
@@ -114,7 +129,7 @@ impl Printer<'_> {
     }
 
     fn symbol(&self, name: &str) -> String {
-        if self.is_latex { latex_name(name) } else { name.to_string() }
+        if self.notation == Notation::Latex { latex_name(name) } else { name.to_string() }
     }
 
     /// An operand with something above it: in Unicode behind it. In LaTeX a base that has an exponent already stands in braces, as
@@ -122,16 +137,17 @@ impl Printer<'_> {
     fn raised(&self, operand: Id, unicode: &str, latex: &str) -> String {
         let base = self.print(operand, Binding::Atom);
         let is_raised = base.contains('^') && !base.ends_with("\\right)");
-        match (self.is_latex, is_raised) {
-            (false, _) => base + unicode,
-            (true, true) => format!("{{{base}}}^{{{latex}}}"),
-            (true, false) => format!("{base}^{{{latex}}}"),
+        match self.notation {
+            Notation::Unicode => base + unicode,
+            Notation::Latex if is_raised => format!("{{{base}}}^{{{latex}}}"),
+            Notation::Latex => format!("{base}^{{{latex}}}"),
         }
     }
 
     fn rows(&self, shape: Shape, entries: Vec<String>) -> String {
-        let rows: Vec<String> = entries.chunks(shape.columns).map(|row| row.join(self.either(", ", " & "))).collect();
-        let text = rows.join(self.either("; ", " \\\\ "));
+        let rows: Vec<String> =
+            entries.chunks(shape.columns).map(|row| row.join(self.notation.either(", ", " & "))).collect();
+        let text = rows.join(self.notation.either("; ", " \\\\ "));
         self.enclosed(&text, ["[", "]"], ["\\begin{pmatrix}", "\\end{pmatrix}"])
     }
 
@@ -167,7 +183,7 @@ impl Printer<'_> {
         }
         let binding =
             if terms.len() > 1 || terms[0].coefficient.is_negative() { Binding::Sum } else { Binding::Product };
-        (text.replace('−', self.either("−", "-")), binding)
+        (text.replace('−', self.notation.either("−", "-")), binding)
     }
 
     /// The absolute value of a term: numerator over denominator.
@@ -193,16 +209,16 @@ impl Printer<'_> {
             below.insert(0, coefficient.denom().to_string());
         }
         let (above, factors, below) = (self.join(&above), below.len(), self.join(&below));
-        match (self.is_latex, factors) {
-            (_, 0) => above,
-            (true, _) => format!("\\frac{{{above}}}{{{below}}}"),
-            (false, 1) => format!("{above}/{below}"),
-            (false, _) => format!("{above}/({below})"),
+        match factors {
+            0 => above,
+            _ if self.notation == Notation::Latex => format!("\\frac{{{above}}}{{{below}}}"),
+            1 => format!("{above}/{below}"),
+            _ => format!("{above}/({below})"),
         }
     }
 
     fn join(&self, factors: &[String]) -> String {
-        factors.join(self.either("·", "\\,"))
+        factors.join(self.notation.either("·", "\\,"))
     }
 
     fn scalar_power(&self, base: Id, exponent: Exponent) -> String {
@@ -225,7 +241,7 @@ impl Printer<'_> {
     }
 
     fn rational(&self, value: &Rational) -> String {
-        value.to_string().replace('-', self.either("−", "-"))
+        value.to_string().replace('-', self.notation.either("−", "-"))
     }
 }
 

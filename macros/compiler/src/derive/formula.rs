@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fmt;
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, Notation, Shape};
 
 use super::{Entry, Id, Reference, latex};
 
@@ -19,36 +19,29 @@ pub struct Formula<'g> {
     /// What is computed; one expression for each factor or leaf.
     pub value: Vec<Expr<'g>>,
     /// What is written as the right side, where that is not what is computed: F⁻¹ is written, the inverse of its group computed.
-    written: Option<Vec<Expr<'g>>>,
+    pub(super) written: Option<Vec<Expr<'g>>>,
     /// Where it comes from.
     pub source: Option<Reference>,
     /// Whether prints and `DERIVATION` list it.
     pub(super) is_listed: bool,
     /// How the right side is written.
-    wording: Wording<'g>,
+    pub(super) wording: Wording<'g>,
     /// Which of its expressions are said in the momentum μ of the free motion to F, with μ and F.
-    free: Vec<(usize, Expr<'g>, Expr<'g>)>,
-    text: OnceCell<Vec<String>>,
+    pub(super) free: Vec<(usize, Expr<'g>, Expr<'g>)>,
+    pub(super) text: OnceCell<Vec<String>>,
 }
 
 /// How the right side of a formula is written.
 #[derive(Clone)]
-enum Wording<'g> {
+pub(super) enum Wording<'g> {
     /// As its expressions are.
     AsIs,
     /// Each expression as it is or expanded, whichever is shorter.
     Shorter,
     /// In words: Unicode and LaTeX.
     Words(String, String),
-    /// Each expression with a kick at this place added to it.
+    /// Each expression with a kick at this place, q⁺, added to it.
     AndKick(String, Vec<Expr<'g>>),
-}
-
-/// A notation of formulas.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Notation {
-    Unicode,
-    Latex,
 }
 
 impl<'g> Formula<'g> {
@@ -84,46 +77,9 @@ impl<'g> Formula<'g> {
         Formula { wording: Wording::Words(unicode, latex), ..self }
     }
 
-    /// The same formula with a kick at q⁺ added to its expressions.
-    pub(super) fn and_kick(self, place: String, kick: &[Expr<'g>]) -> Formula<'g> {
-        Formula { wording: Wording::AndKick(place, kick.to_vec()), ..self }
-    }
-
-    /// The same formula, some of whose expressions are said in the momentum μ of the free motion to F.
-    pub(super) fn of_free_motions(self, free: Vec<(usize, Expr<'g>, Expr<'g>)>) -> Formula<'g> {
-        Formula { free, ..self }
-    }
-
-    /// The same formula, with another title than that of the catalogue.
-    pub(super) fn with_title(self, title: &'static str) -> Formula<'g> {
-        Formula { title, ..self }
-    }
-
-    /// The same formula, which prints leave out if it is of no step.
-    pub(super) fn listed_if(self, is_stepped: bool) -> Formula<'g> {
-        Formula { is_listed: self.is_listed && is_stepped, ..self }
-    }
-
     /// The right side, one text for each factor or leaf.
-    pub fn text(&self) -> &[String] {
-        self.text.get_or_init(|| self.written(Notation::Unicode))
-    }
-
-    /// The same in LaTeX.
-    pub fn latex(&self) -> Vec<String> {
-        self.written(Notation::Latex)
-    }
-
-    /// `symbol &= expression` in LaTeX, tuples in parentheses.
-    pub(super) fn equation_in_latex(&self) -> String {
-        let symbol = match self.id {
-            Id::Conserved(_) => format!("\\text{{{}}}", self.symbol),
-            _ => latex::left_side(&self.symbol),
-        };
-        match self.latex().as_slice() {
-            [only] => format!("{symbol} &= {only}"),
-            several => format!("{symbol} &= \\left({}\\right)", several.join(", ")),
-        }
+    fn text(&self) -> &[String] {
+        self.text.get_or_init(|| self.right_side(Notation::Unicode))
     }
 
     /// The shapes of the right sides.
@@ -144,55 +100,44 @@ impl<'g> Formula<'g> {
         }
     }
 
-    /// Whether it is that something vanishes.
-    pub(super) fn is_trivial(&self) -> bool {
-        self.value.is_empty() || self.text().iter().all(|text| text == "0")
+    /// `symbol &= expression` in LaTeX, tuples in parentheses.
+    fn equation_in_latex(&self) -> String {
+        let symbol = match self.id {
+            Id::Conserved(_) => format!("\\text{{{}}}", self.symbol),
+            _ => latex::left_side(&self.symbol),
+        };
+        match self.right_side(Notation::Latex).as_slice() {
+            [only] => format!("{symbol} &= {only}"),
+            several => format!("{symbol} &= \\left({}\\right)", several.join(", ")),
+        }
     }
 
-    fn written(&self, notation: Notation) -> Vec<String> {
-        let mut written = self.written_alone(notation);
+    fn right_side(&self, notation: Notation) -> Vec<String> {
+        let write = |value: Expr<'g>| without_embeddings(value).written(notation);
+        let values = self.expressions().iter().copied();
+        let mut written: Vec<String> = match &self.wording {
+            Wording::AsIs => values.map(write).collect(),
+            Wording::Shorter => values.map(|value| write(shorter(value))).collect(),
+            Wording::Words(unicode, latex) => vec![notation.either(unicode, latex).clone()],
+            Wording::AndKick(place, kicks) => {
+                let with_kick = |(value, kick): (Expr<'g>, &Expr<'g>)| {
+                    let (value, kick) = (write(value), shorter(*kick).written(notation));
+                    let latex = format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+"));
+                    notation.either(format!("{value} + [{kick}] at {place}"), latex)
+                };
+                values.zip(kicks).map(with_kick).collect()
+            }
+        };
         for (k, mu, f) in &self.free {
-            written[*k] += &notation.of_free_motion(*mu, *f);
+            let (mu, f) = (mu.written(notation), f.written(notation));
+            written[*k] += &notation.either(
+                format!(", {mu} the momentum of the free motion from I to {f} in h, by less than half a turn"),
+                format!(
+                    ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
+                ),
+            );
         }
         written
-    }
-
-    fn written_alone(&self, notation: Notation) -> Vec<String> {
-        let each = |write: &dyn Fn(Expr<'g>) -> String| self.expressions().iter().map(|value| write(*value)).collect();
-        match &self.wording {
-            Wording::AsIs => each(&|value| notation.of(without_embeddings(value))),
-            Wording::Shorter => each(&|value| notation.of(without_embeddings(shorter(value)))),
-            Wording::Words(unicode, latex) => vec![if notation == Notation::Latex { latex } else { unicode }.clone()],
-            Wording::AndKick(place, kicks) => {
-                let write = |(value, kick): (&Expr<'g>, &Expr<'g>)| {
-                    let (value, kick) = (notation.of(without_embeddings(*value)), notation.of(shorter(*kick)));
-                    match notation {
-                        Notation::Unicode => format!("{value} + [{kick}] at {place}"),
-                        Notation::Latex => format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+")),
-                    }
-                };
-                self.expressions().iter().zip(kicks).map(write).collect()
-            }
-        }
-    }
-}
-
-impl Notation {
-    fn of(self, expression: Expr<'_>) -> String {
-        if self == Notation::Latex { expression.latex() } else { expression.to_string() }
-    }
-
-    /// What the symbol μ means where a factor moves freely.
-    fn of_free_motion(self, mu: Expr<'_>, f: Expr<'_>) -> String {
-        let (mu, f) = (self.of(mu), self.of(f));
-        match self {
-            Notation::Unicode => {
-                format!(", {mu} the momentum of the free motion from I to {f} in h, by less than half a turn")
-            }
-            Notation::Latex => format!(
-                ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
-            ),
-        }
     }
 }
 
@@ -213,7 +158,7 @@ impl<'g> FormulaTable<'g> {
 
     /// The formulas that prints and `DERIVATION` show: those that are listed, unless they say that something vanishes.
     pub fn listing(&self) -> impl Iterator<Item = &Formula<'g>> {
-        self.0.iter().filter(|row| row.is_listed && !row.is_trivial())
+        self.0.iter().filter(|row| row.is_listed && row.text().iter().any(|text| text != "0"))
     }
 
     /// The formula with an id, or none where a system does not have it.
@@ -233,16 +178,14 @@ impl<'g> FormulaTable<'g> {
         let count = self.0[first..].iter().take_while(|row| is_meant(row)).count();
         &self.0[first..first + count]
     }
-}
 
-impl FormulaTable<'_> {
     /// The formulas that `DERIVATION` lists, in an `align*`.
     pub fn latex(&self) -> String {
-        let row = |formula: &Formula<'_>| {
+        let mut rows = Vec::new();
+        for formula in self.listing() {
             let title = if formula.title.is_empty() { String::new() } else { format!("% {}\n", formula.title) };
-            format!("{title}{}", formula.equation_in_latex())
-        };
-        let rows: Vec<String> = self.listing().map(row).collect();
+            rows.push(title + &formula.equation_in_latex());
+        }
         format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n"))
     }
 }

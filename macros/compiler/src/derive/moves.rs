@@ -3,7 +3,6 @@
 use clebsch_symbolic::{Chart, Expr, Property, Role, Shape, identity};
 
 use super::{MechanicsFormulas, Substep};
-use crate::model::Factor;
 
 impl<'g> MechanicsFormulas<'g> {
     /// Functions of the time at which a step starts, of functions of a time that is `later`.
@@ -12,22 +11,22 @@ impl<'g> MechanicsFormulas<'g> {
         parts.iter().map(|part| part.substitute(&moved)).collect()
     }
 
-    /// The gradients of a part of the discrete Lagrangian with respect to the configuration; `None` where they vanish.
+    /// The gradients of a part of the discrete Lagrangian with respect to the configuration; none where they vanish.
     ///
     /// Forces in 𝔤* have no covectors, so that a forced system has no kicks of covectors.
-    pub(super) fn covector_kick(&self, part: Expr<'g>, later: Expr<'g>) -> Option<Vec<Expr<'g>>> {
+    pub(super) fn covector_kick(&self, part: Expr<'g>, later: Expr<'g>) -> Vec<Expr<'g>> {
         let part = self.as_of_start(later, &[part])[0];
         let gradients = self.gradients(part);
         let acts = self.model.force.is_none() && gradients.iter().any(|gradient| !identity::vanishes(*gradient));
-        acts.then_some(gradients)
+        if acts { gradients } else { Vec::new() }
     }
 
-    /// ∂_q K of a cost that couples, at F = I + D.
-    pub(super) fn coupled_kick(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+    /// ∂_q K of a cost that couples, at F = I + D; none of another.
+    pub(super) fn coupled_kick(&self, substep: &Substep<'g>) -> Vec<Expr<'g>> {
         let acts = substep.lagrangian.couples && self.model.force.is_none();
         let moved = self.increments();
         let kick = || self.gradients(substep.lagrangian.kinetic).iter().map(|part| part.substitute(&moved)).collect();
-        acts.then(kick)
+        if acts { kick() } else { Vec::new() }
     }
 
     /// A force that depends on the velocity, in the chart.
@@ -39,15 +38,16 @@ impl<'g> MechanicsFormulas<'g> {
     /// The replacement of each group element by that of the chart, and of its logarithm.
     fn chart_elements(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let symbols = &self.symbols;
-        let element = |(k, factor): (usize, &Factor<'g>)| {
+        let mut elements = Vec::new();
+        for (k, factor) in self.model.factors.iter().enumerate() {
             let element = self.chart_element(k);
             let logarithm = match symbols.charts[k] {
                 Chart::Exponential => symbols.stacked_coordinates(k),
                 _ => factor.group.logarithm(element),
             };
-            [(factor.symbol, element), (symbols.logarithms[k], logarithm)]
-        };
-        self.model.factors.iter().enumerate().flat_map(element).collect()
+            elements.extend([(factor.symbol, element), (symbols.logarithms[k], logarithm)]);
+        }
+        elements
     }
 
     /// F − I of each factor, from the chart coordinates.

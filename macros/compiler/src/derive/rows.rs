@@ -8,8 +8,8 @@ mod steps;
 use clebsch_symbolic::{Expr, Property};
 
 use super::increments::inverse_by;
-use super::{Formula, FormulaTable, Id, MechanicsFormulas, SiteTerm, SteeredFormulas, SystemFormulas};
-use crate::model::{Factor, InputChoice, LeafSpace, Motion};
+use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
+use crate::model::{LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -35,9 +35,9 @@ impl<'g> SystemFormulas<'g> {
             name.trim_end_matches(|c: char| ('₀'..='₉').contains(&c)).to_string()
         };
         Names {
-            q: tuple(self.model.configurations.iter().map(|leaf| leaf.name.as_str())),
-            f: tuple(self.model.factors.iter().map(|factor| factor.name.as_str())),
-            u: tuple(self.model.inputs.iter().map(|leaf| leaf.name.as_str())),
+            q: tuple(self.model.configurations.iter().map(|leaf| leaf.name.clone())),
+            f: tuple(self.model.factors.iter().map(|factor| factor.name.clone())),
+            u: tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone())),
             xi: letter(symbols.algebra.first()),
             mu: letter(symbols.momenta.first()),
             p: letter(symbols.covectors.first()),
@@ -58,32 +58,39 @@ impl<'g> SystemFormulas<'g> {
 
     /// Expressions with the formula that each group has for F⁻¹, and with log F.
     fn with_inverses(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let explicit = |(factor, y): (&Factor<'g>, &Expr<'g>)| {
+        let mut inverses = Vec::new();
+        for (factor, y) in self.model.factors.iter().zip(&self.symbols.logarithms) {
             let logarithm = (*y, factor.group.logarithm(factor.symbol));
-            inverse_by(factor.group, factor.symbol, factor.symbol).into_iter().chain([logarithm])
-        };
-        let factors = self.model.factors.iter().zip(&self.symbols.logarithms);
-        let inverses: Vec<_> = factors.flat_map(explicit).collect();
+            inverses.extend(inverse_by(factor.group, factor.symbol, factor.symbol));
+            inverses.push(logarithm);
+        }
         parts.iter().map(|part| part.substitute(&inverses)).collect()
     }
 
     /// What vanishes where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
     fn row_of_membership(&self) -> Formula<'g> {
-        let equations = self.model.configurations.iter().flat_map(|leaf| match leaf.space {
-            LeafSpace::Group(group) if group.element_property() != Property::Orthogonal => group.equations(leaf.symbol),
-            _ => Vec::new(),
-        });
-        Formula::new(Id::Membership, "0", equations.collect::<Vec<_>>())
+        let mut equations = Vec::new();
+        for leaf in &self.model.configurations {
+            match leaf.space {
+                LeafSpace::Group(group) if group.element_property() != Property::Orthogonal => {
+                    equations.extend(group.equations(leaf.symbol));
+                }
+                _ => {}
+            }
+        }
+        Formula::new(Id::Membership, "0", equations)
     }
 
     /// Price, bounds and the price of the end.
     fn rows_of_choice(&self, Names { q, u, .. }: &Names) -> Vec<Formula<'g>> {
-        let control = self.model.control.as_ref();
-        let price = control.map(|control| Formula::new(Id::Price, format!("ℓ(h, {u})"), [control.price]));
-        let values = |control: &InputChoice<'g>| control.bounds.iter().map(|bound| bound.value).collect::<Vec<_>>();
-        let bounds = control.map(|control| Formula::new(Id::Bounds, "0 ≥ a", values(control)));
-        let of_end = self.model.endpoint.map(|price| Formula::new(Id::PriceOfEnd, format!("φ({q})"), [price]));
-        [price, bounds, of_end].into_iter().flatten().collect()
+        let mut rows = Vec::new();
+        if let Some(control) = &self.model.control {
+            rows.push(Formula::new(Id::Price, format!("ℓ(h, {u})"), [control.price]));
+            let bounds: Vec<_> = control.bounds.iter().map(|bound| bound.value).collect();
+            rows.push(Formula::new(Id::Bounds, "0 ≥ a", bounds));
+        }
+        rows.extend(self.model.endpoint.map(|price| Formula::new(Id::PriceOfEnd, format!("φ({q})"), [price])));
+        rows
     }
 }
 
@@ -117,16 +124,6 @@ impl<'g> MechanicsFormulas<'g> {
         self.table.get_or_init(|| FormulaTable::new(self.rows()))
     }
 
-    /// The formula with an id, or none where a system does not have it.
-    pub fn titled(&self, id: Id) -> &[Formula<'g>] {
-        self.table().titled(id)
-    }
-
-    /// The right sides of a formula; `None` where a system does not have it.
-    pub fn value(&self, id: Id) -> Option<&[Expr<'g>]> {
-        self.table().value(id)
-    }
-
     fn rows(&self) -> Vec<Formula<'g>> {
         let names = self.names();
         let mut rows = Vec::from(self.rows_of_action(&names));
@@ -137,9 +134,11 @@ impl<'g> MechanicsFormulas<'g> {
         rows.extend(self.rows_of_choice(&names));
         rows.extend(self.rows_of_conserved());
         for index in 0..self.substeps.len() {
-            // what serves the inverse Legendre transform alone is not listed
-            let of_substep = self.rows_of_substep(&names, index).into_iter();
-            rows.extend(of_substep.map(|row| row.listed_if(index < self.stepped)));
+            for mut row in self.rows_of_substep(&names, index) {
+                // what serves the inverse Legendre transform alone is not listed
+                row.is_listed &= index < self.stepped;
+                rows.push(row);
+            }
         }
         rows.extend(self.rows_of_move(&names));
         rows.extend(self.rows_of_scheme(&names));
@@ -152,7 +151,6 @@ impl<'g> MechanicsFormulas<'g> {
         let (factors, symbols) = (&self.model.factors, &self.symbols);
         let coadjoint = Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), self.coadjoint.clone());
         let coadjoint = coadjoint.computed_as(self.with_inverses(&self.coadjoint));
-        let lift = Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), self.cotangent_lift.clone());
         let membership = self.row_of_membership();
         let matrices = factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.momentum_matrix(*mu));
         let matrices: Vec<_> = matrices.collect();
@@ -160,7 +158,7 @@ impl<'g> MechanicsFormulas<'g> {
         [
             Formula::new(Id::MomentumMap, format!("J({q}, {p})"), self.momentum_map.clone()),
             coadjoint,
-            lift,
+            Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), self.cotangent_lift.clone()),
             membership,
             Formula::new(Id::MomentumMatrix, "M", matrices),
             Formula::new(Id::MomentumComponents, mu, components.collect::<Vec<_>>()),
@@ -170,18 +168,17 @@ impl<'g> MechanicsFormulas<'g> {
     /// The terms of the potential of a power, and their gradients.
     fn rows_of_terms(&self, Names { q, .. }: &Names) -> Vec<Formula<'g>> {
         let Some(power) = &self.model.power else { return Vec::new() };
-        let links = || self.links.iter().enumerate();
-        let term = |(number, link): (usize, &SiteTerm<'g>)| {
+        let (mut terms, mut gradients) = (Vec::new(), Vec::new());
+        for (number, link) in self.links.iter().enumerate() {
             let symbol = format!("V_{}, for each {}", number + 1, link.term.indices());
-            Formula::shorter(Id::Term(number), symbol.trim_end_matches(", for each "), [link.term.value])
-        };
-        let gradient = |(number, place, slopes): (usize, usize, &Vec<Expr<'g>>)| {
-            let symbol = format!("∂V_{}/∂{q}[{}]", number + 1, power.places[place].text());
-            Formula::shorter(Id::TermGradient(number, place), symbol, slopes.clone())
-        };
-        let gradients = links()
-            .flat_map(|(number, link)| link.gradient.iter().map(move |(place, slopes)| (number, *place, slopes)));
-        links().map(term).chain(gradients.map(gradient)).collect()
+            terms.push(Formula::shorter(Id::Term(number), symbol.trim_end_matches(", for each "), [link.term.value]));
+            for (place, slopes) in &link.gradient {
+                let symbol = format!("∂V_{}/∂{q}[{}]", number + 1, power.places[*place].text());
+                gradients.push(Formula::shorter(Id::TermGradient(number, *place), symbol, slopes.clone()));
+            }
+        }
+        terms.extend(gradients);
+        terms
     }
 
     /// The conserved momenta by their names, and the values of all of them, with the inverses of configurations by the formulas of their groups.
@@ -195,18 +192,19 @@ impl<'g> MechanicsFormulas<'g> {
             count if count > MOST_LISTED => vec![row(0, ""), row(count - 1, "… ")],
             count => (0..count).map(|number| row(number, "")).collect(),
         };
-        let inverses = self.model.configurations.iter().flat_map(|leaf| match leaf.space {
-            LeafSpace::Group(group) => inverse_by(group, leaf.symbol, leaf.symbol),
-            _ => Vec::new(),
-        });
-        let inverses: Vec<_> = inverses.collect();
+        let mut inverses = Vec::new();
+        for leaf in &self.model.configurations {
+            if let LeafSpace::Group(group) = leaf.space {
+                inverses.extend(inverse_by(group, leaf.symbol, leaf.symbol));
+            }
+        }
         let values: Vec<_> = conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
         rows.push(Formula::new(Id::ConservedMomenta, "conserved", values));
         rows
     }
 }
 
-fn tuple<'n>(names: impl Iterator<Item = &'n str>) -> String {
-    let names: Vec<&str> = names.collect();
+fn tuple(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
     if names.len() == 1 { names.concat() } else { format!("({})", names.join(", ")) }
 }

@@ -7,27 +7,24 @@ use crate::derive::{Choice, Id, StepOfChoice};
 impl<'g> Maker<'_, 'g> {
     /// The kernels of a choice: with the step that inputs make by themselves, or what they do to an edge as those of forces.
     pub(super) fn choice(&mut self, choice: &Choice<'_, 'g>) {
-        match choice.step {
-            StepOfChoice::Steered(step) => {
-                self.matrices(Id::StepExpanded, &choice.step_expanded(step));
-                self.rows([Id::Increment, Id::Advance]);
-                self.orbit_metric();
-            }
-            StepOfChoice::Forced(bend) => {
-                self.matrices(Id::ByInput, &choice.by_input(bend));
-                self.matrices(Id::Bend, &[choice.bend_curvature(bend)]);
-                self.matrices(Id::Bracket, &[choice.bracket(bend)]);
-            }
+        let is_steered = matches!(choice.step, StepOfChoice::Steered(_));
+        let made = |maker: &mut Self, id: Id| maker.matrices(id, &choice.matrices(id));
+        if is_steered {
+            made(self, Id::StepExpanded);
+            self.rows([Id::Increment, Id::Advance]);
+            self.orbit_metric();
+        } else {
+            [Id::ByInput, Id::Bend, Id::Bracket].into_iter().for_each(|id| made(self, id));
         }
         let approach = stack(&mut self.scalars, &choice.steering.approach, Hoisting::Nothing);
         self.add(Id::Approach, approach);
         self.rows([Id::Price]);
-        if let StepOfChoice::Forced(_) = choice.step {
-            self.matrices(Id::PriceExpanded, &choice.price_expanded());
+        if !is_steered {
+            made(self, Id::PriceExpanded);
         }
-        self.matrices(Id::PriceOfTime, &[choice.price_of_time()]);
+        made(self, Id::PriceOfTime);
         self.rows([Id::Bounds]);
-        self.matrices(Id::BoundsExpanded, &choice.bounds_expanded());
+        made(self, Id::BoundsExpanded);
     }
 
     /// The kernels of the price of the end, where there is one.

@@ -107,7 +107,7 @@ impl<'g> Maker<'_, 'g> {
             (Some(formula), _) => Some(vec![formula]),
             (None, Solution::Linear | Solution::FreeRotation) => None,
             (None, _) if keeps_matrices => formulas.whole_predictor(index, number),
-            (None, _) => formulas.value(Id::Predictor(index, number)).map(<[_]>::to_vec),
+            (None, _) => formulas.table().value(Id::Predictor(index, number)).map(<[_]>::to_vec),
         };
         let solved = match equation.solution {
             Solution::ClosedForm => Id::ClosedForm(index, number),
@@ -153,7 +153,7 @@ impl<'g> Maker<'_, 'g> {
             given,
             coupled: equation.coupled.clone(),
             solution: equation.solution,
-            structure: match formulas.value(Id::JacobianFactor(index, number)).filter(|_| keeps_matrices) {
+            structure: match formulas.table().value(Id::JacobianFactor(index, number)).filter(|_| keeps_matrices) {
                 Some(factor) => Structure::Sylvester(factor[0].shape().rows),
                 None => equation.structure.clone(),
             },

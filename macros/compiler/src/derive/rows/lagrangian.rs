@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Expr, Property, Role, Shape};
 
 use super::{Names, tuple};
+use crate::derive::formula::Wording;
 use crate::derive::symbols::moved_on;
 use crate::derive::{Formula, Id, MechanicsFormulas};
 
@@ -10,8 +11,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// The discrete Lagrangian, part by part, and its Legendre transforms.
     pub(super) fn rows_of_lagrangian(&self, Names { q, f, .. }: &Names) -> [Formula<'g>; 5] {
         let end = self.end_of_step(self.lagrangian.end);
-        let next: Vec<String> = self.symbols.images.iter().map(Expr::to_string).collect();
-        let next = tuple(next.iter().map(String::as_str));
+        let next = tuple(self.symbols.images.iter().map(Expr::to_string));
         // the factors that move freely, with the symbols of their momenta and of their elements
         let free = (0..self.model.factors.len()).filter(|&k| self.is_free_rotation(k));
         let free: Vec<_> = free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).collect();
@@ -20,7 +20,7 @@ impl<'g> MechanicsFormulas<'g> {
         if let Some(kick) = &self.legendre_kick {
             let is_timed = kick.iter().any(|part| part.depends_on(self.model.time));
             let place = if is_timed { format!("(t⁺, {q}⁺)") } else { format!("{q}⁺") };
-            legendre_next = legendre_next.and_kick(place, kick);
+            legendre_next.wording = Wording::AndKick(place, kick.clone());
         }
         let after = self.with_inverses(&self.legendre_with_last_kick());
         let time = |part: Expr<'g>, name| if part.depends_on(self.model.time) { name } else { "" };
@@ -38,8 +38,8 @@ impl<'g> MechanicsFormulas<'g> {
             lagrangian,
             Formula::new(Id::StartPotential, start, [self.lagrangian.start]),
             Formula::new(Id::EndPotential, format!("U₁({}h, {next})", time(self.lagrangian.end, "t⁺, ")), [end]),
-            legendre.of_free_motions(free.clone()).computed_as(self.with_inverses(&self.legendre)),
-            legendre_next.of_free_motions(free).computed_as(after),
+            Formula { free: free.clone(), ..legendre }.computed_as(self.with_inverses(&self.legendre)),
+            Formula { free, ..legendre_next }.computed_as(after),
         ]
     }
 

@@ -1,6 +1,6 @@
 //! The rows of small motions: how they retract, follow each other, and move a configuration.
 
-use clebsch_symbolic::{Block, Chart, Expr, Shape};
+use clebsch_symbolic::{Chart, Expr, Shape};
 
 use super::Names;
 use crate::derive::increments::from_increment;
@@ -16,11 +16,12 @@ impl<'g> SystemFormulas<'g> {
 
     /// GᵀG, column by column: J(q, (E_j)_Q(q)).
     pub fn orbit_metric(&self) -> MatrixForm<'g> {
-        let column = |element: &Vec<(Expr<'g>, Expr<'g>)>| {
-            let velocities = self.generator.iter().map(|velocity| velocity.substitute(element));
-            self.momenta_of(velocities).into_iter().map(Expr::expand).collect()
+        let column = |motion: Vec<(Expr<'g>, Expr<'g>)>| {
+            let momenta = self.momenta_of(motion.into_iter().map(|(_, velocity)| velocity));
+            momenta.into_iter().map(Expr::expand).collect()
         };
-        MatrixForm::Columns(self.symbols.basis().iter().map(column).collect())
+        let motions = self.symbols.along_basis(&self.leaves_by_generator());
+        MatrixForm::Columns(motions.into_iter().map(column).collect())
     }
 }
 
@@ -45,28 +46,27 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// τ(x) − I of each factor, then τ(−x) − I of each.
     fn retractions(&self) -> Vec<Expr<'g>> {
-        let increment = |sign: i64, k: usize| {
-            let coordinates = self.symbols.coordinates(k).into_iter().map(|x| sign * x);
-            let coordinates: Vec<_> = coordinates.collect();
-            let (numerator, denominator) = self.retraction(k).increment(self.model.factors[k].group, &coordinates);
-            numerator / denominator
-        };
-        let factors = 0..self.model.factors.len();
-        [1, -1]
-            .into_iter()
-            .flat_map(|sign| factors.clone().map(move |k| (sign, k)))
-            .map(|(sign, k)| increment(sign, k))
-            .collect()
+        let mut increments = Vec::new();
+        for sign in [1, -1] {
+            for (k, factor) in self.model.factors.iter().enumerate() {
+                let coordinates: Vec<_> = self.symbols.coordinates(k).into_iter().map(|x| sign * x).collect();
+                let (numerator, denominator) = self.retraction(k).increment(factor.group, &coordinates);
+                increments.push(numerator / denominator);
+            }
+        }
+        increments
     }
 
     /// For each component of ξ, the chart coordinate of exp ξ to first order, as numerator and denominator.
     pub fn slopes_of_retraction(&self) -> Vec<(i64, i64)> {
-        let of_factor = |k: usize| {
-            let chart = self.retraction(k);
-            let slope = |block: &Block| std::iter::repeat_n(chart.slope_at_identity(block), block.algebra.dimension());
-            self.model.graph.blocks(self.model.factors[k].group).iter().flat_map(slope).collect::<Vec<_>>()
-        };
-        (0..self.model.factors.len()).flat_map(of_factor).collect()
+        let mut slopes = Vec::new();
+        for (k, factor) in self.model.factors.iter().enumerate() {
+            for block in self.model.graph.blocks(factor.group).iter() {
+                let slope = self.retraction(k).slope_at_identity(block);
+                slopes.extend(std::iter::repeat_n(slope, block.algebra.dimension()));
+            }
+        }
+        slopes
     }
 
     /// F₂ F₁ − I for a left action, F₁ F₂ − I for a right one, with F = I + D.

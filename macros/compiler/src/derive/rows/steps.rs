@@ -5,19 +5,15 @@ use clebsch_symbolic::Expr;
 use super::Names;
 use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
 
-/// A formula that is there where its value is.
-fn known<'g>(id: Id, symbol: impl Into<String>, value: Option<Vec<Expr<'g>>>) -> Option<Formula<'g>> {
-    Some(Formula::shorter(id, symbol, value?))
-}
-
 impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
     pub(super) fn rows_of_substep(&self, names: &Names, index: usize) -> Vec<Formula<'g>> {
         let (substep, q) = (&self.substeps[index], &names.q);
-        let at =
-            |later: Expr<'g>, parts: &Option<Vec<Expr<'g>>>| parts.as_ref().map(|parts| self.as_of_start(later, parts));
-        let mut rows = Vec::new();
-        rows.extend(known(Id::StartKick(index), "M − N", at(substep.begins, &substep.start)));
+        let lagrangian = &substep.lagrangian;
+        let at = |later: Expr<'g>, parts: &Option<Vec<Expr<'g>>>| {
+            self.as_of_start(later, parts.as_deref().unwrap_or_default())
+        };
+        let mut rows = vec![Formula::shorter(Id::StartKick(index), "M − N", at(substep.begins, &substep.start))];
         for number in 0..substep.equations.len() {
             rows.extend(self.rows_of_equation(names, index, number));
         }
@@ -28,59 +24,64 @@ impl<'g> MechanicsFormulas<'g> {
                 Formula::new(Id::MomentumUpdate(index), "M⁺", update)
             }
         });
-        let after = self.momentum_after(substep).filter(|_| !self.turns_whole());
+        let after = self.momentum_after(substep).filter(|_| !self.turns_whole()).unwrap_or_default();
         let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
-        rows.extend(known(Id::MomentumAfter(index), symbol, after));
-        rows.extend(known(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), at(substep.ends, &substep.end)));
-        rows.extend(known(Id::RestKick(index), format!("−r({q}, I)"), substep.rest.clone()));
-        let lagrangian = &substep.lagrangian;
+        let rest = substep.rest.clone().unwrap_or_default();
+        rows.extend([
+            Formula::shorter(Id::MomentumAfter(index), symbol, after),
+            Formula::shorter(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), at(substep.ends, &substep.end)),
+            Formula::shorter(Id::RestKick(index), format!("−r({q}, I)"), rest),
+        ]);
         let start = self.covector_kick(lagrangian.start, substep.begins);
         let end = self.covector_kick(lagrangian.end, substep.ends);
-        rows.extend(known(Id::StartGradient(index), format!("∂U₀/∂{q}"), start));
-        rows.extend(known(Id::EndGradient(index), format!("∂U₁/∂{q}, at {q}⁺"), end));
-        rows.extend(known(Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)));
+        rows.extend([
+            Formula::shorter(Id::StartGradient(index), format!("∂U₀/∂{q}"), start),
+            Formula::shorter(Id::EndGradient(index), format!("∂U₁/∂{q}, at {q}⁺"), end),
+            Formula::shorter(Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)),
+        ]);
         if let Some(force) = &substep.force {
             // what depends on the velocity, in the chart
-            let moving = force.start_moving.as_ref().filter(|_| substep.other.is_none());
+            let moving = force.start_moving.as_deref().filter(|_| substep.other.is_none()).unwrap_or_default();
             let start = at(substep.begins, &force.start);
-            let moving = moving.map(|moving| self.in_chart(&self.as_of_start(substep.begins, moving)));
+            let moving = self.in_chart(&self.as_of_start(substep.begins, moving));
             let end = self.in_chart(&self.as_of_start(substep.ends, &force.end));
-            rows.extend(known(Id::StartForce(index), "M − N by f", start));
-            rows.extend(known(Id::MovingForce(index), "M − N by f", moving));
-            rows.push(Formula::shorter(Id::EndForce(index), format!("N⁺ − M⁺ by f, at {q}⁺"), end));
+            rows.extend([
+                Formula::shorter(Id::StartForce(index), "M − N by f", start),
+                Formula::shorter(Id::MovingForce(index), "M − N by f", moving),
+                Formula::shorter(Id::EndForce(index), format!("N⁺ − M⁺ by f, at {q}⁺"), end),
+            ]);
         }
         rows
     }
 
     /// The move of a configuration and of a covector, by the increments D = F − I.
-    pub(super) fn rows_of_move(&self, Names { q, f, p, d, x, .. }: &Names) -> Vec<Formula<'g>> {
+    pub(super) fn rows_of_move(&self, Names { q, f, p, d, x, .. }: &Names) -> [Formula<'g>; 4] {
         let after = if self.is_compensated() { format!("{q}⁺ − {q}") } else { format!("{q}⁺") };
         let lift = self.at_increments(&self.cotangent_lift);
-        let increments = (!self.turns_whole()).then(|| self.chart_increments());
-        let mut rows = Vec::from_iter(known(Id::Increment, format!("{d}({x})"), increments));
-        rows.push(Formula::shorter(Id::Advance, &after, self.advance()));
-        rows.extend(known(Id::Displacement, after, self.displaced()));
-        rows.push(Formula::shorter(Id::Lift, format!("(TΦ_{f})^-* {p} at {q}⁺"), lift));
-        rows
+        let increments = if self.turns_whole() { Vec::new() } else { self.chart_increments() };
+        [
+            Formula::shorter(Id::Increment, format!("{d}({x})"), increments),
+            Formula::shorter(Id::Advance, &after, self.advance()),
+            Formula::shorter(Id::Displacement, after, self.displaced().unwrap_or_default()),
+            Formula::shorter(Id::Lift, format!("(TΦ_{f})^-* {p} at {q}⁺"), lift),
+        ]
     }
 
     /// An equation with its Jacobian, its solution where there is a formula for it, and what iterations start from.
     fn rows_of_equation(&self, Names { x, delta, .. }: &Names, index: usize, number: usize) -> Vec<Formula<'g>> {
         let (substep, equation) = (&self.substeps[index], &self.substeps[index].equations[number]);
         let symbol = format!("Dρ({x})·{delta}");
-        let row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), [equation.residual]);
-        let is_explicit = equation.solution == Solution::Explicit;
-        let mut rows = vec![
-            if is_explicit { row.with_title("equation (explicit)") } else { row },
-            Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional]),
-        ];
+        let mut row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), [equation.residual]);
+        if equation.solution == Solution::Explicit {
+            row.title = "equation (explicit)";
+        }
+        let mut rows = vec![row, Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional])];
         rows.extend(equation.large_jacobian_factor(self).map(|factor| {
             let symbol = format!("{symbol} = ⟨{delta}^·B, E⟩ with B({x})");
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
         }));
         let coordinates = self.coordinates_of(equation);
-        let solution = equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x]));
-        rows.extend(solution);
+        rows.extend(equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x])));
         if self.is_predicted(equation) {
             let printed = self.printed_predictor(substep, equation).unwrap_or_default();
             let row = Formula::shorter(Id::Predictor(index, number), coordinates, printed);
@@ -108,8 +109,8 @@ impl<'g> MechanicsFormulas<'g> {
     /// equations, which a step of order 16 collocates, and what its sweeps start from.
     pub(super) fn rows_of_scheme(&self, names: &Names) -> Vec<Formula<'g>> {
         let Names { q, x, .. } = names;
-        let stagger = known(Id::SynchronizedMomentum, format!("N − π, at {q}"), self.stagger.clone());
-        let mut rows = Vec::from_iter(stagger);
+        let stagger = self.stagger.clone().unwrap_or_default();
+        let mut rows = vec![Formula::shorter(Id::SynchronizedMomentum, format!("N − π, at {q}"), stagger)];
         if let Some(splitting) = &self.splitting {
             let gradient = |plain: String, with: String| if splitting.has_gradient { plain + &with } else { plain };
             let energy = gradient(format!("−h·b·V({q})"), format!(" + h³·g·Gᵀ·Σ⁻¹·G, G = J({q}, ∂V)"));
@@ -120,9 +121,8 @@ impl<'g> MechanicsFormulas<'g> {
             let kick = Formula::new(Id::SplittingKick, format!("M⁺ − M at {q}"), splitting.kick.clone());
             let gradients = self.gradients(splitting.potential);
             let covector = Formula::new(Id::SplittingGradient, format!("∂U/∂{q} with U"), gradients);
-            rows.push(
-                kick.in_words(format!("J({q}, ∂U), U = {energy}"), format!("J({q}, \\partial U),\\quad U = {latex}")),
-            );
+            let in_latex = format!("J({q}, \\partial U),\\quad U = {latex}");
+            rows.push(kick.in_words(format!("J({q}, ∂U), U = {energy}"), in_latex));
             rows.push(covector.in_words(energy, latex));
         }
         rows.extend(self.row_of_collocation(names));
@@ -133,10 +133,10 @@ impl<'g> MechanicsFormulas<'g> {
     fn row_of_collocation(&self, Names { q, xi, p, .. }: &Names) -> Option<Formula<'g>> {
         let velocity = self.collocation.as_ref()?.velocity.clone();
         let row = Formula::new(Id::HamiltonEquations, format!("({q}′, {p}′)"), velocity);
-        let is_linear = !self.energy.gyroscopic.is_zero();
-        let (a, less) = if is_linear { (" − A", format!(" − A·{xi}")) } else { ("", String::new()) };
+        let if_linear = |text: String| if self.energy.gyroscopic.is_zero() { String::new() } else { text };
+        let [a, a_latex] = [" − A", " - A"].map(|text| if_linear(text.to_string()));
+        let [less, less_latex] = [format!(" − A·{xi}"), format!(" - A\\cdot {xi}")].map(if_linear);
         let v = if self.potential_energy.is_zero() { "" } else { " + V" };
-        let (a_latex, less_latex) = if is_linear { (" - A", format!(" - A\\cdot {xi}")) } else { ("", String::new()) };
         Some(row.in_words(
             format!("({xi}_Q({q}), −∂_{q}(⟨{p}, {xi}_Q({q})⟩{less}{v})), {xi} = Σ⁻¹(J({q}, {p}){a})"),
             format!("({xi}_Q({q}),\\, -\\partial_{{{q}}}(\\langle {p}, {xi}_Q({q})\\rangle{less_latex} {v})),\\quad {xi} = \\Sigma^{{-1}}(J({q}, {p}){a_latex})"),
