@@ -13,10 +13,14 @@ pub type Sparse = Vec<(usize, usize, Rational)>;
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Algebra {
     index: u32,
-    dimension: usize,
-    shape: Shape,
-    skew: bool,
-    identification: bool,
+    /// The dimension m.
+    pub dimension: usize,
+    /// The shape of the matrices.
+    pub shape: Shape,
+    /// Whether every element is a skew matrix.
+    pub is_skew: bool,
+    /// Whether elements are their own coordinates: vectors in the unit basis.
+    pub is_identification: bool,
 }
 
 /// What a graph keeps of a basis.
@@ -28,35 +32,14 @@ pub struct Basis {
     pub elements: Vec<Sparse>,
 }
 
-impl Algebra {
-    /// The dimension m.
-    pub fn dimension(self) -> usize {
-        self.dimension
-    }
-
-    /// The shape of the matrices.
-    pub fn matrix_shape(self) -> Shape {
-        self.shape
-    }
-
-    /// Whether every element is a skew matrix.
-    pub fn is_skew(self) -> bool {
-        self.skew
-    }
-
-    /// Whether elements are their own coordinates: vectors in the unit basis.
-    pub fn is_identification(self) -> bool {
-        self.identification
-    }
-}
-
 impl Graph {
     /// The handle of a basis; the same basis has the same handle.
     pub fn algebra(&self, shape: Shape, elements: Vec<Sparse>) -> Algebra {
         let basis = Basis { shape, elements };
-        let (dimension, skew, identification) = (basis.elements.len(), basis.is_skew(), basis.is_identification());
+        let dimension = basis.elements.len();
+        let (is_skew, is_identification) = (basis.is_skew(), basis.is_identification());
         let index = self.bases.borrow_mut().intern(Rc::new(basis)).0 as u32;
-        Algebra { index, dimension, shape, skew, identification }
+        Algebra { index, dimension, shape, is_skew, is_identification }
     }
 
     /// For each basis element its entries that are not zero.

@@ -19,11 +19,11 @@ impl<'g> Expr<'g> {
 
     /// Σ v_i E_i in the basis of the algebra.
     pub fn wedge(self, algebra: Algebra) -> Expr<'g> {
-        let shape = algebra.matrix_shape();
-        if algebra.is_identification() {
+        let shape = algebra.shape;
+        if algebra.is_identification {
             return self;
         }
-        if algebra.dimension() == 1 {
+        if algebra.dimension == 1 {
             return self.wedge_of_scalar(algebra);
         }
         if let ExprNode::Literal(entries) = &*self.node() {
@@ -39,7 +39,7 @@ impl<'g> Expr<'g> {
     /// v E_1 of a one-dimensional algebra, kept as one letter so that its products are known as those of v^.
     fn wedge_of_scalar(self, algebra: Algebra) -> Expr<'g> {
         let graph = self.graph;
-        let shape = algebra.matrix_shape();
+        let shape = algebra.shape;
         self.terms().into_iter().fold(graph.zero(shape), |sum, Term { coefficient, scalars, word }| {
             let plain = graph.scalar(Term { coefficient: Rational::one(), scalars, word });
             let element = match plain.as_number() {
@@ -52,8 +52,8 @@ impl<'g> Expr<'g> {
 
     /// The components ⟨A, E_i⟩ = tr(AᵀE_i) in the basis of the algebra.
     pub fn components(self, algebra: Algebra) -> Expr<'g> {
-        let shape = Shape::vector(algebra.dimension());
-        if algebra.is_identification() {
+        let shape = Shape::vector(algebra.dimension);
+        if algebra.is_identification {
             return self;
         }
         self.remembered(&self.graph.images(Map::Components(algebra)), || self.components_by_terms(algebra, shape))
@@ -67,13 +67,13 @@ impl<'g> Expr<'g> {
                 return plain.graph.lower(algebra, plain.graph.expr(*inner));
             }
             if let Some(entries) = plain.constant_entries() {
-                let columns = algebra.matrix_shape().columns;
+                let columns = algebra.shape.columns;
                 let product = |(i, j, value): &(usize, usize, Rational)| &entries[i * columns + j] * value;
                 let component = |element: &Sparse| element.iter().map(product).sum();
                 let components = plain.graph.basis(algebra).elements.iter().map(component).collect();
                 return plain.graph.literal(shape, components);
             }
-            if !algebra.is_skew() {
+            if !algebra.is_skew {
                 return plain.atom_of(Operation::Components(algebra), shape);
             }
             // the components of a skew group see only the skew part: one of A and −Aᵀ stands for both

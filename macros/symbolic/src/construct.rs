@@ -52,7 +52,7 @@ impl<'g> Expr<'g> {
                 match *operation {
                     Operation::Transpose => inner,
                     Operation::DiagonalMatrix => self,
-                    Operation::Wedge(algebra) if algebra.is_skew() => -self,
+                    Operation::Wedge(algebra) if algebra.is_skew => -self,
                     Operation::Inverse => inner.transpose().inverse(),
                     Operation::Analytic(function) => inner.transpose().analytic(function),
                     Operation::Block(row, column) => inner.transpose().block(column, row, shape),
@@ -234,7 +234,7 @@ impl Graph {
         match &*self.node(letter) {
             ExprNode::Sum(_) => expr.trace(),
             ExprNode::Of(Operation::Transpose, inner) => self.expr(*inner).trace(),
-            ExprNode::Of(Operation::Wedge(algebra), _) if algebra.is_skew() => self.integer(0),
+            ExprNode::Of(Operation::Wedge(algebra), _) if algebra.is_skew => self.integer(0),
             ExprNode::Symbol(symbol) if symbol.property == Property::Skew => self.integer(0),
             ExprNode::Of(Operation::DiagonalMatrix, inner) => {
                 (0..n).map(|i| self.expr(*inner).entry(i, 0)).fold(self.integer(0), |sum, entry| sum + entry)

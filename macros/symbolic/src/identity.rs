@@ -260,19 +260,17 @@ pub fn rank_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> usize
 }
 
 /// A basis of the constant vectors w with A·w = 0 for all values of the symbols in A that the properties allow, in reduced echelon
-/// form. `prepare` may fix the values of symbols at each point.
+/// form.
 ///
 /// Entries that are no small rationals are not recognised; vectors with such entries are left out, so that nothing is claimed
 /// wrongly.
-pub fn null_space<'g>(matrix: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> Vec<Vec<Rational>> {
+pub fn null_space(matrix: Expr<'_>) -> Vec<Vec<Rational>> {
     let columns = matrix.shape().columns;
     let (mut rows, mut pivots): (Vec<Residue>, Vec<usize>) = (Vec::new(), Vec::new());
     // points that add nothing to the rank: as many in a row as decide an identity
     let mut idle = 0;
     for seed in 0..columns as u64 + POINTS {
-        let mut point = Point::new(seed);
-        prepare(&mut point);
-        rows.extend(point.evaluate(matrix).entries);
+        rows.extend(Point::new(seed).evaluate(matrix).entries);
         let rank = pivots.len();
         let mut reduced = Matrix::new(Shape::new(rows.len() / columns, columns), rows);
         pivots = reduced.reduce(columns).0;

@@ -141,13 +141,12 @@ fn chart_laws<'g>(graph: &'g Graph, group: Group, random: &mut Random) {
     let chart = group.chart(graph);
     let blocks = graph.blocks(group);
     let symbol = |(k, block): (usize, &Block)| {
-        let shape = Shape::vector(block.algebra.dimension());
+        let shape = Shape::vector(block.algebra.dimension);
         graph.symbol(&format!("x{k}"), shape, Role::Chart(k), Property::General)
     };
     let x: Vec<Expr<'g>> = blocks.iter().enumerate().map(symbol).collect();
     let element = chart.element(group, &x);
-    let (numerator, denominator) = chart.increment(group, &x);
-    let increment = numerator / denominator;
+    let increment = chart.increment(group, &x);
     let product = group.compose(group.inverse(element), element);
     // x = slope · ξ for F = exp ξ, so that F − I = ξ + O(ξ²) with ξ = x/slope
     let tangent = blocks.iter().zip(&x).fold(graph.zero(group.element_shape()), |sum, (block, x)| {

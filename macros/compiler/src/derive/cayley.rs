@@ -40,8 +40,8 @@ fn of_factor<'g>(model: &System<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr
     let identity = group.identity(model.graph);
     let whole = (f - identity) * (f + identity).inverse();
     let block = |block: &clebsch_symbolic::Block| {
-        let part = whole.block(block.row, block.column, block.algebra.matrix_shape()).components(block.algebra);
-        let coordinates = z.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
+        let part = whole.block(block.row, block.column, block.algebra.shape).components(block.algebra);
+        let coordinates = z.block(block.offset, 0, Shape::vector(block.algebra.dimension));
         (part, coordinates.wedge(block.algebra).components(block.algebra))
     };
     model.graph.blocks(group).iter().map(block).collect()

@@ -80,11 +80,10 @@ fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
         let blocks = model.graph.blocks(factor.group);
         let coordinates = blocks.iter().map(|block| {
             let (numerator, denominator) = chart.slope_at_identity(block);
-            let part = xi.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
+            let part = xi.block(block.offset, 0, Shape::vector(block.algebra.dimension));
             model.graph.rational(numerator, denominator) * model.step_size * part
         });
-        let (numerator, denominator) = chart.increment(factor.group, &coordinates.collect::<Vec<_>>());
-        numerator / denominator
+        chart.increment(factor.group, &coordinates.collect::<Vec<_>>())
     };
     model.factors.iter().zip(velocity).map(increment).collect()
 }

@@ -216,7 +216,7 @@ fn blocks<'g>(model: &System<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<
     let graph = model.graph;
     let of_factor = |(factor, data): (usize, &Factor<'g>)| {
         let blocks = graph.blocks(data.group);
-        (0..blocks.len()).map(move |block| (factor, block, blocks[block].algebra.dimension()))
+        (0..blocks.len()).map(move |block| (factor, block, blocks[block].algebra.dimension))
     };
     let places: Vec<_> = model.factors.iter().enumerate().flat_map(of_factor).collect();
     let mut end = 0;

@@ -45,9 +45,7 @@ impl<'g> SystemFormulas<'g> {
 
     /// The increment F − I of a factor in its chart, without cancellation.
     pub(super) fn chart_increment(&self, factor: usize) -> Expr<'g> {
-        let (group, coordinates) = (self.model.factors[factor].group, self.symbols.coordinates(factor));
-        let (numerator, denominator) = self.symbols.charts[factor].increment(group, &coordinates);
-        numerator / denominator
+        self.symbols.charts[factor].increment(self.model.factors[factor].group, &self.symbols.coordinates(factor))
     }
 
     /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.

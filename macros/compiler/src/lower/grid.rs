@@ -164,7 +164,7 @@ impl<'g> Lowering<'_> {
         under.sort_by_key(|(algebra, _)| *algebra);
         let mut grids = Vec::new();
         for (algebra, inner) in under {
-            let matrix = self.gathered(algebra.matrix_shape(), inner);
+            let matrix = self.gathered(algebra.shape, inner);
             grids.push(self.components(&graph.basis(algebra), &matrix));
         }
         grids.push(self.gathered(shape, rest));

@@ -223,7 +223,7 @@ impl Matrices {
         let mut entries = vec![Vec::new(); shape.len()];
         for (k, element) in basis.elements.iter().enumerate() {
             for (i, j, value) in element {
-                let x = if algebra.dimension() == 1 { x.clone() } else { self.entry(&x, k, 0) };
+                let x = if algebra.dimension == 1 { x.clone() } else { self.entry(&x, k, 0) };
                 entries[i * shape.columns + j].push((value.clone(), x));
             }
         }
@@ -232,7 +232,7 @@ impl Matrices {
     }
 
     fn components(&mut self, graph: &Graph, algebra: Algebra, a: Code) -> Code {
-        let shape = Shape::vector(algebra.dimension());
+        let shape = Shape::vector(algebra.dimension);
         if is_rotations(graph, algebra) {
             return self.operation(MatrixOperation::SkewComponents, vec![a], shape);
         }
@@ -256,7 +256,7 @@ impl Matrices {
         let (word, cut) = outer_product(graph, algebra, a)?;
         let row: Vec<Expr<'_>> = word[cut..].iter().rev().map(|letter| letter.transpose()).collect();
         let operands = vec![self.product(&word[..cut]), self.product(&row)];
-        Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(algebra.dimension())))
+        Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(algebra.dimension)))
     }
 
     fn scalar_sum(&mut self, terms: Vec<WordTerm<'_>>) -> Code {
@@ -365,7 +365,7 @@ impl Matrices {
         let (under, rest) = by_components(terms, |algebra, inner| outer_product(graph, algebra, inner).is_none());
         let mut parts = Vec::new();
         for (algebra, inner) in under {
-            let matrix = algebra.matrix_shape();
+            let matrix = algebra.shape;
             let inner = inner.iter().map(|term| self.weighted(term)).collect();
             let sum = self.gathered(matrix, inner);
             parts.push((integer(1), self.components(graph, algebra, sum)));
@@ -473,8 +473,8 @@ fn skew_letter(letter: Expr<'_>) -> Option<(Rational, Expr<'_>)> {
 
 /// Whether a basis is that of so(n) that the runtime has functions for.
 fn is_rotations(graph: &Graph, algebra: Algebra) -> bool {
-    let shape = algebra.matrix_shape();
-    algebra.is_skew() && shape.rows > 3 && algebra == graph.algebra_of(Group::SpecialOrthogonal(shape.rows))
+    let shape = algebra.shape;
+    algebra.is_skew && shape.rows > 3 && algebra == graph.algebra_of(Group::SpecialOrthogonal(shape.rows))
 }
 
 /// Whether a basis is that of so(3), x^ v = x × v.

@@ -127,7 +127,7 @@ fn stacked<'g>(graph: &'g Graph, factor: &Factor<'g>, values: &[Value<'g>]) -> O
         return None;
     }
     blocks.iter().zip(values).try_fold(graph.zero(shape), |sum, (block, value)| {
-        let part = value.matrix().filter(|part| part.shape() == Shape::vector(block.algebra.dimension()))?;
+        let part = value.matrix().filter(|part| part.shape() == Shape::vector(block.algebra.dimension))?;
         Some(sum + part.embed(shape, block.offset, 0))
     })
 }

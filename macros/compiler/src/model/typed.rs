@@ -122,7 +122,7 @@ impl<'g> Velocity<'_, 'g> {
             (Pattern::Tuple(patterns, _), Layout::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
                 let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
                 let symbol = self.symbol(*k, &names.join("_"));
-                let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension()));
+                let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension));
                 let blocks = self.graph.blocks(self.factors[*k].group);
                 let parts = blocks.iter().map(|block| Value::Matrix(part(block)));
                 Some((Value::Tuple(parts.collect()), vec![symbol]))

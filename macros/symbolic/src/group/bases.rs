@@ -34,7 +34,7 @@ pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
     let mut offset = 0;
     let block = |(shape, elements, row, column): (Shape, Vec<Sparse>, usize, usize)| {
         let block = Block { algebra: graph.algebra(shape, elements), row, column, offset };
-        offset += block.algebra.dimension();
+        offset += block.algebra.dimension;
         block
     };
     parts.into_iter().filter(|(_, elements, ..)| !elements.is_empty()).map(block).collect()

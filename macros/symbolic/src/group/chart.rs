@@ -56,10 +56,7 @@ impl Chart {
             }
             // (I − Z)⁻¹(I + Z) = 2(I − Z)⁻¹ − I
             Chart::Cayley => 2 * resolvent(combination(group, x)) - group.identity(graph),
-            Chart::Sine => {
-                let (increment, denominator) = self.increment(group, x);
-                group.identity(graph) + increment / denominator
-            }
+            Chart::Sine => group.identity(graph) + self.increment(group, x),
             Chart::Affine => group.identity(graph) + combination(group, x),
             Chart::Root => {
                 let n = group.element_shape().rows;
@@ -84,31 +81,30 @@ impl Chart {
         }
     }
 
-    /// F − I (F itself for translations), with the numerator and the denominator of a form without cancellation:
+    /// F − I (F itself for translations), in a form without cancellation:
     /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², p the Pfaffian of Z and Z̃ its
     /// dual for n = 4, 2(I − Z)⁻¹Z for other Cayley charts, and Zφ(Z) for exponentials.
-    pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> (Expr<'g>, Expr<'g>) {
+    pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> Expr<'g> {
         let graph = x[0].graph();
         let one = graph.integer(1);
+        let turned = |n: usize| turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
         match (self, group) {
             (Chart::Cayley, Group::SpecialOrthogonal(n)) => turn_increment(n, x[0], combination(group, x)),
             (Chart::Cayley, Group::UnitQuaternions) => {
                 // w − 1 = −s/(r(1 + r)) with r = √(1 + s)
                 let square = x[0].norm_squared();
                 let root = (one + square).sqrt();
-                (quaternion(x[0], -(square / (one + root))), root)
+                quaternion(x[0], -(square / (one + root))) / root
             }
             (Chart::Cayley, Group::SpecialEuclidean(n)) => {
-                let turn = x[0].wedge(graph.algebra_of(group));
-                let (increment, denominator) = turn_increment(n, x[0], turn);
-                let shift = 2 * (resolvent(turn) * x[1]);
-                (blocks(increment / denominator, shift), one)
+                let increment = turned(n);
+                blocks(increment, 2 * (resolvent(x[0].wedge(graph.algebra_of(group))) * x[1]))
             }
             (Chart::Cayley, _) => even_increment(combination(group, x)),
-            (Chart::Affine, _) => (combination(group, x), one),
+            (Chart::Affine, _) => combination(group, x),
             (Chart::Sine, _) => {
                 let z = combination(group, x);
-                (z + (z * z) / (one + cosine(x[0])), one)
+                z + (z * z) / (one + cosine(x[0]))
             }
             (Chart::Root, _) => {
                 // r − 1 = (rⁿ − 1)/(1 + r + … + rⁿ⁻¹) with rⁿ = det(I + Z)
@@ -117,26 +113,22 @@ impl Chart {
                 let excess = determinant_excess(z);
                 let root = (one + excess).power(rational(1, n as i64));
                 let sum = (1..n).fold(one, |sum, power| sum + root.powi(power as i32));
-                (z - (excess / sum) * group.identity(graph), root)
+                (z - (excess / sum) * group.identity(graph)) / root
             }
-            (Chart::Product, Group::SpecialEuclidean(n)) => {
-                let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
-                (blocks(turn / denominator, x[1]), one)
-            }
+            (Chart::Product, Group::SpecialEuclidean(n)) => blocks(turned(n), x[1]),
             (Chart::Product, Group::Similarity(n)) => {
                 // eᵈ(I + T) − I = g(I + T) + T with g = eᵈ − 1 = 2 sinh(d/2) e^{d/2}
-                let (turn, denominator) = turn_increment(n, x[0], x[0].wedge(graph.algebra_of(group)));
+                let turn = turned(n);
                 let half = x[1] / 2;
                 let growth = 2 * half.function(Function::Sinh) * half.function(Function::Exp);
-                let turn = turn / denominator;
-                (blocks(growth * (graph.identity(n) + turn) + turn, x[2]), one)
+                blocks(growth * (graph.identity(n) + turn) + turn, x[2])
             }
-            (Chart::Identity, _) => (x[0], one),
+            (Chart::Identity, _) => x[0],
             (Chart::Exponential, Group::UnitQuaternions) => {
                 // cos − 1 = −s c₂(s)
                 let quarter = x[0].norm_squared() / 4;
                 let [sine, versine] = [1, 2].map(|k| quarter.function(Function::Stumpff(k)));
-                (quaternion(sine / 2 * x[0], -(quarter * versine)), one)
+                quaternion(sine / 2 * x[0], -(quarter * versine))
             }
             (Chart::Exponential, _) => {
                 let z = combination(group, x);
@@ -144,16 +136,16 @@ impl Chart {
                 match (&*element.node(), in_one_plane(z)) {
                     (ExprNode::Of(Operation::Analytic(Analytic::Exponential), inner), _) => {
                         let z = graph.expr(*inner);
-                        (z * z.analytic(Analytic::Phi), one)
+                        z * z.analytic(Analytic::Phi)
                     }
                     (_, Some(s)) => {
                         let [sine, versine] = [1, 2].map(|k| s.function(Function::Stumpff(k)));
-                        (sine * z - s * versine * group.identity(graph), one)
+                        sine * z - s * versine * group.identity(graph)
                     }
-                    _ => (element - group.identity(graph), one),
+                    _ => element - group.identity(graph),
                 }
             }
-            _ => (self.element(group, x) - group.identity(graph), one),
+            _ => self.element(group, x) - group.identity(graph),
         }
     }
 
@@ -252,17 +244,17 @@ fn quaternion<'g>(vector: Expr<'g>, scalar: Expr<'g>) -> Expr<'g> {
 
 /// 2(I − Z)⁻¹Z. For 4×4 matrices with tr Z = tr Z³ = 0, those of the algebras that keep a form, Z⁴ + sZ² + d = 0 with
 /// s = −½ tr Z² and d = ⅛(tr Z²)² − ¼ tr Z⁴, so that it is 2(Z + Z²)((1 + s)I + Z²)/(1 + s + d).
-fn even_increment(z: Expr<'_>) -> (Expr<'_>, Expr<'_>) {
+fn even_increment(z: Expr<'_>) -> Expr<'_> {
     let graph = z.graph();
     let one = graph.integer(1);
     let square = z * z;
     let odd = [z.trace(), (square * z).trace()];
     if z.shape().rows != 4 || !odd.into_iter().all(identity::vanishes) {
-        return (2 * (resolvent(z) * z), one);
+        return 2 * (resolvent(z) * z);
     }
     let (second, fourth) = (square.trace(), (square * square).trace());
     let (s, d) = (-second / 2, second * second / 8 - fourth / 4);
-    (2 * ((z + square) * ((one + s) * graph.identity(4) + square)), one + s + d)
+    2 * ((z + square) * ((one + s) * graph.identity(4) + square)) / (one + s + d)
 }
 
 /// det(I + Z) − 1 = Σ e_k, the elementary symmetric functions of the eigenvalues by Newton's identities.
@@ -271,23 +263,26 @@ fn determinant_excess(z: Expr<'_>) -> Expr<'_> {
     let n = z.shape().rows;
     let mut powers: Vec<Expr<'_>> = vec![z];
     (2..=n).for_each(|_| powers.push(powers[powers.len() - 1] * z));
-    let is_traceless = identity::vanishes(z.trace());
-    let traces =
-        powers.into_iter().map(|power| if is_traceless && power == z { graph.integer(0) } else { power.trace() });
-    let traces: Vec<Expr<'_>> = traces.collect();
-    let mut elementary = vec![graph.integer(1)];
-    for k in 1..=n {
-        let sum = (1..=k).fold(graph.integer(0), |sum, i| {
-            let sign = if i % 2 == 1 { 1 } else { -1 };
-            sum + sign * (elementary[k - i] * traces[i - 1])
-        });
-        elementary.push(sum / k as i64);
+    let mut traces: Vec<Expr<'_>> = powers.into_iter().map(Expr::trace).collect();
+    if identity::vanishes(traces[0]) {
+        traces[0] = graph.integer(0);
     }
-    elementary.into_iter().skip(1).fold(graph.integer(0), |sum, e| sum + e)
+    let mut elementary = vec![graph.integer(1)];
+    let mut excess = graph.integer(0);
+    for k in 1..=n {
+        let mut sum = graph.integer(0);
+        for i in 1..=k {
+            let sign = if i % 2 == 1 { 1 } else { -1 };
+            sum = sum + sign * (elementary[k - i] * traces[i - 1]);
+        }
+        elementary.push(sum / k as i64);
+        excess = excess + elementary[k];
+    }
+    excess
 }
 
 /// The increment of a rotation in its Cayley chart.
-fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     let graph = x.graph();
     let one = graph.integer(1);
     let square = x.norm_squared();
@@ -295,7 +290,7 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
         2 | 3 => {
             // each entry then is a sum of products, with the scale in what they share
             let scale = one / ((one + square) / 2);
-            (scale * z + scale * (z * z), one)
+            scale * z + scale * (z * z)
         }
         4 => {
             // Z³ + sZ = pZ̃, as Z Z̃ = −pI
@@ -303,9 +298,9 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> (Expr<'g>, Expr<'g>
             let pfaffian = -(z * dual).entry(0, 0);
             let scale = one / ((one + square + pfaffian * pfaffian) / 2);
             let [first, last] = [pfaffian * dual, pfaffian * pfaffian * graph.identity(4)];
-            (scale * (z + first + z * z - last), one)
+            scale * (z + first + z * z - last)
         }
-        _ => (2 * (resolvent(z) * z), one),
+        _ => 2 * (resolvent(z) * z),
     }
 }
 

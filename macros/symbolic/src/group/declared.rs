@@ -46,7 +46,7 @@ impl Group {
             let mut definitions = graph.definitions.borrow_mut();
             definitions.push(Rc::new(definition));
             let index = definitions.len() as u32 - 1;
-            Group::Declared(Declared { index, size: shape.rows, dimension: algebra.dimension() })
+            Group::Declared(Declared { index, size: shape.rows, dimension: algebra.dimension })
         };
         // the chart is found for the group with the general one, and then kept with it
         let general = declared(Chart::Exponential);
@@ -73,8 +73,8 @@ impl Graph {
 
     fn basis_product(&self, algebra: Algebra, i: usize, j: usize) -> Vec<Rational> {
         let basis = self.basis(algebra);
-        let n = algebra.matrix_shape().columns;
-        let mut product = vec![Rational::zero(); algebra.matrix_shape().len()];
+        let n = algebra.shape.columns;
+        let mut product = vec![Rational::zero(); algebra.shape.len()];
         for (row, inner, left) in &basis.elements[i] {
             for (_, column, right) in basis.elements[j].iter().filter(|(other, ..)| other == inner) {
                 product[row * n + column] += left * right;
@@ -85,13 +85,13 @@ impl Graph {
 
     /// Whether products of basis elements lie in their span, so that I + Z stays in the group.
     fn is_closed_under_products(&self, algebra: Algebra) -> bool {
-        let (m, span) = (algebra.dimension(), self.span(algebra));
+        let (m, span) = (algebra.dimension, self.span(algebra));
         (0..m).all(|i| (0..m).all(|j| span.holds(&self.basis_product(algebra, i, j))))
     }
 
     /// The span of a basis.
     pub fn span(&self, algebra: Algebra) -> Span {
-        let shape = algebra.matrix_shape();
+        let shape = algebra.shape;
         Span::of(self.basis(algebra).elements.iter().map(|element| dense(shape, element)).collect())
     }
 }

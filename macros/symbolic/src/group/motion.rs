@@ -89,7 +89,7 @@ impl Group {
 
     /// The algebra element Σ ξ_i E_i with components ξ.
     pub fn wedge(self, xi: Expr<'_>) -> Expr<'_> {
-        self.placed(xi.graph(), |_, block| xi.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
+        self.placed(xi.graph(), |_, block| xi.block(block.offset, 0, Shape::vector(block.algebra.dimension)))
     }
 
     /// Σ over the blocks, with their indices, of the element that has the given coordinates in each.
@@ -111,7 +111,7 @@ impl Group {
     /// The components ⟨A, E_i⟩ of an array of the shape of elements.
     pub fn components(self, array: Expr<'_>) -> Expr<'_> {
         self.by_blocks(array.graph(), |block| {
-            array.block(block.row, block.column, block.algebra.matrix_shape()).components(block.algebra)
+            array.block(block.row, block.column, block.algebra.shape).components(block.algebra)
         })
     }
 
@@ -129,7 +129,7 @@ impl Group {
     fn raised(self, mu: Expr<'_>) -> Expr<'_> {
         let graph = mu.graph();
         self.by_blocks(graph, |block| {
-            graph.raise(block.algebra, mu.block(block.offset, 0, Shape::vector(block.algebra.dimension())))
+            graph.raise(block.algebra, mu.block(block.offset, 0, Shape::vector(block.algebra.dimension)))
         })
     }
 

@@ -11,25 +11,11 @@ type Field = Matrix<Residue>;
 
 /// A random element, or `None` where the group has no rational parametrisation that is known here.
 pub(crate) fn element(graph: &Graph, group: Group, random: &mut impl FnMut() -> Residue) -> Option<Field> {
-    let n = group.element_shape().rows;
-    Some(match (group, group.chart(graph)) {
-        (Group::SpecialLinear(_), _) => unimodular(n, random),
-        (Group::GeneralLinear(_), _) => Matrix::from_fn(Shape::square(n), |_| random()),
-        (Group::SpecialEuclidean(_) | Group::Similarity(_), _) => {
-            let inner = n - 1;
-            let turn = cayley(graph, Group::SpecialOrthogonal(inner), random);
-            let scale = if matches!(group, Group::Similarity(_)) { random() } else { one() };
-            Matrix::from_fn(Shape::square(n), |(i, j)| match (i < inner, j < inner) {
-                (true, true) => turn.at(i, j).multiply(scale),
-                (true, false) => random(),
-                (false, true) => zero(),
-                (false, false) => one(),
-            })
-        }
-        (_, Chart::Affine) => identity_plus(&algebra_element(graph, group, random), one()),
-        (_, Chart::Exponential) => product_of_exponentials(graph, group, random)?,
-        _ => cayley(graph, group, random),
-    })
+    match group.chart(graph) {
+        Chart::Affine => Some(identity_plus(&algebra_element(graph, group, random), one())),
+        Chart::Cayley => Some(cayley(graph, group, random)),
+        _ => product_of_exponentials(graph, group, random),
+    }
 }
 
 /// Σ r_i E_i with random r.
@@ -50,14 +36,6 @@ fn identity_plus(z: &Field, s: Residue) -> Field {
 fn cayley(graph: &Graph, group: Group, random: &mut impl FnMut() -> Residue) -> Field {
     let z = algebra_element(graph, group, random);
     identity_plus(&z, negative(one())).inverse().0.multiply(&identity_plus(&z, one()))
-}
-
-/// A random matrix whose first row is divided by its determinant.
-fn unimodular(n: usize, random: &mut impl FnMut() -> Residue) -> Field {
-    let mut matrix = Matrix::from_fn(Shape::square(n), |_| random());
-    let scale = matrix.inverse().1.reciprocal();
-    matrix.entries[..n].iter_mut().for_each(|entry| *entry = entry.multiply(scale));
-    matrix
 }
 
 /// Whether dF F⁻¹ stays in the algebra along the Cayley map: (I − Z)⁻¹ E_i (I + Z)⁻¹ in the span of the basis, for a random Z.

@@ -50,8 +50,7 @@ impl<'g> MechanicsFormulas<'g> {
         for sign in [1, -1] {
             for (k, factor) in self.model.factors.iter().enumerate() {
                 let coordinates: Vec<_> = self.symbols.coordinates(k).into_iter().map(|x| sign * x).collect();
-                let (numerator, denominator) = self.retraction(k).increment(factor.group, &coordinates);
-                increments.push(numerator / denominator);
+                increments.push(self.retraction(k).increment(factor.group, &coordinates));
             }
         }
         increments
@@ -63,7 +62,7 @@ impl<'g> MechanicsFormulas<'g> {
         for (k, factor) in self.model.factors.iter().enumerate() {
             for block in self.model.graph.blocks(factor.group).iter() {
                 let slope = self.retraction(k).slope_at_identity(block);
-                slopes.extend(std::iter::repeat_n(slope, block.algebra.dimension()));
+                slopes.extend(std::iter::repeat_n(slope, block.algebra.dimension));
             }
         }
         slopes

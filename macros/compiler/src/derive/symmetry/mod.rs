@@ -80,7 +80,7 @@ pub(super) fn find<'g>(
         return Symmetries::default();
     }
     let matrix = variations(sources, lagrangian, &directions, (force, links));
-    let found = identity::null_space(matrix, &|_| {});
+    let found = identity::null_space(matrix);
     let finder = Finder { sources, families, directions, matrix };
     let mut symmetries = Symmetries {
         conserved: finder.momenta(&found),
