@@ -43,10 +43,9 @@ pub use crate::scheme::kinds::*;
 pub use crate::scheme::{At, Kicks, Scheme, Sizes, Stages, compose, split};
 pub use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
-    Link, Price, arrival_of_state, bounds, check_reached, check_state, displacement, endpoint, forced_step,
-    no_endpoint, pair,
+    Link, Price, arrival_of_state, bounds, check_reached, displacement, endpoint, forced_step, no_endpoint, pair,
 };
-pub use crate::stepper::check_on_orbit;
+pub use crate::stepper::{check_on_orbit, check_state};
 pub use crate::stumpff::stumpff;
 pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;

@@ -3,7 +3,7 @@
 use crate::fields::copy;
 use crate::parameters::check_finite;
 use crate::scheme::{Held, Left};
-use crate::stepper::check_momentum;
+use crate::stepper::check_state;
 use crate::{Clebsch, Declared, Error, Method, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -90,8 +90,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// As [`state`](Self::state); [`Error::NotFinite`] for what is left of the last step, and for the time.
     pub fn resume(&self, saved: SavedState<S, M>) -> Result<State<S, M>, Error> {
         let SavedState(state) = saved;
-        self.check_configuration(&state.configuration)?;
-        check_momentum(&self.system, &state.configuration, &state.momentum())?;
+        check_state(&self.system, &state.configuration, &state.momentum())?;
         check_finite("the time", &state.time.now())?;
         check_finite("what is left of the last step", &(state.left, state.h))?;
         Ok(state)

@@ -2,7 +2,7 @@
 
 use crate::fields::{copy, getters};
 use crate::scheme::{Held, Left, Scheme};
-use crate::{Clebsch, Clock, Declared, Mask, Method, Scalar, Space, Time};
+use crate::{Clebsch, Clock, Declared, Method, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
@@ -116,23 +116,6 @@ impl<S: Clebsch> CotangentState<S> {
         ref configuration: S::Configuration;
         /// The covector p.
         ref covector: S::Configuration;
-    }
-
-    /// The lanes in which all of it is finite.
-    #[inline]
-    pub(crate) fn finite(&self) -> <S::Scalar as Scalar>::Mask {
-        self.configuration.finite() & self.covector.finite() & Scalar::finite(self.time.now())
-    }
-
-    /// What is not finite in this lane after a step.
-    pub(crate) fn overflowed(&self, lane: usize) -> &'static str {
-        if !self.configuration.finite().lane(lane) {
-            "the configuration after the step"
-        } else if !Scalar::finite(self.time.now()).lane(lane) {
-            "the time after the step"
-        } else {
-            "the covector after the step"
-        }
     }
 
     /// (q, p)

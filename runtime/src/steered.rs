@@ -5,7 +5,6 @@ use crate::matrices::{Blocks, embedded};
 use crate::newton::shortest;
 use crate::scheme::{At, Constants, Scheme};
 use crate::space::{lane_of, set_lane};
-use crate::stepper::{check_momentum, check_on_orbit};
 use crate::tangent::{of_edge, times};
 use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
 use core::array::from_fn;
@@ -15,12 +14,6 @@ use nalgebra::{SMatrix, SVector};
 #[inline]
 pub fn check_reached<T: Scalar, X: Space<T>>(x: X) -> Result<X, Error> {
     if x.is_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the place after the step" }) }
-}
-
-/// Whether (q, N) is a state.
-pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
-    check_on_orbit(q, system.orbit_defect(q))?;
-    check_momentum(system, q, mu)
 }
 
 /// (q, N) after one step under the input u.

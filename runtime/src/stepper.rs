@@ -164,8 +164,9 @@ pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Er
     })
 }
 
-/// N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
-pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+/// Whether (q, N) is a state: q is on its orbit, and N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
+pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+    check_on_orbit(q, system.orbit_defect(q))?;
     check_finite("the momentum", mu)?;
     let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
     let violation = system.isotropy_defect(q, mu);

@@ -1,9 +1,9 @@
 //! The derived formulas as methods of a stepper, which knows the step size.
 
-use super::{Stepper, first_without, whole_or_lane};
+use super::Stepper;
 use crate::parameters::check_finite;
-use crate::scheme::{At, Scheme};
-use crate::{Clebsch, Error, Mask, Method, Scalar, Space};
+use crate::scheme::Scheme;
+use crate::{Clebsch, Error, Method};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -39,17 +39,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_finite("the time", &t)?;
         check_finite("the configuration", q)?;
         check_finite("the momentum", mu)?;
-        match M::Scheme::inverse_legendre(self.at(t), q, mu) {
-            Ok(element) if element.is_finite() => Ok(element),
-            Ok(element) => {
-                let lane = first_without::<S::Scalar>(element.finite());
-                Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: "the group element of the step" }))
-            }
-            Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
-            Err(error) => Err(self.explained(0, error, |constants| {
-                Ok(M::Scheme::inverse_legendre(At::new(&self.system, constants, t), q, mu)?.finite().lane(0))
-            })),
-        }
+        self.computed(t, |_, _| "the group element of the step", |at| M::Scheme::inverse_legendre(at, q, mu))
     }
 
     /// The action Φ_F(q).

@@ -1,7 +1,7 @@
 //! Steps that fail: of one body beside others that go on, what it is that is not finite, and how long a step would do.
 
-use super::Stepper;
-use crate::scheme::{At, Constants, Held, Left, Scheme};
+use super::{Stepper, first_without, whole_or_lane};
+use crate::scheme::{At, AtOf, Constants, Held, Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
 use num_traits::Zero;
 
@@ -62,10 +62,31 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         })
     }
 
+    /// What is computed at the time t. Where it fails, the error is that of the step; where it is not finite in a lane, it has this name.
+    #[inline]
+    pub(super) fn computed<V: Space<S::Scalar>>(
+        &self,
+        t: S::Scalar,
+        name: impl Fn(&V, usize) -> &'static str,
+        compute: impl Fn(AtOf<'_, S, M::Scheme, M>) -> Result<V, Error>,
+    ) -> Result<V, Error> {
+        match compute(self.at(t)) {
+            Ok(value) if value.is_finite() => Ok(value),
+            Ok(value) => {
+                let lane = first_without::<S::Scalar>(value.finite());
+                Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: name(&value, lane) }))
+            }
+            Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
+            Err(error) => Err(self.explained(0, error, |constants| {
+                Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0))
+            })),
+        }
+    }
+
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
     #[cold]
     #[inline(never)]
-    pub(super) fn explained(
+    fn explained(
         &self,
         lane: usize,
         error: Error,

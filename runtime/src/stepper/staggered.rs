@@ -1,6 +1,6 @@
 //! Momenta of steps of first order, which are staggered: read at the time of their configuration, started from there, and taken over from other methods.
 
-use super::{GRADIENT, Stepper, check_momentum};
+use super::{GRADIENT, Stepper, check_state};
 use crate::parameters::check_finite;
 use crate::scheme::Scheme;
 use crate::{Clebsch, Error, Method, Space, State, Time};
@@ -116,8 +116,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         q: S::Configuration,
         mu: S::Momentum,
     ) -> Result<State<S, M>, Error> {
-        self.check_configuration(&q)?;
-        check_momentum(&self.system, &q, &mu)?;
+        check_state(&self.system, &q, &mu)?;
         let stagger = M::stagger(&self.system, self.h, t, &q);
         check_finite(GRADIENT, &stagger)?;
         let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);

@@ -1,6 +1,6 @@
 //! State after state.
 
-use super::{GRADIENT, Stepper, check_momentum, first_without, whole_or_lane};
+use super::{GRADIENT, Stepper, check_state, first_without, whole_or_lane};
 use crate::scheme::{Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
@@ -100,17 +100,14 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         (next.time, next.h) = (state.time.after_step(self.h), self.h);
         if next.is_finite() { Ok(()) } else { Err(self.beyond(next)) }
     }
-}
 
-impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(super) fn checked_state(
         &self,
         t: S::Scalar,
         q: S::Configuration,
         mu: S::Momentum,
     ) -> Result<State<S, M>, Error> {
-        self.check_configuration(&q)?;
-        check_momentum(&self.system, &q, &mu)?;
+        check_state(&self.system, &q, &mu)?;
         self.made_state(t, q, mu)
     }
 
@@ -127,10 +124,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
     }
 
-    /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN.
-    ///
-    /// # Errors
-    /// Where no lane has a solution, the error of the first whose momentum is finite.
+    /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN. Where no lane has one, the error is that of
+    /// the first whose momentum is finite.
     #[inline(always)]
     pub(super) fn attempt(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
         self.attempt_with(state, &self.left_of(state), u)

@@ -1,8 +1,8 @@
 //! States on the cotangent bundle.
 
-use super::{Stepper, first_without, whole_or_lane};
+use super::Stepper;
 use crate::parameters::check_finite;
-use crate::scheme::{At, Scheme};
+use crate::scheme::Scheme;
 use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, Time};
 use num_traits::Zero;
 
@@ -21,25 +21,21 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// As [`step`](Self::step), and [`Error::NoCovector`] where forces act or momenta are stepped alone.
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
-        let CotangentState { time, configuration, covector } = state;
-        let (configuration, covector) = match M::Scheme::step_symmetric(self.at(time.now()), configuration, covector) {
-            Ok(next) => next,
-            Err(_) if S::Scalar::LANES > 1 => return Err(Error::InLane { lane: 0 }),
-            Err(error) => {
-                return Err(self.explained(0, error, |constants| {
-                    let at = At::new(&self.system, constants, time.now());
-                    let (q, p) = M::Scheme::step_symmetric(at, configuration, covector)?;
-                    Ok((q.finite() & p.finite()).lane(0))
-                }));
+        let time = state.time.after_step(self.h);
+        let name = |(q, now, _): &(S::Configuration, S::Scalar, S::Configuration), lane| {
+            if !q.finite().lane(lane) {
+                "the configuration after the step"
+            } else if !Scalar::finite(*now).lane(lane) {
+                "the time after the step"
+            } else {
+                "the covector after the step"
             }
         };
-        let next = CotangentState { time: time.after_step(self.h), configuration, covector };
-        let finite: <S::Scalar as Scalar>::Mask = next.finite();
-        if finite.all() {
-            return Ok(next);
-        }
-        let lane = first_without::<S::Scalar>(finite);
-        Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: next.overflowed(lane) }))
+        let (configuration, _, covector) = self.computed(state.time.now(), name, |at| {
+            let (q, p) = M::Scheme::step_symmetric(at, &state.configuration, &state.covector)?;
+            Ok((q, time.now(), p))
+        })?;
+        Ok(CotangentState { time, configuration, covector })
     }
 
     pub(super) fn checked_cotangent_state(
