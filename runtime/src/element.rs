@@ -1,8 +1,7 @@
 //! Group elements from what a step computes.
 
-use crate::linear::{divided, undefined};
+use crate::linear::{divided, function};
 use crate::matrices::shifted;
-use crate::space::by_lane;
 use crate::{Error, Mask, Scalar};
 use nalgebra::{Quaternion, SMatrix, SVector};
 
@@ -26,7 +25,7 @@ pub fn quaternion_from_increment<T: Scalar>(d: &Quaternion<T>) -> Quaternion<T> 
 
 /// The inverse of a matrix, by elimination with partial pivoting; NaN where the matrix is singular.
 pub fn inverse<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    by_lane(a, |a| divided(a, &SMatrix::identity()).unwrap_or_else(undefined))
+    function(a, |a| divided(a, &SMatrix::identity()))
 }
 
 /// The solution `x` where the step exists, whose angle θ has this sin²θ: below one, it does. Lanes in which it does not are NaN.

@@ -2,7 +2,6 @@
 
 use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
-use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
@@ -28,7 +27,7 @@ pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVect
 /// 0 for μ = 0, whatever Σ is; else NaN where Σ or μ is not finite.
 pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
     T::from_lanes(|lane| {
-        let (inertia, mu) = (lane_of(inertia, lane), lane_of(mu, lane));
+        let (inertia, mu) = (inertia.lane(lane), mu.lane(lane));
         let (zero, one) = (T::Lane::zero(), T::Lane::one());
         if mu.iter().all(|x| *x == zero) {
             return zero;
@@ -56,9 +55,9 @@ pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquat
     T::from_lanes(|lane| {
         let linearize = |xi: &SVector<T::Lane, M>| {
             let (value, gradient, hessian) = equation.linearize(&xi.map(|x| T::from_lanes(|_| x)));
-            (value.lane(lane), lane_of(&gradient, lane), lane_of(&hessian, lane))
+            (value.lane(lane), gradient.lane(lane), hessian.lane(lane))
         };
-        transform_of_one(linearize, &lane_of(mu, lane))
+        transform_of_one(linearize, &mu.lane(lane))
     })
 }
 

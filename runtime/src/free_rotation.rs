@@ -23,7 +23,7 @@
 
 use crate::matrices::axial;
 use crate::root::root;
-use crate::space::{each_lane, lane_of, set_lane};
+use crate::space::each_lane;
 use crate::{Error, Real, Scalar, Space};
 use axes::Axes;
 use core::array::from_fn;
@@ -98,7 +98,7 @@ impl<T: Scalar> FreeRotation<T> {
             reach: Space::<T>::origin(),
         };
         for lane in 0..T::LANES {
-            let own = FreeRotation::of_number(&lane_of(inertia, lane), h.lane(lane), tolerance)?;
+            let own = FreeRotation::of_number(&inertia.lane(lane), h.lane(lane), tolerance)?;
             all.scale.set_lane(lane, &own.scale);
             all.inertia.set_lane(lane, &own.inertia);
             all.reciprocals.set_lane(lane, &own.reciprocals);
@@ -154,13 +154,13 @@ impl<T: Scalar> FreeRotation<T> {
         let (w, x) = match T::LANES {
             // no closure: it would be called, and the turn would go through memory
             1 => {
-                let (w, x) = self.of_lane(0).turn(kept.map(|kept| lane_of(kept, 0)), &lane_of(&m, 0))?;
+                let (w, x) = self.of_lane(0).turn(kept.map(|kept| kept.lane(0)), &m.lane(0))?;
                 (T::from_lanes(|_| w), x.map(|entry| T::from_lanes(|_| entry)))
             }
             _ => {
                 let nothing = T::Lane::from_f64(f64::NAN);
                 let all = each_lane::<T, _>((nothing, SVector::from_element(nothing)), |lane| {
-                    self.of_lane(lane).turn(kept.map(|kept| lane_of(kept, lane)), &lane_of(&m, lane))
+                    self.of_lane(lane).turn(kept.map(|kept| kept.lane(lane)), &m.lane(lane))
                 })?;
                 let x = SVector::from_fn(|i, _| T::from_lanes(|lane| all[lane].1[i]));
                 (T::from_lanes(|lane| all[lane].0), x)
@@ -174,13 +174,13 @@ impl<T: Scalar> FreeRotation<T> {
         let m = self.without_units(momentum);
         let mut kept = KeptRotation::<T>::from_element(T::zero());
         for lane in 0..T::LANES {
-            let (body, m) = (self.of_lane(lane), lane_of(&m, lane));
+            let (body, m) = (self.of_lane(lane), m.lane(lane));
             let found = match body.modified_inertia(&m) {
                 Some(inertia) => Ok((inertia, <T::Lane as One>::one())),
                 None => body.long_motion(&m),
             };
             if let Ok((d, part)) = found {
-                set_lane(&mut kept, lane, &SVector::from([d[0], d[1], d[2], part]));
+                kept.set_lane(lane, &SVector::from([d[0], d[1], d[2], part]));
             }
         }
         kept
@@ -192,7 +192,7 @@ impl<T: Scalar> FreeRotation<T> {
     #[cold]
     pub fn momentum(&self, gibbs_vector: &Vector<T>) -> Vector<T> {
         let c = self.in_principal_axes(gibbs_vector);
-        let m: Vector<T> = Space::side_by_side(|lane| self.of_lane(lane).momentum(&lane_of(&c, lane)));
+        let m: Vector<T> = Space::side_by_side(|lane| self.of_lane(lane).momentum(&c.lane(lane)));
         self.in_coordinates(m * self.scale.recip())
     }
 
@@ -284,8 +284,8 @@ impl<T: Scalar> OfLane<'_, T> {
     fn momentum(self, c: &Vector<T::Lane>) -> Vector<T::Lane> {
         // the equation of Moser and Veselov, which is right to second order
         let image = match &self.free.axes {
-            Axes::Tensor((inertia, ..)) => lane_of(inertia, self.lane) * c,
-            _ => lane_of(&self.free.inertia, self.lane).component_mul(c),
+            Axes::Tensor((inertia, ..)) => inertia.lane(self.lane) * c,
+            _ => self.free.inertia.lane(self.lane).component_mul(c),
         };
         // of the angle rather than of its tangent, which grows beyond all bounds towards half a turn
         let scale = (<T::Lane as One>::one() + c.dot(c)).recip();
@@ -304,8 +304,8 @@ impl<T: Scalar> OfLane<'_, T> {
     #[inline(always)]
     fn invariants(self, m: &Vector<T::Lane>) -> [T::Lane; 2] {
         let epsilon = match &self.free.axes {
-            Axes::Tensor((_, reciprocal, _)) if T::DERIVATIVES > 0 => m.dot(&(lane_of(reciprocal, self.lane) * m)),
-            _ => lane_of(&self.free.reciprocals, self.lane).dot(&m.component_mul(m)),
+            Axes::Tensor((_, reciprocal, _)) if T::DERIVATIVES > 0 => m.dot(&(reciprocal.lane(self.lane) * m)),
+            _ => self.free.reciprocals.lane(self.lane).dot(&m.component_mul(m)),
         };
         [m.dot(m), epsilon]
     }
@@ -346,7 +346,7 @@ impl<T: Scalar> OfLane<'_, T> {
         let sum = SVector::from([a, b, c]);
         match &self.free.axes {
             Axes::Tensor(_) if T::DERIVATIVES > 0 => sum,
-            _ => sum.component_mul(&lane_of(&self.free.inertia, self.lane)),
+            _ => sum.component_mul(&self.free.inertia.lane(self.lane)),
         }
     }
 
@@ -356,7 +356,7 @@ impl<T: Scalar> OfLane<'_, T> {
         match &self.free.axes {
             Axes::Tensor((inertia, reciprocal, _)) if T::DERIVATIVES > 0 => {
                 // X d = c₀ + c₁X + c₂X²
-                let (inertia, reciprocal) = (lane_of(inertia, self.lane), lane_of(reciprocal, self.lane));
+                let (inertia, reciprocal) = (inertia.lane(self.lane), reciprocal.lane(self.lane));
                 let tensor = inertia * d[0] + SMatrix::identity() * d[1] + reciprocal * d[2];
                 turn_of_tensor(&tensor, m)
             }
@@ -369,7 +369,7 @@ impl<T: Scalar> OfLane<'_, T> {
         let [a, b, c, p] = sum;
         match &self.free.axes {
             Axes::Tensor((.., symmetric)) if T::DERIVATIVES > 0 => {
-                let e = lane_of(symmetric, self.lane);
+                let e = symmetric.lane(self.lane);
                 let [[first, second, third]] = e.data.0;
                 // X⁻¹ = (X² − e₁X + e₂)/e₃
                 let top = a / third;
@@ -378,7 +378,7 @@ impl<T: Scalar> OfLane<'_, T> {
                 Some(SVector::from([c * third, a - c * second, b + c * first]))
             }
             _ => {
-                let functions = Functions::OnAxes(lane_of(&self.free.reciprocals, self.lane));
+                let functions = Functions::OnAxes(self.free.reciprocals.lane(self.lane));
                 duplicated(functions, invariants, self.scaled(sum), p, times)
             }
         }

@@ -23,7 +23,7 @@ use crate::free_rotation::axes::Axes;
 use crate::linear::{matrix, rows};
 use crate::parameters::invert;
 use crate::root::root;
-use crate::space::{each_lane, lane_of};
+use crate::space::each_lane;
 use crate::{Error, Mask, Real, Scalar, Space};
 use flow::{Matrix, PLANES, Vector, above, dot, flow, product, skew};
 use nalgebra::{SMatrix, SVector};
@@ -61,7 +61,7 @@ impl<T: Scalar> FreeRotation4<T> {
     pub fn new(inertia: &SMatrix<T, 6, 6>, h: T) -> Result<Self, Error> {
         let mut all = Self { moments: Space::<T>::origin(), scale: T::zero(), axes: Axes::unset() };
         for lane in 0..T::LANES {
-            let own = FreeRotation4::of_number(&lane_of(inertia, lane), h.lane(lane))?;
+            let own = FreeRotation4::of_number(&inertia.lane(lane), h.lane(lane))?;
             all.moments.set_lane(lane, &own.moments);
             all.scale.set_lane(lane, &own.scale);
             all.axes.set_lane(lane, &own.axes);
@@ -75,7 +75,7 @@ impl<T: Scalar> FreeRotation4<T> {
         let m = self.in_principal_axes(momentum);
         let mut kept: KeptRotation4<T> = Space::<T>::origin();
         for lane in 0..T::LANES {
-            if let Ok(found) = self.of_lane(lane).constants(&lane_of(&m, lane)) {
+            if let Ok(found) = self.of_lane(lane).constants(&m.lane(lane)) {
                 kept.set_lane(lane, &found.write());
             }
         }
@@ -106,7 +106,7 @@ impl<T: Scalar> FreeRotation4<T> {
     fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
         let nothing = T::Lane::from_f64(f64::NAN);
         let all = each_lane::<T, _>(([[nothing; 4]; 4], SVector::from_element(nothing)), |lane| {
-            self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &lane_of(m, lane))
+            self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &m.lane(lane))
         })?;
         Ok(Space::<T>::side_by_side(|lane| all[lane]))
     }
@@ -240,7 +240,7 @@ impl<T: Real> FreeRotation4<T> {
 #[cold]
 pub fn free_momentum_4d<T: Scalar>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> SVector<T, 6> {
     Space::<T>::side_by_side(|lane| {
-        let found = momentum_of(&lane_of(inertia, lane), h.lane(lane), &lane_of(f, lane));
+        let found = momentum_of(&inertia.lane(lane), h.lane(lane), &f.lane(lane));
         found.unwrap_or(SVector::from_element(T::Lane::from_f64(f64::NAN)))
     })
 }

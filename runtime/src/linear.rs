@@ -5,10 +5,11 @@
 
 use crate::cofactors;
 use crate::orientation::Orientation;
-use crate::space::{by_lane, larger};
+use crate::space::larger;
 use crate::{Mask, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
+use num_traits::Zero;
 
 /// x of A x = b, and the sign of det A in the lanes in which A is regular; `None` where there is no such lane.
 pub type Solution<T, const M: usize> = Option<(SVector<T, M>, Orientation)>;
@@ -278,12 +279,11 @@ pub(crate) fn function<T: Scalar, const N: usize>(
     a: &SMatrix<T, N, N>,
     f: impl Fn(&SMatrix<T::Lane, N, N>) -> Option<SMatrix<T::Lane, N, N>>,
 ) -> SMatrix<T, N, N> {
-    by_lane(a, |a| if Space::<T::Lane>::is_finite(a) { f(a) } else { None }.unwrap_or_else(undefined))
-}
-
-/// The matrix of NaN: what a function of a matrix is where it has no value.
-pub(crate) fn undefined<T: Scalar, const N: usize>() -> SMatrix<T, N, N> {
-    SMatrix::from_element(T::zero() / T::zero())
+    Space::<T>::side_by_side(|lane| {
+        let a = a.lane(lane);
+        let value = if Space::<T::Lane>::is_finite(&a) { f(&a) } else { None };
+        value.unwrap_or_else(|| SMatrix::from_element(T::Lane::zero() / T::Lane::zero()))
+    })
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 //! stack, without a panic, for lanes and numbers with derivatives as well.
 
 use crate::linear::rows;
-use crate::space::lane_of;
-use crate::{Real, Scalar};
+use crate::{Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
@@ -54,7 +53,7 @@ pub(crate) fn total<T: Scalar>([a, b, c, d, e, f, g, h]: [T; 8]) -> T {
 
 /// det A, by elimination with partial pivoting; 0 where a pivot is.
 pub fn determinant<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
-    T::from_lanes(|lane| determinant_of_one(rows(&lane_of(a, lane))))
+    T::from_lanes(|lane| determinant_of_one(rows(&a.lane(lane))))
 }
 
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.

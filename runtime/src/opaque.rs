@@ -1,6 +1,6 @@
 //! Opaque potentials: whether a gradient method belongs to a value method.
 
-use crate::space::{check_lanes, larger};
+use crate::space::larger;
 use crate::{Error, Scalar};
 use num_traits::One;
 
@@ -12,7 +12,7 @@ use num_traits::One;
 /// # Errors
 /// [`Error::WrongGradient`]; [`Error::NotFinite`] where the value or the gradient is not.
 pub fn check_slope<T: Scalar>(value: impl Fn(T) -> T, x: T, slope: T, entry: usize) -> Result<(), Error> {
-    check_lanes::<T>(|lane| {
+    (0..T::LANES).try_for_each(|lane| {
         let value = |x| value(T::from_lanes(|_| x)).lane(lane);
         let (x, slope) = (x.lane(lane), slope.lane(lane));
         let size = larger(T::Lane::one(), x.abs());

@@ -2,9 +2,9 @@
 
 use crate::linear::rows;
 use crate::orientation::Orientation;
-use crate::space::{lane_of, larger};
+use crate::space::larger;
 use crate::sums::accumulate;
-use crate::{Mask, Scalar};
+use crate::{Mask, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The largest entry of |RᵀR − I|; +∞ for a reflection, whose determinant is negative.
@@ -27,7 +27,7 @@ pub fn orientation_defect<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T 
 
 /// The lanes in which the determinant has the sign `orientation`.
 fn orientated<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, orientation: Orientation) -> T::Mask {
-    let has_sign = |lane| Orientation::of(rows(&lane_of(a, lane))) == Some(orientation);
+    let has_sign = |lane| Orientation::of(rows(&a.lane(lane))) == Some(orientation);
     T::Mask::from_bits((0..T::LANES).fold(0, |bits, lane| bits | u16::from(has_sign(lane)) << lane))
 }
 

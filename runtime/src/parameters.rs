@@ -2,7 +2,7 @@
 
 use crate::linear::{eliminate, power_of_two_near, rows};
 use crate::orientation::Orientation;
-use crate::space::{check_lanes, lane_of, larger, set_lane};
+use crate::space::larger;
 use crate::{Error, Mask, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
@@ -18,8 +18,8 @@ pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Res
 
 /// [`Error::NotSymmetric`] if `matrix` differs from its transpose by more than the round-off of computing it, 1024 ε of its largest entry.
 pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
-    check_lanes::<T>(|lane| {
-        let matrix = lane_of(matrix, lane);
+    (0..T::LANES).try_for_each(|lane| {
+        let matrix = matrix.lane(lane);
         let defect = (matrix - matrix.transpose()).max_abs();
         let tolerance = T::Lane::from_f64(1024.0) * T::Lane::EPSILON * matrix.max_abs();
         if defect > tolerance {
@@ -32,7 +32,7 @@ pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &S
 /// [`Error::NotDiagonal`] if `matrix` has an entry off its diagonal.
 pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
     let off_diagonal = SMatrix::<T, N, N>::from_fn(|i, j| if i == j { T::zero() } else { matrix[(i, j)] });
-    check_lanes::<T>(|lane| match off_diagonal.max_abs().lane(lane) {
+    (0..T::LANES).try_for_each(|lane| match off_diagonal.max_abs().lane(lane) {
         defect if defect > T::Lane::zero() => Err(Error::NotDiagonal { field: name, defect: defect.to_f64() }),
         _ => Ok(()),
     })
@@ -40,7 +40,7 @@ pub fn check_diagonal<T: Scalar, const N: usize>(name: &'static str, matrix: &SM
 
 /// [`Error::NotUnit`] if the length of `vector` differs from one by more than round-off, √ε as for the input of configurations.
 pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVector<T, N>) -> Result<(), Error> {
-    check_lanes::<T>(|lane| {
+    (0..T::LANES).try_for_each(|lane| {
         let entries: [T::Lane; N] = from_fn(|i| vector[i].lane(lane));
         let length = length(&entries);
         if (length - T::Lane::one()).abs() > T::Lane::EPSILON.sqrt() {
@@ -56,10 +56,9 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
 /// every diagonal matrix) reaches 1/(N ε): its inverse would have no correct digit.
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse = *matrix;
-    check_lanes::<T>(|lane| {
-        set_lane(&mut inverse, lane, &invert_one(&lane_of(matrix, lane))?);
-        Ok(())
-    })?;
+    for lane in 0..T::LANES {
+        inverse.set_lane(lane, &invert_one(&matrix.lane(lane))?);
+    }
     Ok(inverse)
 }
 
@@ -100,7 +99,7 @@ impl<T: Scalar, const N: usize> InertiaInverse<T, N> {
 /// 1/κ of the inertia κI.
 pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
     let inverse = T::one() / *kappa;
-    check_lanes::<T>(|lane| if inverse.lane(lane).is_finite() { Ok(()) } else { Err(SINGULAR) })?;
+    (0..T::LANES).try_for_each(|lane| if inverse.lane(lane).is_finite() { Ok(()) } else { Err(SINGULAR) })?;
     Ok(inverse)
 }
 
@@ -135,7 +134,7 @@ pub fn distance_of_projection<T: Scalar, const M: usize>(
     let unit = power_of_two_near(mu.max_abs());
     let scaled = mu.map(|entry| entry * unit);
     let difference = scaled - project(&scaled);
-    T::from_lanes(|lane| length(&lane_of(&difference, lane).into())) / unit
+    T::from_lanes(|lane| length(&difference.lane(lane).into())) / unit
 }
 
 fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
@@ -157,7 +156,7 @@ fn invert_one<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMat
 
 /// The distance of `mu` from the span of `rows`, the momenta that motions of a configuration can have.
 pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T; M]; D], mu: &SVector<T, M>) -> T {
-    T::from_lanes(|lane| length(&rest(&orthonormal(rows.lane(lane)), &lane_of(mu, lane))))
+    T::from_lanes(|lane| length(&rest(&orthonormal(rows.lane(lane)), &mu.lane(lane))))
 }
 
 /// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly.
@@ -170,7 +169,7 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     Space::side_by_side(|lane| {
         let basis = orthonormal(rows.lane(lane));
         let once = |mu: SVector<T::Lane, M>| mu - SVector::from(rest(&basis, &mu));
-        once(once(lane_of(mu, lane)))
+        once(once(mu.lane(lane)))
     })
 }
 

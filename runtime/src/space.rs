@@ -84,29 +84,10 @@ pub(crate) fn larger<T: Scalar>(a: T, b: T) -> T {
     T::select(a.below(b), b, a)
 }
 
-/// One lane of a matrix.
-#[inline]
-pub(crate) fn lane_of<T: Scalar, const R: usize, const C: usize>(
-    matrix: &SMatrix<T, R, C>,
-    lane: usize,
-) -> SMatrix<T::Lane, R, C> {
-    matrix.map(|x| x.lane(lane))
-}
-
 /// `value` with `number` in lane `lane`.
 #[inline]
 fn with_lane<T: Scalar>(value: T, lane: usize, number: T::Lane) -> T {
     T::from_lanes(|i| if i == lane { number } else { value.lane(i) })
-}
-
-/// Puts `value` into one lane of a matrix.
-#[inline]
-pub(crate) fn set_lane<T: Scalar, const R: usize, const C: usize>(
-    matrix: &mut SMatrix<T, R, C>,
-    lane: usize,
-    value: &SMatrix<T::Lane, R, C>,
-) {
-    matrix.zip_apply(value, |x, number| *x = with_lane(*x, lane, number));
 }
 
 impl<T: Scalar> Space<T> for T {
@@ -152,11 +133,11 @@ impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
-        lane_of(self, lane)
+        self.map(|x| Scalar::lane(x, lane))
     }
     #[inline]
     fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
-        set_lane(self, lane, value);
+        self.zip_apply(value, |x, number| *x = with_lane(*x, lane, number));
     }
 }
 
@@ -177,11 +158,11 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
-        Quaternion { coords: lane_of(&self.coords, lane) }
+        Quaternion { coords: self.coords.lane(lane) }
     }
     #[inline]
     fn set_lane(&mut self, lane: usize, value: &Self::Lane) {
-        set_lane(&mut self.coords, lane, &value.coords);
+        self.coords.set_lane(lane, &value.coords);
     }
 }
 
@@ -252,17 +233,6 @@ tuple!(A.0, B.1, C.2, D.3, E.4, F.5);
 tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6);
 tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
 
-/// f(A), lane by lane: for what decides by comparisons which way to go.
-#[inline]
-pub(crate) fn by_lane<T: Scalar, const R: usize, const C: usize>(
-    a: &SMatrix<T, R, C>,
-    f: impl Fn(&SMatrix<T::Lane, R, C>) -> SMatrix<T::Lane, R, C>,
-) -> SMatrix<T, R, C> {
-    let mut value = *a;
-    (0..T::LANES).for_each(|lane| set_lane(&mut value, lane, &f(&lane_of(a, lane))));
-    value
-}
-
 /// Lanes, at most.
 pub(crate) const MOST_LANES: usize = 16;
 
@@ -289,12 +259,6 @@ pub(crate) fn each_lane<T: Scalar, V: Copy>(
         Some(error) if !some => Err(error),
         _ => Ok(all),
     }
-}
-
-/// The first error of a check that is made lane by lane.
-#[inline]
-pub(crate) fn check_lanes<T: Scalar>(check: impl FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {
-    (0..T::LANES).try_for_each(check)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::linear::{eliminate, rows};
 use crate::matrices::{Blocks, embedded};
 use crate::newton::shortest;
 use crate::scheme::{At, Constants, Scheme};
-use crate::space::{lane_of, set_lane};
+
 use crate::tangent::{of_edge, times};
 use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
 use core::array::from_fn;
@@ -38,11 +38,7 @@ where
 /// The shortest η with GᵀG η = Gᵀ(q⁺ − q).
 #[inline]
 pub fn displacement<T: Scalar, const M: usize>(metric: &SMatrix<T, M, M>, approach: &SVector<T, M>) -> SVector<T, M> {
-    let mut displacement = *approach;
-    for lane in 0..T::LANES {
-        set_lane(&mut displacement, lane, &shortest(&lane_of(metric, lane), &lane_of(approach, lane)).0);
-    }
-    displacement
+    Space::side_by_side(|lane| shortest(&metric.lane(lane), &approach.lane(lane)).0)
 }
 
 /// (a, b)

@@ -12,7 +12,6 @@ mod symmetric;
 use crate::fields::getters;
 use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
-use crate::space::check_lanes;
 use crate::{Clebsch, Clock, Conserves, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time};
 use core::fmt::{self, Debug, Formatter};
 use num_traits::Zero;
@@ -43,7 +42,7 @@ impl<S: Clebsch + Debug, M: Method<S>> Debug for Stepper<S, M> {
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
-        check_lanes::<S::Scalar>(|lane| match h.lane(lane) {
+        (0..S::Scalar::LANES).try_for_each(|lane| match h.lane(lane) {
             h if h.is_finite() && h != Zero::zero() => Ok(()),
             h => Err(Error::StepSize { value: h.to_f64() }),
         })?;
@@ -151,7 +150,7 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
 pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Error> {
     check_finite("the configuration", q)?;
     let tolerance = T::Lane::EPSILON.sqrt();
-    check_lanes::<T>(|lane| {
+    (0..T::LANES).try_for_each(|lane| {
         let defect = defect.lane(lane);
         if defect <= tolerance {
             return Ok(());
@@ -170,7 +169,7 @@ pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentu
     check_finite("the momentum", mu)?;
     let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
     let violation = system.isotropy_defect(q, mu);
-    check_lanes::<S::Scalar>(|lane| {
+    (0..S::Scalar::LANES).try_for_each(|lane| {
         let (violation, tolerance) = (violation.lane(lane), tolerance.lane(lane));
         // Written so that NaN is a violation.
         if violation <= tolerance {

@@ -11,7 +11,7 @@ use crate::linear::{Solution, eliminate, entry, matrix, power_of_two_near, rows,
 use crate::matrices::{matrix_of, skew, skew_components};
 use crate::orientation::Orientation;
 use crate::schur::Schur;
-use crate::space::{lane_of, set_lane};
+
 use crate::{Mask, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
@@ -183,7 +183,7 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
     type Lane = Sylvester<T::Lane, N>;
 
     fn lane(&self, lane: usize) -> Self::Lane {
-        Sylvester::new(lane_of(&self.factor, lane))
+        Sylvester::new(Space::lane(&self.factor, lane))
     }
 
     #[inline(never)]
@@ -191,9 +191,9 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
         let mut solution = *residual;
         let (mut regular, mut negative) = (0_u16, 0_u16);
         for lane in 0..T::LANES {
-            let own = Sylvester::new(lane_of(&self.factor, lane));
-            if let Some(([own], orientation)) = own.solutions([lane_of(residual, lane)]) {
-                set_lane(&mut solution, lane, &own);
+            let own = Sylvester::new(Space::lane(&self.factor, lane));
+            if let Some(([own], orientation)) = own.solutions([residual.lane(lane)]) {
+                solution.set_lane(lane, &own);
                 regular |= 1 << lane;
                 negative |= u16::from(orientation == Orientation::NEGATIVE) << lane;
             }

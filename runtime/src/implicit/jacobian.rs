@@ -2,7 +2,6 @@
 
 use crate::linear::{Solution, eliminated, rows, solve_dense};
 use crate::orientation::Orientation;
-use crate::space::lane_of;
 use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
@@ -46,7 +45,7 @@ impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
 
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {
-        lane_of(self, lane)
+        Space::lane(self, lane)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::{Equation, Jacobian, QUICK, at_identity, not_converged, path, size, with_derivatives};
 use crate::orientation::Orientation;
-use crate::space::{lane_of, set_lane};
+
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::SVector;
@@ -28,21 +28,21 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
     let mut failure = None;
     let mut is_solved = solved.any();
     for lane in (0..T::LANES).filter(|&lane| !solved.lane(lane)) {
-        let own = lane_of(target, lane);
+        let own = target.lane(lane);
         let equation = InLane { equation, lane, scalar: PhantomData };
         let found = match E::limit() {
             // decided where the program is made: a limit that Newton's method may use up leaves no path to follow
-            Some(limit) if limit <= QUICK => Err(unfinished(&equation, &own, &lane_of(&xi, lane), made)),
+            Some(limit) if limit <= QUICK => Err(unfinished(&equation, &own, &xi.lane(lane), made)),
             limit => path::follow(&equation, &own, made, limit),
         };
         match found {
             Ok(found) => {
                 let found = if T::DERIVATIVES == 0 { found } else { with_derivatives(&equation, &own, found) };
-                set_lane(&mut xi, lane, &found);
+                xi.set_lane(lane, &found);
                 is_solved = true;
             }
             Err(error) => {
-                set_lane(&mut xi, lane, &SVector::from_element(T::Lane::zero() / T::Lane::zero()));
+                xi.set_lane(lane, &SVector::from_element(T::Lane::zero() / T::Lane::zero()));
                 failure = match failure {
                     Some((known, true)) => Some((known, true)),
                     Some((known, false)) if !own.is_finite() => Some((known, false)),
@@ -89,7 +89,7 @@ impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T
 
     fn linearize(&self, terms: &Self::Terms, xi: &SVector<T::Lane, M>) -> (SVector<T::Lane, M>, Self::Jacobian) {
         let (residual, jacobian) = self.equation.linearize(terms, &everywhere(xi));
-        (lane_of(&residual, self.lane), jacobian.lane(self.lane))
+        (residual.lane(self.lane), jacobian.lane(self.lane))
     }
 
     fn limit() -> Option<u32> {

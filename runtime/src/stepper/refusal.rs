@@ -77,21 +77,15 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: name(&value, lane) }))
             }
             Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
-            Err(error) => Err(self.explained(0, error, |constants| {
-                Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0))
-            })),
+            Err(error) => Err(self
+                .explained(0, error, |constants| Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0)))),
         }
     }
 
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
     #[cold]
     #[inline(never)]
-    fn explained(
-        &self,
-        lane: usize,
-        error: Error,
-        stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>,
-    ) -> Error {
+    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
